@@ -157,7 +157,7 @@ def check_yaml(text: str) -> None:
     """Check that a YAML file has a value, or a mistake."""
     session = Session("main.xacro", {}, {}, _LIMITS)
     try:
-        load(text, session._unit_value)
+        load(text, session._evaluate_unit)
     except (YamlError, Fault):
         return
 

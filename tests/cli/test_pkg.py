@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 from linkwright.cli import main
 from linkwright.packages.creation import package_templates
-from linkwright.packages.creation.licenses import known_licenses, license_text
+from linkwright.packages.creation.licenses import license_text, list_known_licenses
 from linkwright.packages.creation.request import BUILD_TYPES, Maintainer, PackageRequest
 from linkwright.packages.naming import check_package_name, is_email
 from tests.places import REPOSITORY
@@ -298,7 +298,7 @@ def test_licenses_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert list(Path().iterdir()) == []
 
 
-@pytest.mark.parametrize("identifier", known_licenses())
+@pytest.mark.parametrize("identifier", list_known_licenses())
 def test_license_texts_are_complete(identifier: str) -> None:
     text = license_text(identifier, year=2026, holder="Ada")
     assert text is not None

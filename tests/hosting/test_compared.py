@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.descriptions.pairs import file_pair
+from linkwright.descriptions.pairs import make_file_pair
 from linkwright.hosting.compared import ComparedView
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
@@ -47,7 +47,7 @@ def test_invalid_comparison_arguments_are_rejected(words, status, message, capsy
 
 async def test_broken_old_file_is_waited_for_until_fixed(tmp_path):
     out, err = io.StringIO(), io.StringIO()
-    pair = file_pair(tmp_path / "broken.urdf", tmp_path / "good.urdf", {})
+    pair = make_file_pair(tmp_path / "broken.urdf", tmp_path / "good.urdf", {})
     view = ComparedView(pair, HostOptions(port=0, open_browser=False, network=False), LaunchLog(out, err))
     running = asyncio.create_task(view.run(None))
     await eventually(lambda: "broken.urdf:3:1" in err.getvalue() and "Viewer: " in out.getvalue(), what=err.getvalue)

@@ -21,7 +21,7 @@ from linkwright.messages import get_service
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import SingleNode, create_node
 from linkwright.packages import PackageFinder, is_substitute
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 from tests.places import GAZEBO_PACKAGE
 from tests.waiting import eventually
 
@@ -132,7 +132,7 @@ async def test_launch_files_missing_in_unbuilt_sources_are_substituted(
     edited = write("ws/src/ros_gz/ros_gz_sim/launch/gz_spawn_model.launch.py", "# edited")
     finder = PackageFinder(start=tmp_path / "ws", environment={})
     share = finder.share("ros_gz_sim")
-    assert source_of(str(share / "launch" / "gz_spawn_model.launch.py")) == str(edited)
+    assert find_source(str(share / "launch" / "gz_spawn_model.launch.py")) == str(edited)
     assert (share / "launch" / "gz_server.launch.py").is_file()
     path = str(share / "launch" / "gz_sim.launch.py")
     launched = await launch(

@@ -14,7 +14,7 @@ from linkwright.lint import Edit, Finding, Fix, Settings, examine
 from linkwright.lint.apply import fix_file, write_text
 from linkwright.lint.fix import (
     add_attribute,
-    element_range,
+    find_element_range,
     is_literal,
     remove_element,
     rename_attribute,
@@ -64,7 +64,7 @@ def apply_fix(text: str, fix: Fix | None) -> str:
     ],
 )
 def test_element_range_covers_whole_element(text, expected):
-    span = element_range(parse_element(text, "a"))
+    span = find_element_range(parse_element(text, "a"))
     assert span is not None
     assert text[slice(*span)] == expected
 

@@ -156,7 +156,7 @@ def test_mentions_of_text_are_found():
     assert names.arguments == {"b", "d"}
     assert names.packages == (("c", 29),)
     assert not names.is_open
-    assert not names.arguments_open
+    assert not names.has_open_arguments
 
 
 @pytest.mark.parametrize("text", ["${$(arg a)_radius}", "${a$(arg b)}", "${$(env X)}"])
@@ -171,7 +171,7 @@ def test_strings_and_whole_expressions_are_not_open(text):
 
 @pytest.mark.parametrize("text", ["$(arg ${a})", "${xacro.arg(a)}"])
 def test_computed_arguments_are_open(text):
-    assert mentions(text).arguments_open
+    assert mentions(text).has_open_arguments
 
 
 @pytest.mark.parametrize("text", ["${", "$$", "${}", "${(}", "$(", "$()", "$(arg)", "$(find)", "${'\\u'}", "${1 if}"])

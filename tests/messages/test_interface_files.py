@@ -24,7 +24,7 @@ from linkwright.messages import (
 from linkwright.messages.definitions.idl import parse_idl
 from linkwright.messages.definitions.parser import parse_interface
 from linkwright.packages import PackageFinder, use_finder
-from linkwright.packages.interface_files import interface_file
+from linkwright.packages.interface_files import find_interface_file
 
 
 class Everything:
@@ -279,7 +279,7 @@ class TestWorkspace:
         other.write("msg", "Here", "int8 x\n")
         with use_finder(PackageFinder(start=tmp_path / "elsewhere", environment={})):
             assert get_message("elsewhere_msgs/msg/Here")().x == 0
-        assert interface_file(other.folder, "msg", "Here") == other.folder / "msg" / "Here.msg"
+        assert find_interface_file(other.folder, "msg", "Here") == other.folder / "msg" / "Here.msg"
 
 
 IDL = """\

@@ -11,7 +11,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.loading import extensions
 from linkwright.packages import PackageFinder, PackageNotFoundError, current_finder, is_substitute, use_finder
-from linkwright.packages.finder import shipped_folder
+from linkwright.packages.finder import find_shipped_folder
 from linkwright.packages.manifest import SourceScan
 
 
@@ -161,7 +161,7 @@ def test_starting_at_reuses_scanned_source_trees(tmp_path: Path, monkeypatch: py
 
 
 def test_shipped_packages_are_found_anywhere(tmp_path: Path) -> None:
-    shipped = shipped_folder()
+    shipped = find_shipped_folder()
     assert shipped is not None
     assert make_finder(tmp_path).share("my_robot_description") == shipped / "my_robot_description"
 
@@ -242,7 +242,7 @@ class TestSourceScan:
         assert SourceScan(tmp_path / "src").packages() == {"arm": tmp_path / "src" / "arm"}
 
     def test_scan_is_truncated_at_maximum_folders(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr("linkwright.packages.manifest.MAXIMUM_FOLDERS", 3)
+        monkeypatch.setattr("linkwright.packages.manifest.MAX_FOLDERS", 3)
         for number in range(5):
             (tmp_path / f"f{number}").mkdir()
         make_source(tmp_path / "f4" / "arm", "arm")

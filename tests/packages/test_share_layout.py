@@ -15,7 +15,7 @@ from linkwright.launch.ros.substitutions import FindPackageShare
 from linkwright.packages import PackageFinder, use_finder
 from linkwright.packages.ament_functions import get_package_share_directory
 from linkwright.packages.readers.cmake import read_cmake
-from linkwright.packages.share_layout import share_of_sources, source_of
+from linkwright.packages.share_layout import find_share_of_sources, find_source
 from linkwright.xacro import expand
 
 MANIFEST = '<package format="3"><name>arm</name></package>'
@@ -214,7 +214,7 @@ def test_sources_are_used_if_symlinks_fail(moved_package: Path, monkeypatch: pyt
 def test_source_of_other_path_is_that_path(tmp_path: Path) -> None:
     link = tmp_path / "link"
     link.symlink_to(tmp_path)
-    assert source_of(str(link)) == str(link)
+    assert find_source(str(link)) == str(link)
 
 
 OUTSIDE = {
@@ -241,7 +241,7 @@ def test_files_outside_package_are_not_included(write: Callable[..., Path], buil
     secret = tmp_path / "src" / "other" / "secret.stl"
     secret.write_text("")
     folder = write({build_file: OUTSIDE[build_file].replace("{outside}", secret.as_posix()), "cfg/a.yaml": ""})
-    share = share_of_sources("arm", folder)
+    share = find_share_of_sources("arm", folder)
     assert (share / "config" / "a.yaml").is_file()
     assert not (share / "meshes").exists()
 
@@ -253,9 +253,9 @@ def test_files_moved_by_setup_py_loop_are_found(write: Callable[..., Path]) -> N
         "    data.append((to, [os.path.join(root, f) for f in files]))\nsetup(name='arm', data_files=data)\n"
     )
     folder = write({"setup.py": text, "description/urdf/arm.xacro": ROBOT})
-    assert (share_of_sources("arm", folder) / "urdf" / "arm.xacro").read_text() == ROBOT
+    assert (find_share_of_sources("arm", folder) / "urdf" / "arm.xacro").read_text() == ROBOT
 
 
 def test_environment_hooks_create_no_layout(write: Callable[..., Path]) -> None:
     folder = write({"CMakeLists.txt": "project(arm)\nament_environment_hooks(a.dsv.in)\n", "a.dsv.in": ""})
-    assert share_of_sources("arm", folder) == folder
+    assert find_share_of_sources("arm", folder) == folder

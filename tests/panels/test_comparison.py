@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from linkwright.descriptions import examine
-from linkwright.descriptions.pairs import file_pair, old_description_key
+from linkwright.descriptions.pairs import make_file_pair, make_old_description_key
 from linkwright.graph import SENSOR_DATA_QOS
 from linkwright.messages import Header, JointState
 from linkwright.page.protocol.comparison import ComparedDescriptions
@@ -55,7 +55,7 @@ class ComparisonViewer:
 
     def __init__(self, world: World, folder: Path, old: str, new: str) -> None:
         self.world = world
-        self.pair = file_pair(self.write(folder, "old.urdf", old), self.write(folder, "new.urdf", new), {})
+        self.pair = make_file_pair(self.write(folder, "old.urdf", old), self.write(folder, "new.urdf", new), {})
         node = world.graph.create_node("old_robot_state_publisher")
         self.publish_old = world.viewer.attach_comparison(self.pair, node)
         self.joint_states = world.graph.create_node("joints").create_publisher(
@@ -72,7 +72,9 @@ class ComparisonViewer:
 
     def show_old(self) -> None:
         examination = examine(self.pair.old.path)
-        self.publish_old(self.world.library.store(examination, old_description_key(examination), self.pair.old.finder))
+        self.publish_old(
+            self.world.library.store(examination, make_old_description_key(examination), self.pair.old.finder)
+        )
 
     def show_new(self) -> None:
         self.world.describe(self.world.library.store(examine(self.pair.new.path)))

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.packages import PackageFinder
 from linkwright.sdf.frames import Frames, placed_links
-from linkwright.sdf.resources import Missing, ResourceFinder, model_file
+from linkwright.sdf.resources import Missing, ResourceFinder, find_model_file
 from tests.sdf.worlds import examine_world_in, write_files
 
 
@@ -120,8 +120,8 @@ def test_newest_supported_model_version_is_used(tmp_path):
     write_files(
         tmp_path, {"m/model.config": config, **{f"m/{version}.sdf": BOX for version in ("1.4", "1.12", "1.99", "1.5")}}
     )
-    assert model_file(tmp_path / "m") == tmp_path / "m" / "1.12.sdf"
-    assert isinstance(model_file(tmp_path), Missing)
+    assert find_model_file(tmp_path / "m") == tmp_path / "m" / "1.12.sdf"
+    assert isinstance(find_model_file(tmp_path), Missing)
 
 
 def test_fuel_models_are_found_in_gz_cache(tmp_path):

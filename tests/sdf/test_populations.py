@@ -6,7 +6,7 @@ from math import hypot, pi
 
 import pytest
 
-from linkwright.sdf.populations import models_of
+from linkwright.sdf.populations import generate_models
 from tests.sdf.worlds import examine_world_in, make_world_text, write_files
 
 MODEL = '<model name="can"><pose>9 9 9 0 0 0</pose><link name="l"/></model>'
@@ -15,7 +15,7 @@ BOX = "<box><size>4 2 0.5</size></box><model_count>4</model_count>"
 
 def find_places(inside: str, pose: str = "10 20 0 0 0 0") -> list[tuple[float, float, float]]:
     text = f'<population name="p"><pose>{pose}</pose>{MODEL}{inside}</population>'
-    return [model.pose.pose.xyz for model in models_of(make_world_text(text).populations[0])]
+    return [model.pose.pose.xyz for model in generate_models(make_world_text(text).populations[0])]
 
 
 def distribution_text(kind: str, extra: str = "") -> str:

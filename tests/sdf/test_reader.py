@@ -21,11 +21,11 @@ from linkwright.sdf.materials import MaterialScript
 from linkwright.sdf.noise import Noise, NoiseXyz
 from linkwright.sdf.poses import RawPose
 from linkwright.sdf.reader import read
-from linkwright.sdf.report import NEWEST, SdfReport
+from linkwright.sdf.report import NEWEST_VERSION, SdfReport
 from linkwright.sdf.sensors import Reach, Sweep
 from linkwright.sdf.surfaces import Contact, Friction, Surface, TorsionalFriction
 from linkwright.sdf.text import parse_as_gazebo
-from linkwright.sdf.worlds import SDF, World, gravity_of, physics_of
+from linkwright.sdf.worlds import SDF, World, find_gravity, find_physics
 from linkwright.xmltree import Comment, Element
 from tests.sdf.worlds import make_model_text, make_world_text
 
@@ -46,7 +46,7 @@ OBJECT_RULES = [rule for rule in collect_rules(SDF, {}).values() if is_dataclass
 def test_empty_element_has_class_defaults(rule: ElementRule):
     """The table and the classes have the same defaults, which are SDF's."""
     element = Element(rule.tag, {attribute.name: "n" for attribute in rule.attributes if attribute.required})
-    element_object = reader_of(rule, NEWEST).read(element, element, SdfReport())
+    element_object = reader_of(rule, NEWEST_VERSION).read(element, element, SdfReport())
     own_defaults = {field.name: field.default for field in fields(rule.make) if field.default is not MISSING}
     if isinstance(rule.default, rule.make):
         own_defaults = {name: getattr(rule.default, name) for name in own_defaults}
@@ -320,9 +320,9 @@ def test_world_is_read():
         <scene><shadows>0</shadows></scene><spherical_coordinates><latitude_deg>48</latitude_deg>
         </spherical_coordinates><frame name="f"/><model name="o"><model name="i"><link name="l"/></model></model>"""
     )
-    assert gravity_of(parsed_world) == (0, 0, -1.6)
+    assert find_gravity(parsed_world) == (0, 0, -1.6)
     assert parsed_world.wind == (1, 0, 0)
-    assert physics_of(parsed_world).max_step_size == 0.004
+    assert find_physics(parsed_world).max_step_size == 0.004
     assert parsed_world.scene.shadows is False
     assert parsed_world.spherical_coordinates is not None
     assert parsed_world.spherical_coordinates.latitude_deg == 48
@@ -330,9 +330,9 @@ def test_world_is_read():
 
 
 def test_gravity_falls_back_to_physics():
-    assert gravity_of(World()) == (0.0, 0.0, -9.8)
-    assert gravity_of(make_world_text("<physics><gravity>0 0 -9</gravity></physics>")) == (0, 0, -9)
-    assert gravity_of(make_world_text("<gravity>0 0 -2</gravity><physics><gravity>0 0 -9</gravity></physics>")) == (
+    assert find_gravity(World()) == (0.0, 0.0, -9.8)
+    assert find_gravity(make_world_text("<physics><gravity>0 0 -9</gravity></physics>")) == (0, 0, -9)
+    assert find_gravity(make_world_text("<gravity>0 0 -2</gravity><physics><gravity>0 0 -9</gravity></physics>")) == (
         0,
         0,
         -2,
@@ -403,7 +403,7 @@ def test_any_element_can_be_nested_in_any_other_without_exception():
     for rule in collect_rules(SDF, {}).values():
         element = Element(rule.tag, {"name": "n"})
         element.children += [Element(tag, {"name": "n", "type": "x", "value": "y"}) for tag in tags]
-        reader_of(rule, NEWEST).read(element, element, SdfReport())
+        reader_of(rule, NEWEST_VERSION).read(element, element, SdfReport())
 
 
 def test_bare_ampersand_and_latin1_bytes_are_read():

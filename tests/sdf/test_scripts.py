@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.descriptions import examine_world
-from linkwright.sdf.scripts import gazebo_look, read_script
+from linkwright.sdf.scripts import find_gazebo_look, read_script
 from tests.sdf.worlds import examine_world_in, write_files
 
 SCRIPT = """\
@@ -44,7 +44,7 @@ def test_gazebo_materials_have_their_colors(tmp_path):
     material = read_material(tmp_path, script_text("Gazebo/Grey", "file://media/materials/scripts/gazebo.material"))
     assert (material.ambient, material.diffuse) == ((0.3, 0.3, 0.3, 1), (0.7, 0.7, 0.7, 1))
     assert material.script.name == "Gazebo/Grey"
-    glow = gazebo_look("Gazebo/BlueGlow")
+    glow = find_gazebo_look("Gazebo/BlueGlow")
     assert glow is not None
     assert glow.emissive == (0, 0, 1, 1)
 
@@ -57,7 +57,7 @@ def test_material_colors_override_script(tmp_path):
 def test_unknown_script_leaves_material_unchanged(tmp_path):
     material = read_material(tmp_path, script_text("Gazebo/NoSuch") + "<diffuse>1 0 0 1</diffuse>")
     assert (material.ambient, material.diffuse) == (None, (1, 0, 0, 1))
-    assert gazebo_look("Grey") is None
+    assert find_gazebo_look("Grey") is None
 
 
 def test_model_script_has_colors_and_texture(tmp_path):

@@ -15,7 +15,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 
 import pytest
 
-from linkwright.packages.uri import absolute_path
+from linkwright.packages.uri import parse_absolute_path
 from linkwright.process import interruption, standard_streams
 from tests.domains import own_domain
 from tests.places import PACKAGE
@@ -136,15 +136,15 @@ def test_world_is_simulated(start_on_other_system):
     ],
 )
 def test_file_urls_with_drive_letter_are_absolute_on_windows(address, path):
-    path_with_drive = absolute_path(address, with_drives=True)
+    path_with_drive = parse_absolute_path(address, with_drives=True)
     assert path_with_drive == path
     assert PureWindowsPath(path_with_drive).is_absolute()
 
 
 def test_drive_letter_is_a_folder_on_other_systems():
-    assert absolute_path("///C:/robots", with_drives=False) == "/C:/robots"
-    assert PurePosixPath(absolute_path("///C:/robots", with_drives=False)).is_absolute()
-    assert absolute_path("//C:/robots", with_drives=False) is None
+    assert parse_absolute_path("///C:/robots", with_drives=False) == "/C:/robots"
+    assert PurePosixPath(parse_absolute_path("///C:/robots", with_drives=False)).is_absolute()
+    assert parse_absolute_path("//C:/robots", with_drives=False) is None
 
 
 def test_signal_again_does_not_end_process_on_windows(monkeypatch):

@@ -17,7 +17,7 @@ import pytest
 
 from linkwright.learning.course import find_course, load_course
 from linkwright.messages import String, get_message, get_service
-from linkwright.packages.programs.source_programs import source_programs
+from linkwright.packages.programs.source_programs import find_source_programs
 from tests.learning.finished import finish_lessons
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
@@ -56,7 +56,7 @@ def start_solution(workspace):
 
     def start(package: str, executable: str, *parameters: str) -> subprocess.Popen[str]:
         folder = workspace / "src" / package
-        entry = source_programs(folder).entry_points[executable]
+        entry = find_source_programs(folder).entry_points[executable]
         arguments = [argument for parameter in parameters for argument in ("-p", parameter)]
         processes.append(
             subprocess.Popen(

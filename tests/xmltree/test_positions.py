@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.xmltree.positions import attribute_name_range, attribute_value_range, raw_offset
+from linkwright.xmltree.positions import attribute_name_range, attribute_value_range, find_raw_offset
 
 TAG = """<joint\n\tname = "a b"\n  type='fixed' note="type='x' &lt;1&gt;\r\n2"/>"""
 
@@ -29,5 +29,5 @@ def test_absent_attribute_has_no_range(name: str) -> None:
 def test_raw_offsets_account_for_entities() -> None:
     start, end = attribute_value_range(TAG, 0, "note") or (0, 0)
     value = "type='x' <1> 2"
-    assert [TAG[raw_offset(TAG, start, end, value.index(sign))] for sign in "x<1>2"] == ["x", "&", "1", "&", "2"]
-    assert raw_offset(TAG, start, end, 100) == end
+    assert [TAG[find_raw_offset(TAG, start, end, value.index(sign))] for sign in "x<1>2"] == ["x", "&", "1", "&", "2"]
+    assert find_raw_offset(TAG, start, end, 100) == end

@@ -153,12 +153,12 @@ def _summarize(robot: Robot, inference: Inference) -> Phrase:
 
 def _format_inferences(inference: Inference) -> str:
     """Return a text that lists each inference with its file, line, message and added elements."""
-    from linkwright.xmltree.patches import block
+    from linkwright.xmltree.patches import format_block
 
     lines: list[str] = []
     for finding in inference.findings:
         diagnostic = finding.diagnostic
         location = f"{diagnostic.span.file}:{diagnostic.span.line}: " if diagnostic.span else ""
         lines.append(f"{location}{diagnostic.code} {localized(diagnostic.message)}")
-        lines += [f"    {line}" for element in finding.added for line in block(element).splitlines()]
+        lines += [f"    {line}" for element in finding.added for line in format_block(element).splitlines()]
     return "".join(f"{line}\n" for line in lines)

@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _export(arguments: argparse.Namespace, pair: Pair | None) -> int:
     """Export one description or a comparison of two, and return the exit status."""
     from linkwright.descriptions import DescriptionLibrary, examine
-    from linkwright.descriptions.pairs import old_description_key
+    from linkwright.descriptions.pairs import make_old_description_key
     from linkwright.packages import PackageFinder
     from linkwright.panels.export.feature import export_snapshot
     from linkwright.viewer.model_snapshot import OldDescription, take_model_snapshot
@@ -82,7 +82,7 @@ def _export(arguments: argparse.Namespace, pair: Pair | None) -> int:
     else:
         finder, description, old_description = pair.new.finder, pair.new.read(), pair.old.read()
         old = OldDescription(
-            pair, library.store(old_description, old_description_key(old_description), pair.old.finder)
+            pair, library.store(old_description, make_old_description_key(old_description), pair.old.finder)
         )
     text = library.store(description)
     print_diagnostics(description.diagnostics, sys.stderr)

@@ -72,7 +72,7 @@ def open_requested_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair
     """
     from pathlib import Path
 
-    from linkwright.descriptions.pairs import file_pair, pair_with_commit
+    from linkwright.descriptions.pairs import make_file_pair, make_pair_with_commit
 
     files = [word for word in arguments.words if names_file(word)]
     values = parse_assignments([word for word in arguments.words if not names_file(word)])
@@ -80,7 +80,7 @@ def open_requested_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair
         return None
     path = Path(arguments.file)
     if arguments.against:
-        pair = pair_with_commit(path, arguments.against, values)
+        pair = make_pair_with_commit(path, arguments.against, values)
         stack.callback(pair.close)
         return pair
-    return file_pair(path, Path(files[0]), values)
+    return make_file_pair(path, Path(files[0]), values)

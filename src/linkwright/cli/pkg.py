@@ -29,9 +29,9 @@ class _ListLicenses(argparse.Action):
         option_string: str | None = None,
     ) -> None:
         if values == "?":
-            from linkwright.packages.creation.licenses import known_licenses
+            from linkwright.packages.creation.licenses import list_known_licenses
 
-            print("\n".join(["Supported licenses:", *known_licenses()]))
+            print("\n".join(["Supported licenses:", *list_known_licenses()]))
             parser.exit(0)
         setattr(namespace, self.dest, values)
 

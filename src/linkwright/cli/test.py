@@ -30,7 +30,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run the tests in a separate process with the stand-ins, and return 0 if all tests passed."""
     from linkwright.packages import PackageFinder
-    from linkwright.packages.programs.workspace_environment import workspace_environment
+    from linkwright.packages.programs.workspace_environment import make_workspace_environment
     from linkwright.shell.programs import append_programs_to_path, set_ros_variables
     from linkwright.standins import process
 
@@ -41,4 +41,4 @@ def run(arguments: argparse.Namespace) -> int:
         if getattr(arguments, name) is not None:
             options += [f"--{name.replace('_', '-')}", getattr(arguments, name)]
     command = process.python_command(["-c", _LAUNCH_TEST_CODE, arguments.file, *arguments.words, *options])
-    return replace_process(command, process.create_environment(workspace_environment(PackageFinder(), os.environ)))
+    return replace_process(command, process.create_environment(make_workspace_environment(PackageFinder(), os.environ)))

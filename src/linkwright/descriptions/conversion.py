@@ -75,30 +75,30 @@ def as_sdf(
         world = examine_world(path, arguments=arguments, packages=finder)
         if world.sdf is None:
             return ConversionResult(None, world.diagnostics, world.files)
-        sdf = replace(world.sdf, worlds=tuple(map(_in_saved_state, world.sdf.worlds)))
+        sdf = replace(world.sdf, worlds=tuple(map(_apply_saved_state, world.sdf.worlds)))
         return ConversionResult(_relocate_paths(sdf, path.parent, folder), world.diagnostics, world.files)
     from linkwright.sdf.from_urdf import model_from_robot
     from linkwright.sdf.worlds import Sdf
-    from linkwright.sdf.writer import VERSION
+    from linkwright.sdf.writer import WRITTEN_VERSION
 
     description = examine(path, arguments=arguments, packages=finder)
     if description.robot is None or not description.robot.root:
         return ConversionResult(None, description.diagnostics, description.files)
     conversion = model_from_robot(description.robot, lump_fixed_joints=lump_fixed_joints)
-    sdf = Sdf(VERSION, models=(conversion.model,))
+    sdf = Sdf(WRITTEN_VERSION, models=(conversion.model,))
     diagnostics = (*description.diagnostics, *conversion.diagnostics)
     return ConversionResult(_relocate_paths(sdf, path.parent, folder), diagnostics, description.files)
 
 
-def _in_saved_state(world: World) -> World:
-    """Return a world in its saved state, with gravity in the element that SDF has used since 1.6."""
+def _apply_saved_state(world: World) -> World:
+    """Return a world in its saved state, with gravity in the element of SDF 1.6 and later."""
     from linkwright.sdf.saved import with_saved_state
-    from linkwright.sdf.worlds import gravity_of
+    from linkwright.sdf.worlds import find_gravity
 
     world = replace(with_saved_state(world), states=())
     if world.gravity is None and any(physic.gravity for physic in world.physics):
         physics = tuple(replace(physic, gravity=None) for physic in world.physics)
-        world = replace(world, gravity=gravity_of(world), physics=physics)
+        world = replace(world, gravity=find_gravity(world), physics=physics)
     return world
 
 

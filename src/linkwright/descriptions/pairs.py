@@ -83,7 +83,7 @@ class Model:
         return self.finder.resolve(uri, self.path.parent)
 
     def normalizer(self, other: Model) -> Callable[[str], str]:
-        """Return a function that makes this description's texts comparable with another description's.
+        """Return a function that makes texts comparable with another description's texts.
 
         Paths in the folder of a commit are then equal to those in the working tree.
         """
@@ -141,7 +141,7 @@ class Pair:
         return compare(*sides)
 
 
-def old_description_key(description: Description) -> str:
+def make_old_description_key(description: Description) -> str:
     """Return a text that identifies the old description, even if the new description is equal.
 
     Descriptions are identified by their text.
@@ -149,7 +149,7 @@ def old_description_key(description: Description) -> str:
     return f"{description.text}\n<!-- the old one -->\n"
 
 
-def file_pair(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
+def make_file_pair(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
     """Return the pair of two files.
 
     Args:
@@ -163,7 +163,7 @@ def file_pair(old: Path, new: Path, values: Mapping[str, str]) -> Pair:
     return Pair(old_model, new_model)
 
 
-def pair_with_commit(path: Path, commit: str, values: Mapping[str, str]) -> Pair:
+def make_pair_with_commit(path: Path, commit: str, values: Mapping[str, str]) -> Pair:
     """Return the pair of a file's version in a commit and the file in the working tree.
 
     The files of the commit exist until the pair is closed.

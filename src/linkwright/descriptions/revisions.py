@@ -14,7 +14,7 @@ from linkwright.files.git_repository import GitRepository
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import SourceScan
-from linkwright.packages.share_layout import share_of_sources
+from linkwright.packages.share_layout import find_share_of_sources
 
 
 class CommitFiles:
@@ -25,7 +25,7 @@ class CommitFiles:
     files of the computer.
 
     Args:
-        repository: the repository.
+        repository: the git repository of the commit.
         require_commit: the hash of the commit.
         name: the commit in git's notation, for users.
         must_be_complete: whether it is an error if git cannot write some of the files.
@@ -63,7 +63,10 @@ class CommitFiles:
         return {name: value for name, value in vars(self).items() if name != "_folder"}
 
     def finder(self, folder: Path) -> PackageFinder:
-        """Return a finder for a file's folder that finds the commit's packages, and others from the working tree."""
+        """Return a finder for a file's folder.
+
+        It finds the commit's packages, and other packages in the working tree.
+        """
         return self._finder.starting_at([folder, self._repository_root, Path.cwd()])
 
     @cached_property
@@ -75,7 +78,7 @@ class CommitFiles:
     def packages(self) -> Mapping[str, Path]:
         """The share folders of the commit's packages, by the name of the package."""
         source_folders = SourceScan(self.root.parent).packages()
-        return {name: share_of_sources(name, folder) for name, folder in source_folders.items()}
+        return {name: find_share_of_sources(name, folder) for name, folder in source_folders.items()}
 
     def label(self, file: str) -> str:
         """Return the name that git uses for a file of the commit, such as ``HEAD:robots/arm.urdf``.
@@ -90,8 +93,8 @@ class CommitFiles:
 
     @property
     def normalize(self) -> Callable[[str], str]:
-        """A function that makes the commit's paths comparable with another commit's or the working tree's."""
-        return _path_normalizer(self.packages, self.root)
+        """A function that makes the commit's paths comparable with those of other trees."""
+        return _make_path_normalizer(self.packages, self.root)
 
     def normalizer_for(self, finder: PackageFinder) -> Callable[[str], str]:
         """Return a function that makes the working tree's paths comparable with this commit's.
@@ -100,7 +103,7 @@ class CommitFiles:
             finder: the finder of the working tree's packages.
         """
         shares = {name: share for name in self.packages if (share := finder.find(name)) is not None}
-        return _path_normalizer(shares, self._repository_root)
+        return _make_path_normalizer(shares, self._repository_root)
 
     def _remove_outward_links(self, links: Sequence[str]) -> Iterator[str]:
         for link in links:
@@ -111,7 +114,7 @@ class CommitFiles:
 
 
 def leads_outside(path: Path, root: Path) -> bool:
-    """Return whether a symbolic link points outside the files of a commit, or into git's own folder.
+    """Return whether a symbolic link leaves the files of a commit, or enters git's folder.
 
     Args:
         path: a path below the root.
@@ -146,12 +149,12 @@ def file_in_commit(path: Path, name: str) -> tuple[CommitFiles, Path]:
     commit = repository.require_commit(name)
     relative_path = real_path.relative_to(repository.root)
     if not repository.contains(commit, relative_path.as_posix()):
-        relative_path = _path_before_rename(repository, commit, relative_path, name)
+        relative_path = _find_path_before_rename(repository, commit, relative_path, name)
     files = CommitFiles(repository, commit, name)
     return files, files.root / relative_path
 
 
-def _path_before_rename(repository: GitRepository, commit: str, relative_path: Path, name: str) -> Path:
+def _find_path_before_rename(repository: GitRepository, commit: str, relative_path: Path, name: str) -> Path:
     """Return the path that a file of the working tree had in a commit, before it was renamed.
 
     The renaming need not be staged.
@@ -182,7 +185,7 @@ def _path_before_rename(repository: GitRepository, commit: str, relative_path: P
     raise LinkwrightError(Diagnostic("CLI344", message, hint=hint))
 
 
-def _path_normalizer(shares: Mapping[str, Path], top: Path) -> Callable[[str], str]:
+def _make_path_normalizer(shares: Mapping[str, Path], top: Path) -> Callable[[str], str]:
     replacements: Sequence[tuple[str, str]] = [
         *((str(share), f"package://{name}") for name, share in shares.items()),
         (str(top), "."),

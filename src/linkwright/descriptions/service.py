@@ -160,7 +160,7 @@ class DescriptionLibrary:
         """Store a description, so that it can be found by its text.
 
         Args:
-            description: the description.
+            description: the description to store.
             text: the key under which to store it, or None for the description's own text.
             packages: the finder of the description's packages, if the rest of the program may use other packages.
 
@@ -224,7 +224,7 @@ def _read(text: str) -> Description:
     return Description(TEXT_NAME, document, read(document))
 
 
-_REPORTED_ONCE = frozenset({"SDF150", "SDF160"})
+_CODES_REPORTED_ONCE = frozenset({"SDF150", "SDF160"})
 _MAX_LINKS = 100_000
 """The maximum number of links in a world. More links would take minutes and gigabytes to read."""
 _WORLD_SUFFIXES = (".world", ".sdf", ".world.xacro", ".sdf.xacro")
@@ -298,7 +298,7 @@ def examine_world(
     resolution = resolve_includes(reading.sdf, path, resources)
     diagnostics += [*resolution.diagnostics, *check_references(resolution.sdf)]
     sdf = with_scripts(replace(resolution.sdf, worlds=tuple(map(with_populations, resolution.sdf.worlds))), resources)
-    return WorldDescription(path, sdf, tuple(_without_repetitions(diagnostics)), (*files, *resolution.files))
+    return WorldDescription(path, sdf, tuple(_remove_repetitions(diagnostics)), (*files, *resolution.files))
 
 
 def robot_of_text(text: str, name: str) -> Reading:
@@ -307,7 +307,7 @@ def robot_of_text(text: str, name: str) -> Reading:
     If the text has no errors, warnings that gz would print are left out of the findings.
 
     Args:
-        text: the text.
+        text: the text of a model in SDF.
         name: the name of the file in messages.
     """
     from linkwright.sdf.includes import resolve_includes
@@ -324,7 +324,7 @@ def robot_of_text(text: str, name: str) -> Reading:
     return robot_from_sdf(resolve_includes(reading.sdf, Path(name), resources).sdf, document.root)
 
 
-def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+def _remove_repetitions(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the findings without repetitions about unread elements and missing models.
 
     Of repeated findings, only the first is yielded.
@@ -332,7 +332,7 @@ def _without_repetitions(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnost
     reported_keys: set[str] = set()
     for diagnostic in diagnostics:
         key = f"{diagnostic.code} {diagnostic.severity} {diagnostic.message}"
-        if diagnostic.code not in _REPORTED_ONCE or key not in reported_keys:
+        if diagnostic.code not in _CODES_REPORTED_ONCE or key not in reported_keys:
             reported_keys.add(key)
             yield diagnostic
 
@@ -374,10 +374,10 @@ def _is_xacro(document: Document) -> bool:
     return "xmlns:xacro" in root.attributes and any(element.tag.startswith("xacro:") for element in root.walk())
 
 
-_URDF = ".urdf"
+_URDF_SUFFIX = ".urdf"
 """The suffix of files that robot_state_publisher may read unexpanded, whatever prefixes they declare."""
 
-_UNEVALUATED_TAG = "URDF102"
+_UNEVALUATED_TAG_CODE = "URDF102"
 """The finding about a xacro tag that was not evaluated."""
 
 Packages = Union[Mapping[str, str | Path], "PackageFinder", None]
@@ -441,7 +441,7 @@ def examine(
         if document.root.tag == "sdf" and document.source is not None:
             return Description(name, document, robot_of_text(document.source.text, name), overlay=overlay)
         if xacro is False or not (arguments or is_xacro(name, document.root)):
-            return _unexpanded_description(name, document, remarks, overlay)
+            return _make_unexpanded_description(name, document, remarks, overlay)
         text = document.source.text if is_text_input and document.source else text
     from linkwright.xacro import expand
 
@@ -450,12 +450,12 @@ def examine(
     except LinkwrightError as error:
         if not partly:
             raise
-        if not xacro and not arguments and name.endswith(_URDF):
+        if not xacro and not arguments and name.endswith(_URDF_SUFFIX):
             reported_codes = {diagnostic.code for diagnostic in remarks}
             expansion_warnings = tuple(
-                _as_warning(diagnostic) for diagnostic in error.diagnostics if diagnostic.code not in reported_codes
+                _to_warning(diagnostic) for diagnostic in error.diagnostics if diagnostic.code not in reported_codes
             )
-            plain_description = _unexpanded_description(
+            plain_description = _make_unexpanded_description(
                 name, document, (*expansion_warnings, *remarks), overlay, is_reported=bool(expansion_warnings)
             )
             if (
@@ -471,7 +471,7 @@ def examine(
     return Description.of_expansion(name, expansion, overlay)
 
 
-def _unexpanded_description(
+def _make_unexpanded_description(
     name: str,
     document: Document,
     remarks: tuple[Diagnostic, ...],
@@ -493,7 +493,7 @@ def _unexpanded_description(
 
 def _has_unexpanded_text(diagnostic: Diagnostic) -> bool:
     return diagnostic.severity is Severity.ERROR or (
-        diagnostic.code in HOLDS_FOR_PARTS and diagnostic.code != _UNEVALUATED_TAG
+        diagnostic.code in HOLDS_FOR_PARTS and diagnostic.code != _UNEVALUATED_TAG_CODE
     )
 
 
@@ -505,7 +505,7 @@ def _has_unexpanded_names(robot: Robot) -> bool:
     return any("$(" in name or "${" in name for name in robot.links)
 
 
-def _as_warning(error: Diagnostic) -> Diagnostic:
+def _to_warning(error: Diagnostic) -> Diagnostic:
     """Return an error of the expansion as a warning, for a file that urdfdom reads unexpanded."""
     note = Note(phrase("urdfdom reads the file without expanding it, and ignores the elements of xacro"))
     return error.with_changes(severity=Severity.WARNING, notes=(*error.notes, note))

@@ -59,7 +59,7 @@ def with_lf_line_ends(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _key(owner: TextOwner, path: str) -> _Key:
+def _make_key(owner: TextOwner, path: str) -> _Key:
     return _Key(owner, os.path.realpath(path))
 
 
@@ -83,7 +83,7 @@ class UnsavedTexts:
 
     async def store(self, unsaved: UnsavedText) -> UpdateOutcome:
         """Replace the editor's text of a file, and return the effect on the descriptions."""
-        key = _key(unsaved.owner, unsaved.path)
+        key = _make_key(unsaved.owner, unsaved.path)
         self._texts.pop(key, None)  # the newest text is the last one
         self._texts[key] = unsaved
         return await self._notify_listeners(key.real_path)
@@ -93,7 +93,7 @@ class UnsavedTexts:
 
         If no other editor has a text of the file, the text on the disk is used again.
         """
-        key = _key(owner, path)
+        key = _make_key(owner, path)
         return "elsewhere" if self._texts.pop(key, None) is None else await self._notify_listeners(key.real_path)
 
     async def remove_all(self, owner: TextOwner) -> None:

@@ -135,9 +135,9 @@ class _OldDescriptions(Descriptions):
 
     def store(self, call: XacroCall, description: Description, text: str | None = None) -> str:
         """Store a description, and return the text that identifies it."""
-        from linkwright.descriptions.pairs import old_description_key
+        from linkwright.descriptions.pairs import make_old_description_key
 
-        return super().store(call, description, old_description_key(description) if text is None else text)
+        return super().store(call, description, make_old_description_key(description) if text is None else text)
 
 
 def _to_xacro_call(model: Model) -> XacroCall:

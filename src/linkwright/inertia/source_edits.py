@@ -14,7 +14,7 @@ from linkwright.urdf import Link
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element, parse
 from linkwright.xmltree.patches import Replacement, indentation, line_ending
-from linkwright.xmltree.positions import attribute_name_range, attribute_value_range, start_tag_end
+from linkwright.xmltree.positions import attribute_name_range, attribute_value_range, find_start_tag_end
 
 _TRAILING_COMMENTS = lazy_pattern(r"(?:[ \t]*<!--(?:(?!-->).)*-->)*(?=[ \t]*\r?\n)")
 """Comments that follow a start tag on its line, and belong to the tag."""
@@ -97,7 +97,7 @@ def find_written_link(link: Link) -> Element:
 
 
 def _insert_block(text: str, link: Element, properties: MassProperties) -> Replacement:
-    offset = start_tag_end(text, link.offset)
+    offset = find_start_tag_end(text, link.offset)
     newline = line_ending(text)
     link_indent = indentation(text, link.offset)
     child = next(link.elements(), None)
@@ -113,7 +113,7 @@ def _insert_block(text: str, link: Element, properties: MassProperties) -> Repla
 
 
 def _update_block(text: str, inertial: Element, properties: MassProperties) -> Iterator[Replacement]:
-    end = start_tag_end(text, inertial.offset)
+    end = find_start_tag_end(text, inertial.offset)
     newline = line_ending(text)
     if text[end - 2] == "/":
         block = inertial_block(properties, indentation(text, inertial.offset) or "", newline=newline)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from linkwright.inference.results import Drive
 from linkwright.loading.extensions import extensions
-from linkwright.sdf.plugins import library_name, original_library
+from linkwright.sdf.plugins import find_original_library, library_name
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element, Text
 
@@ -103,7 +103,10 @@ def _find_drive_plugins(robot: Robot) -> Iterator[Element]:
 def _is_working(plugin: Element) -> bool:
     """Return whether the simulation supports a plugin, and the plugin's parameter files exist."""
     supported = extensions(_PLUGIN_GROUP)
-    names = library_name(plugin.attributes.get("filename", "")), original_library(plugin.attributes.get("name", ""))
+    names = (
+        library_name(plugin.attributes.get("filename", "")),
+        find_original_library(plugin.attributes.get("name", "")),
+    )
     files = [Path(element.text().strip()) for element in plugin.elements("parameters")]
     if _ROS1_CONTROL in names and not files:
         return False

@@ -20,7 +20,7 @@ from linkwright.inference.results import Inference, InferredFact
 from linkwright.lint.fix import is_literal, value_edit
 from linkwright.urdf import Joint, Link, Robot
 from linkwright.xmltree import Element, Text
-from linkwright.xmltree.patches import Replacement, insertion
+from linkwright.xmltree.patches import Replacement, make_insertion
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +145,7 @@ def _insert_elements(owner: Element, added: list[Element]) -> Iterator[Replaceme
     """Yield the edit that inserts elements at the end of an element in a file."""
     if not added:
         return
-    edit = insertion(owner, added)
+    edit = make_insertion(owner, added)
     if edit is None:
         raise NotWritableError(phrase("it is not written in a file"))
     yield edit

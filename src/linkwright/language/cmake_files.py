@@ -14,8 +14,8 @@ from linkwright.language.hover import Explanation
 from linkwright.language.links import FileReference
 from linkwright.language.offers import explain_file, explain_package, offer_files, offer_packages, target_of_package
 from linkwright.language.programs import BUILD_DEPENDENCY
-from linkwright.packages.readers.entry_points import text_of
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.readers.entry_points import read_text
+from linkwright.packages.share_layout import find_source
 
 _FILE_NAME = "CMakeLists.txt"
 _COMMANDS = {
@@ -126,7 +126,7 @@ class _CMakeCursor:
         Declared dependencies come first.
         """
         found_packages = set(_FIND_PACKAGE.findall(self.document.text[:start] + self.document.text[self.offset :]))
-        declared = BUILD_DEPENDENCY.findall(text_of(self.folder / "package.xml"))
+        declared = BUILD_DEPENDENCY.findall(read_text(self.folder / "package.xml"))
         for name in dict.fromkeys(dependency for dependency in declared if dependency not in found_packages):
             yield Completion(name, ItemKind.PACKAGE, start, "package.xml")
         yield from (item for item in offer_packages(self.document, start) if item.label not in found_packages)
@@ -240,7 +240,7 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
             return
     path = _find_path(document, word)
     if path is not None and path.is_file():
-        yield Target(Path(source_of(str(path))))
+        yield Target(Path(find_source(str(path))))
 
 
 def _links(document: Document) -> Iterator[FileReference]:

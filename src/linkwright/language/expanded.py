@@ -12,7 +12,7 @@ from linkwright.language.workspace import Workspace
 from linkwright.urdf import Robot, read
 from linkwright.xacro import expand
 from linkwright.xmltree import Element, Overlay, parse
-from linkwright.xmltree.positions import start_tag_end
+from linkwright.xmltree.positions import find_start_tag_end
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ def expand_to_text(
 def _find_tag_range(element: Element) -> tuple[int, int] | None:
     if element.source is None:
         return None
-    return element.offset, start_tag_end(element.source.text, element.offset)
+    return element.offset, find_start_tag_end(element.source.text, element.offset)
 
 
 def expand_to_robots(workspace: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[tuple[Path, Robot]]:

@@ -17,7 +17,7 @@ from linkwright.language.proof import Edit
 from linkwright.language.values import evaluate_file
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import XML_SUFFIXES
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 
 _OTHER_FILES = (".py", ".yaml", ".yml", ".rviz", "CMakeLists.txt")
 _BUILD_FILES = ("CMakeLists.txt", "setup.py")
@@ -101,7 +101,7 @@ def _path_references(workspace: Workspace, file: Path, text: str) -> Iterator[Fi
     for match in _SHARE_PATH.finditer(text):
         share = workspace.finder(file).find(match["package"])
         if share is not None:
-            yield FileReference(match.start("path"), match.end("path"), Path(source_of(str(share / match["path"]))))
+            yield FileReference(match.start("path"), match.end("path"), Path(find_source(str(share / match["path"]))))
     if file.name in _BUILD_FILES:
         for match in _WORD.finditer(text):
             path = file.parent / match[0]

@@ -17,7 +17,7 @@ from linkwright.language.source_elements import SourceElement, find_innermost_el
 from linkwright.language.workspace import Workspace
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro.expressions.scope import parse_literal
-from linkwright.xmltree.patches import whole_lines
+from linkwright.xmltree.patches import extend_to_whole_lines
 from linkwright.xmltree.tokens import Kind, tokens
 
 _LITERAL = lazy_pattern(r"[^$'\"&<\\]*")
@@ -73,7 +73,7 @@ def inline_property(workspace: Workspace, texts: Mapping[Path, str], name: Occur
     value = None if element is None else _find_literal_value(element)
     if element is None or value is None:
         raise UnprovedError(phrase("'{name}' is not defined by a value alone", name=name.name))
-    lines = whole_lines(source, element.start, element.end)
+    lines = extend_to_whole_lines(source, element.start, element.end)
     removal = Edit(definition.file, *lines, "")
     proof = ExpansionProof(workspace, texts, definition.file)
     error: UnprovedError | None = None

@@ -17,8 +17,8 @@ from linkwright.messages import catalog
 from linkwright.messages.definitions.interfaces import PRIMITIVES, snake_case
 from linkwright.messages.definitions.parser import SECTIONS
 from linkwright.packages import enclosing_package
-from linkwright.packages.interface_files import interface_file, interface_files
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.interface_files import find_interface_file, find_interface_files
+from linkwright.packages.share_layout import find_source
 
 _FIELD = re.compile(
     r"^[ \t]*(?P<type>[A-Za-z_][\w/]*)?(?P<bounds>(?:<=\w*)?(?:\[[^\]\n#]*\]?)?)?"
@@ -69,9 +69,9 @@ def _find_message(document: Document, type_name: str) -> _Message | None:
         package = "std_msgs"
     package = package.removesuffix("/msg") or _find_own_package(document)
     share = document.finder.find(package) if package else None
-    file = None if share is None else interface_file(share, "msg", name)
+    file = None if share is None else find_interface_file(share, "msg", name)
     if file is not None:
-        file = Path(source_of(str(file)))
+        file = Path(find_source(str(file)))
         return _Message(document.other(file), Target(file))
     text = catalog.texts(package).get(f"msg/{name}")
     if text is None:
@@ -140,7 +140,7 @@ def _find_used_types(document: Document, excluded_offset: int) -> list[str]:
 
 def _list_message_names(document: Document, package: str) -> list[str]:
     share = document.finder.find(package) if package else None
-    own_messages = {} if share is None else interface_files(share, "msg")
+    own_messages = {} if share is None else find_interface_files(share, "msg")
     known_messages = [name.removeprefix("msg/") for name in catalog.texts(package) if name.startswith("msg/")]
     return sorted({*own_messages, *known_messages})
 

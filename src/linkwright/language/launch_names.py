@@ -15,7 +15,7 @@ from linkwright.language.launch_values import LaunchText
 from linkwright.language.launch_yaml import is_yaml_launch_file
 from linkwright.language.python_text import Group, Item, Name, Text
 from linkwright.language.yaml_outline import YamlEntry, YamlOutline
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 from linkwright.xmltree.tokens import Kind, tokens
 
 _USE = re.compile(r"\$\(\s*(?:var|arg)\s+(['\"]?)([\w./-]+)\1(?=[\s)])|\barg\(\s*(['\"])([\w./-]+)\3\s*\)")
@@ -97,7 +97,7 @@ def find_launch_names(document: Document) -> LaunchNames:
 
 
 def _resolve_target(path: Path | None) -> Path | None:
-    return None if path is None or not path.is_file() else real_path(source_of(str(path)))
+    return None if path is None or not path.is_file() else real_path(find_source(str(path)))
 
 
 def _find_uses(text: str, start: int, file: Path) -> Iterator[LaunchName]:

@@ -45,7 +45,7 @@ from linkwright.language.parameter_completion import describe_parameter_info
 from linkwright.language.python_paths import JOINS, PACKAGE_FUNCTIONS, PythonPaths, Value
 from linkwright.language.python_text import Group, Item, Name, Text, python_text
 from linkwright.language.source_parameters import parameters_in_sources
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 
 _PACKAGE_KEYWORDS = frozenset({"package", "package_name", "node_package"})
 _PROGRAM_KEYWORDS = frozenset({"executable", "node_executable"})
@@ -248,7 +248,7 @@ class PythonLaunchText:
             return None
 
     def _read_declared_arguments(self, path: Path) -> Iterator[LaunchArgument]:
-        path = Path(source_of(str(path)))
+        path = Path(find_source(str(path)))
         for argument in arguments_in(self.document.other(path), path):
             if argument.is_argument:
                 yield argument
@@ -466,7 +466,7 @@ def _links(document: Document) -> Iterator[FileReference]:
             if base is not None and base.is_path:
                 file = launch.find_file(base.text.rstrip("/") + "/" + text.value.lstrip("/"))
                 if file is not None and file.is_file():
-                    yield FileReference(text.start, text.end, Path(source_of(str(file))))
+                    yield FileReference(text.start, text.end, Path(find_source(str(file))))
 
 
 def _is_continued(item: Item) -> bool:

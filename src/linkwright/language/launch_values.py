@@ -48,7 +48,7 @@ from linkwright.language.offers import (
 )
 from linkwright.language.parameter_catalog import ParameterInfo, node_parameters
 from linkwright.language.source_parameters import parameters_in_sources
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 from linkwright.schema import describe_attribute
 
 _PACKAGE_COMMANDS = frozenset({"find-pkg-share", "find-pkg-prefix", "find"})
@@ -129,7 +129,7 @@ class LaunchText:
         path = self.path_of(path_text) if path_text else None
         if path is None or not path.is_file():
             return []
-        path = Path(source_of(str(path)))
+        path = Path(find_source(str(path)))
         arguments = arguments_in(self.document.other(path), path)
         return [argument for argument in arguments if argument.is_argument]
 
@@ -188,7 +188,7 @@ def _offer_command(launch: LaunchText, value: LaunchValue) -> Iterator[Completio
     ):
         path = launch.path_of(name)
         if path is not None and path.is_file() and ":=" not in word:
-            path = Path(source_of(str(path)))
+            path = Path(find_source(str(path)))
             for definition in definitions_in(launch.document.other(path), path):
                 label = f"{definition.name}:="
                 is_given = any(other_word.startswith(label) for other_word in words)
@@ -460,4 +460,4 @@ def links_in(launch: LaunchText, name: str, text: str, begin: int) -> Iterator[F
         if "/" in word or name in _PATH_ATTRIBUTES:
             path = launch.path_of(word)
             if path is not None and path.is_file():
-                yield FileReference(begin + start, begin + end, Path(source_of(str(path))))
+                yield FileReference(begin + start, begin + end, Path(find_source(str(path))))

@@ -12,13 +12,13 @@ from linkwright.language.format import Document, Format, Symbol, SymbolKind, Tar
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation
 from linkwright.language.links import FileReference
-from linkwright.language.manifest_schema import DEPENDENCY_TAGS, PACKAGE
+from linkwright.language.manifest_schema import PACKAGE, PACKAGE_NAME_TAGS
 from linkwright.language.offers import explain_package, offer_packages, offer_values, target_of_package
 from linkwright.language.outline import Outline
 from linkwright.language.programs import find_used_packages
 from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
-from linkwright.packages.creation.licenses import known_licenses
+from linkwright.packages.creation.licenses import list_known_licenses
 from linkwright.packages.manifest import MANIFEST
 
 _COMMON_LICENSES = ("Apache-2.0", "BSD-3-Clause", "MIT")
@@ -83,10 +83,10 @@ def _list_single_children(text: str, offset: int) -> set[str]:
 
 
 def _offer_texts(document: Document, tag: str, start: int) -> Iterator[Completion]:
-    if tag in DEPENDENCY_TAGS:
+    if tag in PACKAGE_NAME_TAGS:
         yield from _offer_dependencies(document, tag, start)
     elif tag == "license":
-        yield from offer_values(dict.fromkeys((*_COMMON_LICENSES, *known_licenses())), start)
+        yield from offer_values(dict.fromkeys((*_COMMON_LICENSES, *list_known_licenses())), start)
     elif tag == "name":
         yield Completion(document.file.parent.name, ItemKind.PACKAGE, start)
     else:
@@ -114,7 +114,7 @@ def _offer_dependencies(document: Document, tag: str, start: int) -> Iterator[Co
 def _find_dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
     """Return the package name in the element at an offset and its start, or None."""
     cursor: Cursor = cursor_at(document.text, offset)
-    if cursor.syntax is not CursorSyntax.TEXT or not cursor.tags or cursor.tags[-1] not in {*DEPENDENCY_TAGS, "name"}:
+    if cursor.syntax is not CursorSyntax.TEXT or not cursor.tags or cursor.tags[-1] not in {*PACKAGE_NAME_TAGS, "name"}:
         return None
     begin = offset - len(cursor.typed)
     text = document.text[begin:].partition("<")[0]
@@ -150,7 +150,7 @@ def _symbols(document: Document) -> Iterator[Symbol]:
         for element in package.children:
             inner = document.text[element.tag.end : element.closing.start] if element.closing is not None else ""
             text = " ".join(inner.split()) if "<" not in inner else ""
-            kind = SymbolKind.PACKAGE if element.tag.name in DEPENDENCY_TAGS else SymbolKind.FIELD
+            kind = SymbolKind.PACKAGE if element.tag.name in PACKAGE_NAME_TAGS else SymbolKind.FIELD
             children.append(Symbol(element.tag.name, kind, element.tag.start, element.end, (), text[:60]))
         name = next((child.detail for child in children if child.name == "name" and child.detail), package.tag.name)
         yield Symbol(name, SymbolKind.GROUP, package.tag.start, package.end, tuple(children))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.packages.readers.package_xml import DEPENDENCIES
+from linkwright.packages.readers.package_xml import DEPENDENCY_TAGS
 from linkwright.schema import AttributeRule, ElementRule, ValueType
 
 _TEXT = ValueType("text")
@@ -110,5 +110,5 @@ PACKAGE = ElementRule(
 )
 """The rule of the root element of ``package.xml``."""
 
-DEPENDENCY_TAGS = frozenset({*DEPENDENCIES, "conflict", "replace"})
+PACKAGE_NAME_TAGS = frozenset({*DEPENDENCY_TAGS, "conflict", "replace"})
 """The elements whose text is the name of a package."""

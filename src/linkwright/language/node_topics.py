@@ -18,7 +18,7 @@ from linkwright.language.format import Document, Target
 from linkwright.language.includes import real_path
 from linkwright.language.programs import find_programs
 from linkwright.language.source_declarations import declared_topics
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 
 _FILE = "node_topics.json"
 
@@ -104,7 +104,7 @@ def _topics_in_sources(document: Document, program: NodeProgram) -> Iterator[Nod
         return
     installed_program = find_programs(document.finder, program.package).get(program.executable)
     file = None if installed_program is None or installed_program.target is None else installed_program.target.file
-    folder = real_path(source_of(str(share / "package.xml"))).parent
+    folder = real_path(find_source(str(share / "package.xml"))).parent
     for topic in declared_topics(document, file if file is not None and file.suffix == ".py" else folder):
         end = topic.start + len(topic.name)
         yield NodeTopic(topic.name, topic.type, topic.role, Target(topic.file, topic.start, end))

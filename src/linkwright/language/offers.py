@@ -14,7 +14,7 @@ from linkwright.language.node_topics import NodeProgram, describe_topic, find_to
 from linkwright.language.programs import find_components, find_programs, package_names, replaced_packages
 from linkwright.messages.definitions.interfaces import is_package_name
 from linkwright.packages.manifest import MANIFEST
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 
 _MAX_SHOWN_FILES = 300
 _MAX_SHOWN_TOPICS = 20
@@ -105,7 +105,7 @@ def target_of_package(document: Document, name: str) -> Iterator[Target]:
     """Yield the ``package.xml`` of a package."""
     folder = document.finder.find(name)
     if folder is not None and (folder / MANIFEST).is_file():
-        yield Target(Path(source_of(str(folder / MANIFEST))))
+        yield Target(Path(find_source(str(folder / MANIFEST))))
 
 
 def target_of_program(document: Document, package: str | None, name: str) -> Iterator[Target]:
@@ -125,4 +125,4 @@ def target_of_component(document: Document, package: str | None, name: str) -> I
 def target_of_file(path: Path | None) -> Iterator[Target]:
     """Yield a file, if it exists."""
     if path is not None and path.is_file():
-        yield Target(Path(source_of(str(path))))
+        yield Target(Path(find_source(str(path))))

@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.workspace import Workspace
 from linkwright.packages import enclosing_package, install_prefix, is_installed
-from linkwright.packages.readers.entry_points import text_of
+from linkwright.packages.readers.entry_points import read_text
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
 _EXPORT = re.compile(r"(?i)\bpluginlib_export_plugin_description_file\s{0,9}\(\s{0,99}([\w-]+)\s{1,99}\"?([^\s\")]+)")
@@ -78,7 +78,7 @@ def _list_classes(document: Document) -> list[PluginClass]:
 def _find_exported_classes(folder: Path) -> Iterator[PluginClass]:
     """Yield the classes that a package exports."""
     for base, file in _find_plugin_descriptions(folder):
-        yield from _parse_classes(text_of(file), base, folder, file)
+        yield from _parse_classes(read_text(file), base, folder, file)
 
 
 def _find_plugin_descriptions(folder: Path) -> Iterator[tuple[str, Path]]:
@@ -86,9 +86,9 @@ def _find_plugin_descriptions(folder: Path) -> Iterator[tuple[str, Path]]:
     if is_installed(folder):
         prefix, end = install_prefix(folder), "__pluginlib__plugin"
         for index in (prefix / "share/ament_index/resource_index").glob(f"*{end}/{folder.name}"):
-            yield from ((index.parent.name.removesuffix(end), prefix / line) for line in text_of(index).split())
+            yield from ((index.parent.name.removesuffix(end), prefix / line) for line in read_text(index).split())
         return
-    text = text_of(folder / "CMakeLists.txt")
+    text = read_text(folder / "CMakeLists.txt")
     package = enclosing_package(folder)
     name = folder.name if package is None else package[0]
     for match in _EXPORT.finditer(text):

@@ -17,10 +17,10 @@ from linkwright.launch.ros.executables import builtin_packages, hosted_executabl
 from linkwright.lint.targets import find_files_and_packages
 from linkwright.nodes import COMPONENTS
 from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
-from linkwright.packages.programs.source_programs import module_file, python_root, source_programs
-from linkwright.packages.readers.entry_points import text_of
+from linkwright.packages.programs.source_programs import find_module_file, find_python_root, find_source_programs
+from linkwright.packages.readers.entry_points import read_text
 from linkwright.packages.readers.installed import EntryPoint
-from linkwright.packages.share_layout import source_of, substituted_executables
+from linkwright.packages.share_layout import find_source, find_substituted_executables
 
 _PACKAGE_USE = re.compile(
     r"""\$\(find(?:-pkg-share|-pkg-prefix)?\s+([a-z]\w+)\)|package://([a-z]\w+)/|\bpkg\s*[=:]\s*["']?([a-z]\w+)"""
@@ -80,7 +80,7 @@ def package_names(finder: PackageFinder, file: Path) -> list[str]:
     """Return all package names: the file's own first, then its dependencies, then the others."""
     own_package = enclosing_package(file.parent)
     first = (
-        [] if own_package is None else [own_package[0], *DEPENDENCY.findall(text_of(own_package[1] / "package.xml"))]
+        [] if own_package is None else [own_package[0], *DEPENDENCY.findall(read_text(own_package[1] / "package.xml"))]
     )
     known_packages = {*finder.packages(), *replaced_packages()}
     return [*dict.fromkeys(first), *sorted(known_packages - {*first})]
@@ -88,7 +88,7 @@ def package_names(finder: PackageFinder, file: Path) -> list[str]:
 
 def replaced_packages() -> set[str]:
     """Return the packages that nodes or modules of Linkwright replace, installed or not."""
-    return {*builtin_packages(), *substituted_executables()}
+    return {*builtin_packages(), *find_substituted_executables()}
 
 
 def find_programs(finder: PackageFinder, package: str) -> dict[str, Program]:
@@ -102,31 +102,31 @@ def find_programs(finder: PackageFinder, package: str) -> dict[str, Program]:
             if path.is_file() and path.suffix not in (".so", ".dylib") and os.access(path, os.X_OK):
                 programs[path.name] = Program(path.name, str(path), Target(path))
     hosted_names = {name for owner, name in hosted_executables() if owner == package}
-    for name in sorted(hosted_names | substituted_executables().get(package, frozenset())):
+    for name in sorted(hosted_names | find_substituted_executables().get(package, frozenset())):
         programs.setdefault(name, Program(name, "Linkwright"))
     return programs
 
 
 def _programs_in_sources(share: Path, package: str) -> Iterator[Program]:
-    programs = source_programs(share, runs_setup=False)
-    root = python_root(share, package) or share
+    programs = find_source_programs(share, runs_setup=False)
+    root = find_python_root(share, package) or share
     for name, entry in programs.entry_points.items():
         yield Program(name, f"{entry.module}:{entry.function}", _find_entry_target(root, entry))
     for name, path in programs.scripts.items():
-        yield Program(name, str(path.relative_to(share)), Target(Path(source_of(str(path)))))
-    build = Path(source_of(str(share / "CMakeLists.txt")))
-    text = text_of(build) if programs.compiled else ""
+        yield Program(name, str(path.relative_to(share)), Target(Path(find_source(str(path)))))
+    build = Path(find_source(str(share / "CMakeLists.txt")))
+    text = read_text(build) if programs.compiled else ""
     for name in sorted(programs.compiled):
         match = re.search(rf"(?i)(?:add_executable\s*\(\s*|EXECUTABLE\s+)({re.escape(name)})\b", text)
         yield Program(name, "CMakeLists.txt", Target(build, *(match.span(1) if match else (0, 0))))
 
 
 def _find_entry_target(root: Path, entry: EntryPoint) -> Target | None:
-    file = module_file(root, entry.module)
+    file = find_module_file(root, entry.module)
     if file is None:
         return None
-    file = Path(source_of(str(file)))
-    match = re.search(rf"^(?:async )?def ({re.escape(entry.function)})\b", text_of(file), re.MULTILINE)
+    file = Path(find_source(str(file)))
+    match = re.search(rf"^(?:async )?def ({re.escape(entry.function)})\b", read_text(file), re.MULTILINE)
     return Target(file, *(match.span(1) if match else (0, 0)))
 
 
@@ -135,13 +135,13 @@ def find_components(finder: PackageFinder, package: str) -> dict[str, Target | N
     components: dict[str, Target | None] = {}
     share = finder.find(package)
     if share is not None:
-        build = Path(source_of(str(share / "CMakeLists.txt")))
-        for command in _COMPONENT_REGISTRATION.finditer(text_of(build)):
+        build = Path(find_source(str(share / "CMakeLists.txt")))
+        for command in _COMPONENT_REGISTRATION.finditer(read_text(build)):
             for name in _CLASS.finditer(command[1]):
                 start = command.start(1) + name.start()
                 components[name[0]] = Target(build, start, start + len(name[0]))
         index = install_prefix(share) / "share/ament_index/resource_index/rclcpp_components" / package
-        for line in text_of(index).splitlines():
+        for line in read_text(index).splitlines():
             components.setdefault(line.partition(";")[0].strip(), None)
     components.update((name, None) for owner, name in COMPONENTS if owner == package and name not in components)
     components.pop("", None)

@@ -21,7 +21,7 @@ from linkwright.language.workspace import Workspace
 from linkwright.packages import enclosing_package
 from linkwright.xacro import Expansion, expand
 from linkwright.xmltree import Overlay
-from linkwright.xmltree.positions import start_tag_end
+from linkwright.xmltree.positions import find_start_tag_end
 
 _SUFFIXES = (".urdf", ".xacro")
 _MAX_ROBOTS = 24
@@ -196,7 +196,7 @@ def _make_robot(expansion: Expansion, state: _State, *, is_complete: bool = True
     for element in expansion.document.root.elements():
         kind, name = _KINDS.get(element.tag), element.attributes.get("name")
         if kind is not None and name and element.source is not None:
-            end = start_tag_end(element.source.text, element.offset)
+            end = find_start_tag_end(element.source.text, element.offset)
             tag = element.source.text[element.offset : end]
             definition = next(definitions_in(tag, Path()), None)
             start = element.offset + (definition.start if definition else 0)

@@ -20,7 +20,7 @@ from linkwright.language.other_files import OtherFiles
 from linkwright.language.proof import Edit, ExpansionPair, ExpansionProof, UnprovedError
 from linkwright.language.workspace import Workspace
 from linkwright.xmltree import Element
-from linkwright.xmltree.positions import attribute_value_range, start_tag_end
+from linkwright.xmltree.positions import attribute_value_range, find_start_tag_end
 from linkwright.xmltree.tokens import Kind, tokens
 
 ROBOT_NAME_KINDS = (NameKind.LINK, NameKind.JOINT, NameKind.MATERIAL)
@@ -139,7 +139,10 @@ class RobotRenaming:
                 source = element.source
                 if source is None or source.name not in files:
                     continue
-                if element.offset > self._name.start or start_tag_end(source.text, element.offset) <= self._name.start:
+                if (
+                    element.offset > self._name.start
+                    or find_start_tag_end(source.text, element.offset) <= self._name.start
+                ):
                     continue
                 for key, value in element.attributes.items():
                     value_range = attribute_value_range(source.text, element.offset, key)

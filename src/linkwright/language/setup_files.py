@@ -12,8 +12,8 @@ from linkwright.language.hover import Explanation
 from linkwright.language.links import FileReference
 from linkwright.language.offers import explain_file, offer_files
 from linkwright.language.python_text import Group, Item, Text, python_text
-from linkwright.packages.programs.source_programs import module_file
-from linkwright.packages.readers.entry_points import text_of
+from linkwright.packages.programs.source_programs import find_module_file
+from linkwright.packages.readers.entry_points import read_text
 
 _FILE_NAME = "setup.py"
 _ENTRY_POINT = re.compile(r"^\s*(?P<name>[^=\s]+)\s*=\s*(?P<module>[\w.]*)(?:\s*:\s*(?P<function>\w*))?")
@@ -78,8 +78,8 @@ def _offer_program_parts(text: Text, offset: int, folder: Path) -> Iterator[Comp
     name, equals, target = typed.partition("=")
     module, colon, function = target.strip().partition(":")
     if colon:
-        file = module_file(folder, module.strip())
-        names = _FUNCTION.findall(text_of(file)) if file is not None else []
+        file = find_module_file(folder, module.strip())
+        names = _FUNCTION.findall(read_text(file)) if file is not None else []
         for choice in sorted(names, key=lambda candidate: candidate != "main"):
             yield Completion(choice, ItemKind.FUNCTION, offset - len(function.lstrip()), module)
     elif equals:
@@ -134,9 +134,9 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
     folder = document.file.parent
     if entry is not None:
         parts = entry[1]
-        file = module_file(folder, parts["module"]) if parts is not None else None
+        file = find_module_file(folder, parts["module"]) if parts is not None else None
         if parts is not None and file is not None:
-            names = _FUNCTION.finditer(text_of(file))
+            names = _FUNCTION.finditer(read_text(file))
             name_range = next((match.span(1) for match in names if match[1] == parts["function"]), (0, 0))
             yield Target(file, *name_range)
         return

@@ -24,8 +24,8 @@ from linkwright.language.values import evaluate_file
 from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
 from linkwright.packages import enclosing_package
-from linkwright.packages.readers.entry_points import text_of
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.readers.entry_points import read_text
+from linkwright.packages.share_layout import find_source
 from linkwright.schema import AttributeRule
 from linkwright.urdf import Robot
 from linkwright.xmltree.tokens import Kind, tokens
@@ -77,10 +77,10 @@ class _Semantics:
         ]
 
     def _setup_assistant_descriptions(self, folder: Path) -> Iterator[Path]:
-        for match in _SETUP_ASSISTANT_URDF.finditer(text_of(folder / ".setup_assistant")):
+        for match in _SETUP_ASSISTANT_URDF.finditer(read_text(folder / ".setup_assistant")):
             share = self.document.finder.find(match[1])
             if share is not None and (share / match[2]).is_file():
-                yield real_path(source_of(str(share / match[2])))
+                yield real_path(find_source(str(share / match[2])))
 
     @cached_property
     def robots(self) -> list[Robot]:

@@ -14,7 +14,7 @@ from linkwright.language.proof import Edit, apply_edits
 from linkwright.language.source_elements import find_innermost_element, source_elements
 from linkwright.lint.suppression import find_directives
 from linkwright.lint.targets import XML_SUFFIXES
-from linkwright.packages.readers.cmake_syntax import statements
+from linkwright.packages.readers.cmake_syntax import parse_statements
 from linkwright.xmltree.patches import line_ending
 from linkwright.xmltree.tokens import Kind, tokens
 
@@ -133,7 +133,7 @@ def _parse_without_comments(text: str, file: Path) -> object:
         if file.name == "CMakeLists.txt":
             return [
                 (statement.name, [word.text for word in statement.tokens])
-                for statement in statements(SourceText("", text))
+                for statement in parse_statements(SourceText("", text))
             ]
     except (SyntaxError, ValueError, RecursionError, MemoryError, tokenize.TokenError, yaml.YAMLError):
         return text

@@ -13,8 +13,8 @@ from linkwright.language.format import Document, Format, Target
 from linkwright.language.formats import format_of
 from linkwright.language.includes import real_path
 from linkwright.packages import enclosing_package
-from linkwright.packages.launch_files import is_launch_file_name, launch_files_below
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.launch_files import find_launch_files_below, is_launch_file_name
+from linkwright.packages.share_layout import find_source
 
 _MAX_FILES = 200
 _MAX_USES = 300
@@ -55,7 +55,7 @@ def _list_documents(document: Document, file: Path) -> Iterator[Document]:
     if is_launch_file_name(file.name) or file.name.endswith(".launch"):
         packages = (enclosing_package(path.parent) for path in (document.file, file))
         folders = dict.fromkeys(package[1] for package in packages if package is not None)
-        others = [real_path(source_of(str(path))) for folder in folders for path in launch_files_below(folder)]
+        others = [real_path(find_source(str(path))) for folder in folders for path in find_launch_files_below(folder)]
     for index, path in enumerate(dict.fromkeys((document.file, file, *others))):
         if index < _MAX_FILES:
             text = document.text if path == document.file else document.other(path)

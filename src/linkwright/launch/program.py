@@ -17,7 +17,7 @@ from linkwright.launch.ros.executables import Origin, find_executable
 from linkwright.launch.run import LaunchOptions, run_description
 from linkwright.packages import PackageFinder
 from linkwright.packages.programs.child_python import process_environment
-from linkwright.packages.programs.workspace_environment import workspace_environment
+from linkwright.packages.programs.workspace_environment import make_workspace_environment
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ def find_program(finder: PackageFinder, package: str, executable: str) -> Progra
         LinkwrightError: LAUNCH131, there is no such package or executable.
     """
     executable_of_package = find_executable(finder, package, executable)
-    environment = process_environment(workspace_environment(finder, os.environ))
+    environment = process_environment(make_workspace_environment(finder, os.environ))
     return Program(executable_of_package.command, environment, executable_of_package.origin is Origin.LINKWRIGHT)
 
 

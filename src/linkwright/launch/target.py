@@ -10,7 +10,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, display_path, joined, phrase
 from linkwright.launch.arguments import parse_arguments
 from linkwright.packages import PackageFinder
-from linkwright.packages.launch_files import is_launch_file_name, launch_files_below
+from linkwright.packages.launch_files import find_launch_files_below, is_launch_file_name
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class LaunchTarget:
         return self._find_in_package(share)
 
     def _find_in_package(self, share: Path) -> Path:
-        launch_files = launch_files_below(share)
+        launch_files = find_launch_files_below(share)
         matching_files = [path for path in launch_files if path.name == self.file]
         if len(matching_files) == 1:
             return matching_files[0]
@@ -126,7 +126,7 @@ def _is_path(argument: str) -> bool:
 
 def _find_package_files(name: str) -> list[Path]:
     share = PackageFinder().find(name)
-    return [] if share is None else launch_files_below(share)
+    return [] if share is None else find_launch_files_below(share)
 
 
 def _incomplete_error(message: Phrase, hint: Phrase) -> LinkwrightError:

@@ -88,7 +88,7 @@ class TextFiles:
 
     @cached_property
     def _names(self) -> tuple[dict[str, list[str]], dict[str, list[str]]]:
-        """The files that contain a name, and the files that contain a pattern of names, by name and by pattern."""
+        """The files that contain each name, and the files that contain each pattern of names."""
         by_name: dict[str, list[str]] = defaultdict(list)
         by_pattern: dict[str, list[str]] = defaultdict(list)
         for path, names in self._names_by_file.items():
@@ -135,7 +135,10 @@ def _read_beginning(file: Path) -> str:
 
 
 def _find_file_names(text: str) -> Iterator[str]:
-    """Yield the file names in a text, with ``*`` for each computed part, and the names of SDF models."""
+    """Yield the file names and the SDF model names in a text.
+
+    Each computed part is replaced by ``*``.
+    """
     for word in set(_WORD.findall(_COMPUTED_PART.sub("*", text))):
         if word.startswith(_MODEL_SCHEME):
             yield word.removeprefix(_MODEL_SCHEME)

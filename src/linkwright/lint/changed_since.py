@@ -1,4 +1,4 @@
-"""The parts of the working tree that changed since a commit, and the findings that the commit already has."""
+"""The changes of the working tree since a commit, and the findings of this commit."""
 
 from __future__ import annotations
 
@@ -49,7 +49,10 @@ class WorkingTreeChanges:
         return self._affected_paths(self.root, self._paths, filter(None, changed))
 
     def known_findings(self, check: Check) -> dict[Key, int]:
-        """Return how many findings the commit has under each key. Keys contain the new names of the files."""
+        """Return how many findings the commit has under each key.
+
+        The keys contain the new names of the files.
+        """
         files = CommitFiles(self._repository, self._commit, self._name, must_be_complete=False)
         try:
             paths = [path for path in map(files.root.joinpath, self._old_names()) if path.exists()]

@@ -1,4 +1,4 @@
-"""Checks of files and packages with one set of settings, for `linkwright check` and editors."""
+"""Checks of files and packages, for `linkwright check` and editors."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ class Checker:
         """Check a file with `values`, or with the configured or the callers' argument sets.
 
         Args:
-            file: the file.
+            file: a description, world or other supported file.
             targets: the targets of the whole check, whose packages are searched for callers.
             overlay: texts that replace the contents of files.
             contexts: data that checks of the same file contents share.

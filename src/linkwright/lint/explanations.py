@@ -6,7 +6,7 @@ import re
 
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree import Element
-from linkwright.xmltree.patches import element_range
+from linkwright.xmltree.patches import find_element_range
 
 _COMMENT = lazy_pattern(r"<!--(.*?)-->", re.DOTALL)
 _COMMENTS_ABOVE = lazy_pattern(r"<!--((?:(?!-->).)*)-->[ \t]*\r?\n[ \t]*\Z", re.DOTALL)
@@ -50,8 +50,8 @@ def is_explained(element: Element | None, tag: str) -> bool:
 
 
 def _find_comments(element: Element | None, *, on_same_lines: bool) -> list[str]:
-    """Return the comments directly above an element or, if `on_same_lines` is set, on its lines."""
-    element_span = element_range(element) if element is not None else None
+    """Return the comments above an element or, if `on_same_lines` is set, on its lines."""
+    element_span = find_element_range(element) if element is not None else None
     if element is None or element.source is None or element_span is None:
         return []
     text, (start, end) = element.source.text, element_span

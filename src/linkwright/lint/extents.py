@@ -125,7 +125,7 @@ class Extents:
         return union(known_boxes) if len(known_boxes) == len(boxes) else None
 
     def body_bounds(self, link: Link) -> Bounds | None:
-        """Return the box around a link's body in the link's frame, or None if it cannot be measured.
+        """Return the box around a link's body in the link's frame, or None if it is unknown.
 
         For a body of very many links, one box is computed in the frame of the body's first link. The result is then the
         box around this box, which may be larger than necessary.

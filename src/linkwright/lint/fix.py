@@ -10,7 +10,7 @@ import re
 
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.xmltree import Element
-from linkwright.xmltree.patches import element_range, escaped, find_start_tag, whole_lines
+from linkwright.xmltree.patches import escape, extend_to_whole_lines, find_element_range, find_start_tag
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
 
 
@@ -72,7 +72,7 @@ def add_attribute(element: Element, attribute: str, value: str, *, safe: bool = 
     if source is None or start_tag is None or attribute in element.attributes:
         return None
     offset = start_tag.insertion_offset
-    return Fix((Edit(source.name, offset, offset, f' {attribute}="{escaped(value)}"'),), safe)
+    return Fix((Edit(source.name, offset, offset, f' {attribute}="{escape(value)}"'),), safe)
 
 
 def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | None:
@@ -81,7 +81,7 @@ def rename_element(element: Element, tag: str, *, safe: bool = True) -> Fix | No
     Return None if the element is not written in a file.
     """
     source = element.source
-    character_range = element_range(element)
+    character_range = find_element_range(element)
     if source is None or character_range is None:
         return None
     edits = [Edit(source.name, element.offset + 1, element.offset + 1 + len(element.tag), tag)]
@@ -97,10 +97,10 @@ def remove_element(element: Element, *, safe: bool = True) -> Fix | None:
     Return None if the element is not written in a file. A line that would be left empty is also removed.
     """
     source = element.source
-    character_range = element_range(element)
+    character_range = find_element_range(element)
     if source is None or character_range is None:
         return None
-    start, end = whole_lines(source.text, *character_range)
+    start, end = extend_to_whole_lines(source.text, *character_range)
     return Fix((Edit(source.name, start, end, ""),), safe)
 
 
@@ -110,7 +110,7 @@ def value_edit(element: Element, attribute: str, value: str) -> Edit | None:
     if source is None or not is_literal(element, attribute):
         return None
     value_range = attribute_value_range(source.text, element.offset, attribute)
-    return None if value_range is None else Edit(source.name, *value_range, escaped(value))
+    return None if value_range is None else Edit(source.name, *value_range, escape(value))
 
 
 def is_literal(element: Element, attribute: str) -> bool:

@@ -1,4 +1,6 @@
-"""Select the findings to report when a folder is checked: fewer than for a file that the user names.
+"""Select the findings to report when a folder is checked.
+
+These are fewer than for a file that the user names.
 
 Users do not usually fix tests, discarded files, vendored copies, or URDF files that xacro generates.
 """

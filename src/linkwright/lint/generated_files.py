@@ -38,7 +38,7 @@ def is_created_later(package: PackageContext, path: str) -> bool:
     not considered.
 
     Args:
-        package: the package.
+        package: the package that lacks the file.
         path: the path of the file, relative to the package.
     """
     return (
@@ -143,7 +143,7 @@ def is_created_by_cmake(package: PackageContext, path: str) -> bool:
     The file must have commands that download, copy or generate files, and must name the path outside ``install()``.
 
     Args:
-        package: the package.
+        package: the package that lacks the file.
         path: the path, relative to the package, of a file or folder that is not among the sources.
     """
     source = package.text("CMakeLists.txt")

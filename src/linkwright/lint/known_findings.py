@@ -27,7 +27,7 @@ class Key(NamedTuple):
     """The part of a finding that stays the same when the lines around it change.
 
     Attributes:
-        code: the code.
+        code: the code of the finding.
         file: the path relative to a folder, with ``/``; empty for a finding without a location.
         message: the message in English, without the path of the folder.
     """
@@ -53,7 +53,7 @@ def make_key(finding: Diagnostic, folder: Path) -> Key:
     """Return the key of a finding.
 
     Args:
-        finding: the finding.
+        finding: a finding about any file.
         folder: the absolute folder to which the path in the key is relative.
     """
     file = (
@@ -69,7 +69,7 @@ def count_keys(
     """Return the number of findings with each key; see `make_key`.
 
     Args:
-        findings: the findings.
+        findings: the findings to count.
         folder: the absolute folder to which the paths in the keys are relative.
         names: the new paths of renamed files, by their old paths. Keys of such files have the new path and file name.
     """
@@ -155,7 +155,9 @@ def read_baseline(path: Path) -> dict[Key, int]:
 
 
 def write_baseline(path: Path, findings: Iterable[Diagnostic], folder: Path) -> int:
-    """Write a baseline file with a line for each key, in a fixed order, and return the number of findings.
+    """Write a baseline file, and return the number of findings.
+
+    The file has a line for each key, in a fixed order.
 
     Raises:
         OSError: the file cannot be written.

@@ -23,7 +23,7 @@ class MeshUse:
     """The use of a mesh by a link.
 
     Attributes:
-        link: the link.
+        link: the link that has the shape.
         shape: the visual or collision with the mesh.
         mesh: the URI and scale.
         element: the ``<mesh>`` element.
@@ -118,7 +118,7 @@ class MeshFacts:
 
 
 def shape_element(shape: Visual | Collision) -> Element | None:
-    """Return the ``<box>``, ``<mesh>`` or other shape element of a visual or collision, or None."""
+    """Return the shape element of a visual or collision, such as ``<box>``, or None."""
     geometry = shape.element.first("geometry") if shape.element is not None else None
     return next(geometry.elements(), None) if geometry is not None else None
 

@@ -28,7 +28,7 @@ _DESCRIPTION_SUFFIXES = (".xacro", ".urdf")
 def find_package(
     path: Path, overlay: Overlay | None = None, cache: dict[Path, PackageContext] | None = None
 ) -> PackageContext | None:
-    """Return the package that contains a file or folder, or None if there is no ``package.xml``.
+    """Return the package that contains a file or folder, or None if there is none.
 
     Args:
         path: the file or folder.

@@ -14,7 +14,7 @@ from pathlib import PurePosixPath
 from linkwright.lint.fix import Edit, Fix
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.xmltree.patches import element_range, line_ending
+from linkwright.xmltree.patches import find_element_range, line_ending
 
 if TYPE_CHECKING:
     from linkwright.diagnostics import SourceText
@@ -31,7 +31,7 @@ _FIRST_IMPORT = lazy_pattern(r"^(import|from)[ \t]", re.MULTILINE)
 
 
 def make_dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
-    """Return the fix that adds dependencies to ``package.xml``, or None if this is not possible.
+    """Return the fix that adds dependencies to ``package.xml``, or None if it is impossible.
 
     The new lines follow the last dependency that is not only for tests or documentation, or else the license. They have
     its indentation.
@@ -40,7 +40,7 @@ def make_dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     dependencies = manifest.dependencies
     run_time = [dependency for dependency in dependencies if dependency.tag not in ("test_depend", "doc_depend")]
     last = (run_time or dependencies)[-1].element if dependencies else manifest.root.first("license")
-    last_range = None if last is None else element_range(last)
+    last_range = None if last is None else find_element_range(last)
     if source is None or last is None or last_range is None:
         return None
     line = source.text.rfind("\n", 0, last.offset) + 1
@@ -72,7 +72,7 @@ def make_setup_file_fix(package: PackageContext, setup: SetupFile, destination: 
     The result is None if the position of the new entry is uncertain.
 
     Args:
-        package: the package.
+        package: the package that contains the file.
         setup: its ``setup.py``.
         destination: the folder relative to the prefix; an empty string for the share folder of the package.
         file: the path of the file in the package.
@@ -113,10 +113,10 @@ def make_cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix
 
 def _find_last_folders(source: SourceText) -> Iterator[Token]:
     """Yield the last folder of each unconditional command that installs into the share folder."""
-    from linkwright.packages.readers.cmake_syntax import BLOCK_ENDS, statements
+    from linkwright.packages.readers.cmake_syntax import BLOCK_ENDS, parse_statements
 
     depth = 0
-    for statement in statements(source):
+    for statement in parse_statements(source):
         depth += statement.name in BLOCK_ENDS
         depth -= statement.name in BLOCK_ENDS.values()
         if depth == 0 and statement.name == "install":

@@ -75,7 +75,7 @@ class Rule:
         """Return the value of an option in the settings for a subject, or the default.
 
         Args:
-            subject: the subject.
+            subject: the description under check.
             name: the name of the option, one of `options`.
             kind: the type of the value; ``float`` also accepts an integer.
         """

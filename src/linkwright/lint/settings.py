@@ -66,7 +66,7 @@ class Settings:
         """Return whether findings with a code are reported.
 
         Args:
-            code: the code.
+            code: the code of a finding.
             default: whether such findings are reported by default.
         """
         if self.select is None and not self.extend_select and not self.ignore:

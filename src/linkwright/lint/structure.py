@@ -18,7 +18,7 @@ class SchemaElement(NamedTuple):
     """An element that URDF defines, with its schema rule.
 
     Attributes:
-        element: the element.
+        element: the element in the document.
         rule: the schema rule: the attributes and children that the element may have.
         parent: the enclosing element, or None for ``<robot>``.
         owner: the link, joint or material that contains the element or is the element, or None for ``<robot>``.

@@ -23,7 +23,7 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.xmltree import Element
 from linkwright.xmltree.decoding import decode
-from linkwright.xmltree.patches import element_range, whole_lines
+from linkwright.xmltree.patches import extend_to_whole_lines, find_element_range
 from linkwright.xmltree.reader import read_bytes
 
 UNUSED_CODE = "LW001"
@@ -208,7 +208,7 @@ def _find_following_element(text: str, end: int) -> tuple[int, int] | None:
         match = _NEXT_TAG.search(text, match.end())
     if match is None or match["tag"] is None:
         return None
-    return element_range(Element(match["tag"], source=SourceText("", text), offset=match.start()))
+    return find_element_range(Element(match["tag"], source=SourceText("", text), offset=match.start()))
 
 
 def _find_locations(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
@@ -241,7 +241,7 @@ def _read_source(file: str) -> SourceText:
 
 def _removal_edit(directive: Directive) -> Edit:
     text, start, end = directive.source.text, directive.start, directive.end
-    lines = whole_lines(text, start, end)
+    lines = extend_to_whole_lines(text, start, end)
     if lines != (start, end):
         return Edit(directive.source.name, *lines, "")
     while start and text[start - 1] in " \t":

@@ -18,11 +18,11 @@ from linkwright.xmltree.tinyxml import COMMENT
 
 _URDF_SUFFIX, _XACRO_SUFFIX = ".urdf", ".xacro"
 _COMPLETE_SUFFIXES = (_URDF_SUFFIX, ".world", ".sdf")
-"""Suffixes of files that describe a complete robot, world or model."""
+"""The suffixes of files that describe a complete robot, world or model."""
 DESCRIPTION_SUFFIXES = (*_COMPLETE_SUFFIXES, _XACRO_SUFFIX)
-"""Endings of files with descriptions, or with parts of them."""
+"""The suffixes of files with descriptions, or with parts of them."""
 XML_SUFFIXES = (*DESCRIPTION_SUFFIXES, ".srdf", ".launch", ".launch.xml", MANIFEST, "model.config")
-"""Endings of the XML files of a package."""
+"""The suffixes of the XML files of a package."""
 _EMPTY_FILE_CODE = "XML105"
 _COMMENT = lazy_pattern(rf"{COMMENT}|<\?xml\s[^>]*\?>")
 _JAVASCRIPT_MANIFEST = "package.json"
@@ -34,7 +34,7 @@ _HEADER_CHARACTERS = 2_000
 """The number of characters at the beginning of a file in which xacro's comment is."""
 _DECLARATION_TAGS = frozenset({"xacro:include", "xacro:macro", "xacro:property", "xacro:arg"})
 _LINKLESS_TAGS = frozenset({"gazebo", "material", "ros2_control", "transmission", "webots"})
-"""The elements of a partial robot, which another file may include by a computed name."""
+"""The root children of a file that is only a part of a robot. Another file may include it by a computed name."""
 _PART_ROOT_TAGS = _LINKLESS_TAGS | {"link", "joint", "inertial", "visual", "collision", "geometry"}
 """The root elements of files that a program inserts into other files."""
 
@@ -62,8 +62,8 @@ def find_targets(paths: Iterable[Path], *, with_packages: bool = False) -> Targe
     For a folder, the packages in and below the folder are checked, and the package that contains the folder. Of the
     descriptions, the files that no other file there includes are checked: ``.urdf``, ``.sdf`` and ``.world`` files, and
     ``.xacro`` files that describe a complete robot. The root of such a file is a ``<robot>`` with a name, and it
-    contains more than declarations. Build products, hidden folders and empty files are skipped. Web pages inside a
-    package are also skipped, because they read URDF in their own way.
+    contains more than declarations. Build products, hidden folders and empty files are skipped. JavaScript programs
+    inside a package are also skipped, because they have their own URDF readers.
     """
     files: dict[Path, None] = {}
     packages: dict[Path, None] = {}
@@ -83,14 +83,17 @@ def find_targets(paths: Iterable[Path], *, with_packages: bool = False) -> Targe
 
 
 def find_included_robots(folder: Path) -> list[Path]:
-    """Return the xacro files in and below a folder that are both complete robots and included by others."""
+    """Return the complete robots in and below a folder that other xacro files include."""
     files, packages = find_files_and_packages(folder, (_XACRO_SUFFIX,))
     entries = set(_find_entry_files(files, packages))
     return [path for path in files if path not in entries and _describes_robot(path)]
 
 
 def is_plain_robot(path: Path) -> bool:
-    """Return whether a URDF file describes a robot with links without xacro, so that programs can read it as it is."""
+    """Return whether a URDF file describes a robot with links, without xacro.
+
+    Programs can read such a file directly.
+    """
     if path.suffix != _URDF_SUFFIX or not path.is_file():
         return False
     try:
@@ -195,7 +198,7 @@ def _read_text(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8", errors="replace")
     except OSError:
-        return ""  # the check of the file reports this error
+        return ""  # The check of the file reports this error.
 
 
 def _describes_robot(path: Path) -> bool:
@@ -204,7 +207,7 @@ def _describes_robot(path: Path) -> bool:
     try:
         root = read_document(str(path)).root
     except LinkwrightError as error:
-        return not _is_empty(path, error)  # the check of the file reports any other error
+        return not _is_empty(path, error)  # The check of the file reports any other error.
     return root.tag == "robot" and "name" in root.attributes and _has_content(root)
 
 

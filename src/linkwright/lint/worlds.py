@@ -22,7 +22,7 @@ from linkwright.lint.rules.inertia_tensor import (
     TriangleInequality,
 )
 from linkwright.lint.tensors import find_first_flaw
-from linkwright.sdf.figures import actor_model
+from linkwright.sdf.figures import make_actor_model
 from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.links import Collision, Inertial, Link, Visual
 from linkwright.sdf.mesh_files import shapes_of
@@ -61,7 +61,7 @@ def check_sdf(sdf: Sdf, finder: ResourceFinder) -> Iterator[Diagnostic]:
         *_step_size_findings(sdf),
         *model_findings,
         *_axis_findings(models),
-        *_missing_mesh_findings([*models, *map(actor_model, actors)], finder),
+        *_missing_mesh_findings([*models, *map(make_actor_model, actors)], finder),
     ):
         key = (finding.span, str(finding.message))
         if key not in reported_keys:
@@ -187,7 +187,7 @@ def _missing_mesh_findings(models: Iterable[Model], finder: ResourceFinder) -> I
 
 
 def _inertial_findings(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
-    """Yield the findings of the rules for robots' inertials, and a finding on non-finite values."""
+    """Yield the findings on an inertial: those of the rules for robots, and non-finite values."""
     tensor = inertial.inertia
     robot_inertial = urdf.Inertial(
         inertial.mass,

@@ -14,13 +14,13 @@ from pathlib import Path
 
 from linkwright.packages.manifest import MANIFEST
 
-PREFIX_PATH = "AMENT_PREFIX_PATH"
+PREFIX_PATH_VARIABLE = "AMENT_PREFIX_PATH"
 """The environment variable that is set when ROS or a workspace is sourced."""
 
 ROS_VARIABLES = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
 """The other variables that are set when ROS 2 is sourced, with the values of Humble."""
 
-_MARKERS = Path("share", "ament_index", "resource_index", "packages")
+_PACKAGE_MARKERS = Path("share", "ament_index", "resource_index", "packages")
 _COLCON_LAYOUT = ".colcon_install_layout"
 
 
@@ -37,33 +37,33 @@ def is_installed(share: Path) -> bool:
     return share.parent.name == "share"
 
 
-def environment_prefixes(environment: Mapping[str, str]) -> list[Path]:
+def list_environment_prefixes(environment: Mapping[str, str]) -> list[Path]:
     """Return the prefixes in ``AMENT_PREFIX_PATH``, in their order."""
-    return [Path(entry) for entry in environment.get(PREFIX_PATH, "").split(os.pathsep) if entry]
+    return [Path(entry) for entry in environment.get(PREFIX_PATH_VARIABLE, "").split(os.pathsep) if entry]
 
 
 def is_share_of_prefix(folder: Path) -> bool:
     """Return whether a folder is the ``share`` folder of a prefix with an ament resource index."""
-    return folder.name == "share" and (folder.parent / _MARKERS).is_dir()
+    return folder.name == "share" and (folder.parent / _PACKAGE_MARKERS).is_dir()
 
 
-def share_in_prefix(prefix: Path, name: str) -> Path | None:
+def find_share_in_prefix(prefix: Path, name: str) -> Path | None:
     """Return the share folder of a package in one prefix, or None if it is not installed there.
 
     A ``package.xml`` in the share folder suffices, because hand-written ``setup.py`` files often do not install the
     index marker.
     """
     share = prefix / "share" / name
-    if (prefix / _MARKERS / name).is_file() or (share / MANIFEST).is_file():
+    if (prefix / _PACKAGE_MARKERS / name).is_file() or (share / MANIFEST).is_file():
         return share
     return None
 
 
-def packages_in_prefix(prefix: Path) -> Iterator[tuple[str, Path]]:
+def iterate_packages_in_prefix(prefix: Path) -> Iterator[tuple[str, Path]]:
     """Yield the name and share folder of every package in one prefix, sorted by name."""
-    names = set(_entries(prefix / _MARKERS))
+    names = set(_list_entries(prefix / _PACKAGE_MARKERS))
     share = prefix / "share"
-    names.update(name for name in _entries(share) if (share / name / MANIFEST).is_file())
+    names.update(name for name in _list_entries(share) if (share / name / MANIFEST).is_file())
     for name in sorted(names):
         yield name, share / name
 
@@ -73,27 +73,27 @@ def is_colcon_install(folder: Path) -> bool:
     return (folder / _COLCON_LAYOUT).is_file() or (folder / "local_setup.sh").is_file()
 
 
-def share_in_install(install: Path, name: str) -> Path | None:
+def find_share_in_install(install: Path, name: str) -> Path | None:
     """Return the share folder of a package in a colcon install folder of either layout.
 
     The result is None if the folder does not contain the package.
     """
-    return share_in_prefix(install / name, name) or share_in_prefix(install, name)
+    return find_share_in_prefix(install / name, name) or find_share_in_prefix(install, name)
 
 
-def packages_in_install(install: Path) -> Iterator[tuple[str, Path]]:
+def iterate_packages_in_install(install: Path) -> Iterator[tuple[str, Path]]:
     """Yield the name and share folder of each package in a colcon install folder.
 
     Both layouts, isolated and merged, are supported.
     """
-    yield from packages_in_prefix(install)
-    for entry in _entries(install):
-        share = share_in_prefix(install / entry, entry)
+    yield from iterate_packages_in_prefix(install)
+    for entry in _list_entries(install):
+        share = find_share_in_prefix(install / entry, entry)
         if share is not None:
             yield entry, share
 
 
-def _entries(folder: Path) -> list[str]:
+def _list_entries(folder: Path) -> list[str]:
     try:
         return sorted(os.listdir(folder))  # noqa: PTH208 - names only, and much faster than Path objects
     except OSError:

@@ -10,10 +10,10 @@ import os
 from pathlib import Path
 
 from linkwright.packages.active import current_finder
-from linkwright.packages.ament import environment_prefixes, install_prefix, is_installed
+from linkwright.packages.ament import install_prefix, is_installed, list_environment_prefixes
 
-INDEX = Path("share", "ament_index", "resource_index")
-_PACKAGES = "packages"
+RESOURCE_INDEX = Path("share", "ament_index", "resource_index")
+_PACKAGES_TYPE = "packages"
 _SEPARATORS = ("/", "\\")
 
 
@@ -31,7 +31,7 @@ def get_search_paths() -> list[str]:
     Raises:
         LookupError: there are no such prefixes.
     """
-    prefixes = [str(prefix) for prefix in _prefixes() if prefix.is_dir()]
+    prefixes = [str(prefix) for prefix in _list_prefixes() if prefix.is_dir()]
     if not prefixes:
         raise LookupError("Environment variable 'AMENT_PREFIX_PATH' is not set or empty")
     return prefixes
@@ -49,7 +49,7 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
     prefix = _find_resource(resource_type, resource_name)
     if prefix is None:
         raise LookupError(f"Could not find the resource '{resource_name}' of type '{resource_type}'")
-    marker = prefix / INDEX / resource_type / resource_name
+    marker = prefix / RESOURCE_INDEX / resource_type / resource_name
     return (marker.read_text(encoding="utf-8") if marker.is_file() else ""), str(prefix)
 
 
@@ -72,10 +72,10 @@ def get_resources(resource_type: str) -> dict[str, str]:
     """
     _check_type(resource_type)
     prefixes_by_name: dict[str, str] = {}
-    for prefix in _prefixes():
-        for name in _entries(prefix / INDEX / resource_type):
+    for prefix in _list_prefixes():
+        for name in _list_entries(prefix / RESOURCE_INDEX / resource_type):
             prefixes_by_name.setdefault(name, str(prefix))
-    if resource_type == _PACKAGES:
+    if resource_type == _PACKAGES_TYPE:
         for name, share in current_finder().packages().items():
             prefixes_by_name.setdefault(name, str(install_prefix(share)))
     return prefixes_by_name
@@ -83,9 +83,9 @@ def get_resources(resource_type: str) -> dict[str, str]:
 
 def get_resource_types() -> set[str]:
     """Return the types of all resources."""
-    types = {_PACKAGES} if current_finder().packages() else set()
-    for prefix in _prefixes():
-        types.update(entry.name for entry in (prefix / INDEX).glob("*") if entry.is_dir())
+    types = {_PACKAGES_TYPE} if current_finder().packages() else set()
+    for prefix in _list_prefixes():
+        types.update(entry.name for entry in (prefix / RESOURCE_INDEX).glob("*") if entry.is_dir())
     return types
 
 
@@ -93,10 +93,10 @@ def _find_resource(kind: str, name: str) -> Path | None:
     _check_type(kind)
     if not name or any(separator in name for separator in _SEPARATORS):
         raise InvalidResourceNameError(f"Resource name '{name}' is empty or has a path separator in it")
-    if kind == _PACKAGES:
+    if kind == _PACKAGES_TYPE:
         share = current_finder().find(name)
         return None if share is None else install_prefix(share)
-    return next((prefix for prefix in _prefixes() if (prefix / INDEX / kind / name).is_file()), None)
+    return next((prefix for prefix in _list_prefixes() if (prefix / RESOURCE_INDEX / kind / name).is_file()), None)
 
 
 def _check_type(kind: str) -> None:
@@ -104,12 +104,12 @@ def _check_type(kind: str) -> None:
         raise InvalidResourceTypeNameError(f"Resource type '{kind}' is empty or has a path separator in it")
 
 
-def _prefixes() -> list[Path]:
+def _list_prefixes() -> list[Path]:
     """Return the prefixes of the environment, and of installed packages that are not sourced."""
     shares = current_finder().packages().values()
     unsourced = (install_prefix(share) for share in shares if is_installed(share))
-    return list(dict.fromkeys([*environment_prefixes(os.environ), *unsourced]))
+    return list(dict.fromkeys([*list_environment_prefixes(os.environ), *unsourced]))
 
 
-def _entries(folder: Path) -> list[str]:
+def _list_entries(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.glob("*") if path.is_file() and not path.name.startswith("."))

@@ -1,4 +1,4 @@
-"""The finder for packages in the environment, workspaces, source trees and shipped packages."""
+"""The finder for packages in the environment, workspaces, sources and Linkwright."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from linkwright.diagnostics import (
 from linkwright.packages import ament, uri
 from linkwright.packages.ament import install_prefix
 from linkwright.packages.manifest import SourceScan, enclosing_package
-from linkwright.packages.share_layout import share_of_sources, substituted_share, substitutes
+from linkwright.packages.share_layout import find_share_of_sources, find_substituted_share, iterate_substitutes
 
 START_VARIABLE = "LINKWRIGHT_START"
 """The environment variable with the start folders of a launcher. Its processes also search them for packages."""
@@ -88,7 +88,7 @@ class PackageFinder:
             folders = self._environment.get(START_VARIABLE, "").split(os.pathsep)
             start = [Path.cwd(), *(Path(folder) for folder in folders if folder)]
         starts = [start] if isinstance(start, Path) else start
-        self._starts = tuple(dict.fromkeys(_absolute(start) for start in starts))
+        self._starts = tuple(dict.fromkeys(_to_absolute(start) for start in starts))
         self._extra = {name: Path(share) for name, share in (extra or {}).items()}
         self._sources_first = sources_first
         self._scans: dict[Path, SourceScan] = {}
@@ -116,7 +116,7 @@ class PackageFinder:
     def find(self, name: str) -> Path | None:
         """Return the share folder of a package, or None if there is no such package.
 
-        For packages that are not installed, see `share_of_sources`.
+        For packages that are not installed, see `find_share_of_sources`.
         """
         share = self._shares.get(name)
         if share is None:
@@ -132,13 +132,13 @@ class PackageFinder:
 
         The files of an earlier build are ignored.
         """
-        shares = (_share_of_optional_sources(name, self._scan(root).find(name)) for root in self._source_roots())
+        shares = (_find_share_of_sources(name, self._scan(root).find(name)) for root in self._source_roots())
         return next(filter(None, shares), None)
 
     def share(self, name: str) -> Path:
         """Return the share folder of a package.
 
-        For packages that are not installed, see `share_of_sources`.
+        For packages that are not installed, see `find_share_of_sources`.
 
         Raises:
             PackageNotFoundError: PKG101, with the locations that were searched and the nearest names.
@@ -146,7 +146,7 @@ class PackageFinder:
         share = self.find(name)
         if share is None:
             if name not in self._suggestions:
-                self._suggestions[name] = self._nearest(name)
+                self._suggestions[name] = self._suggest_similar(name)
                 self._locations = self._searched_locations()
             suggestion, is_misspelling = self._suggestions[name]
             raise PackageNotFoundError(name, self._locations, suggestion, is_misspelling=is_misspelling)
@@ -182,16 +182,18 @@ class PackageFinder:
         The value contains the prefixes that sourcing the workspaces would set or, before a build, the folder into which
         a build would install. This finder ignores the value that it set itself.
         """
-        if environment.get(ament.PREFIX_PATH):
+        if environment.get(ament.PREFIX_PATH_VARIABLE):
             return
-        shares = (share for install in self._install_folders() for _, share in ament.packages_in_install(install))
+        shares = (
+            share for install in self._install_folders() for _, share in ament.iterate_packages_in_install(install)
+        )
         prefixes = dict.fromkeys(str(install_prefix(share)) for share in shares) or [str(self._starts[0] / "install")]
-        self._own_prefix_path = environment[ament.PREFIX_PATH] = os.pathsep.join(prefixes)
+        self._own_prefix_path = environment[ament.PREFIX_PATH_VARIABLE] = os.pathsep.join(prefixes)
 
     def _prefixes(self) -> list[Path]:
-        if self._environment.get(ament.PREFIX_PATH) == self._own_prefix_path:
+        if self._environment.get(ament.PREFIX_PATH_VARIABLE) == self._own_prefix_path:
             return []
-        return ament.environment_prefixes(self._environment)
+        return ament.list_environment_prefixes(self._environment)
 
     def clear_cache(self) -> None:
         """Clear all cached results, so that the next search reads the disk again."""
@@ -204,38 +206,40 @@ class PackageFinder:
     def _candidate_shares(self, name: str) -> Iterator[Path | None]:
         yield self._extra.get(name)
         for prefix in self._prefixes():
-            yield ament.share_in_prefix(prefix, name)
+            yield ament.find_share_in_prefix(prefix, name)
         searches = (
-            (self._in_sources, self._in_installs) if self._sources_first else (self._in_installs, self._in_sources)
+            (self._search_sources, self._search_installs)
+            if self._sources_first
+            else (self._search_installs, self._search_sources)
         )
         for search in searches:
             yield from search(name)
-        yield shipped_packages().get(name)
-        yield substituted_share(name)
+        yield find_shipped_packages().get(name)
+        yield find_substituted_share(name)
 
-    def _in_installs(self, name: str) -> Iterator[Path | None]:
+    def _search_installs(self, name: str) -> Iterator[Path | None]:
         for install in self._install_folders():
-            yield ament.share_in_install(install, name)
+            yield ament.find_share_in_install(install, name)
         for prefix in self._enclosing_prefixes():
-            yield ament.share_in_prefix(prefix, name)
+            yield ament.find_share_in_prefix(prefix, name)
 
-    def _in_sources(self, name: str) -> Iterator[Path | None]:
-        yield _share_of_optional_sources(name, dict(self._enclosing_packages()).get(name))
+    def _search_sources(self, name: str) -> Iterator[Path | None]:
+        yield _find_share_of_sources(name, dict(self._enclosing_packages()).get(name))
         for root in self._source_roots():
-            yield _share_of_optional_sources(name, self._scan(root).find(name))
+            yield _find_share_of_sources(name, self._scan(root).find(name))
 
     def _all_packages(self) -> Iterator[tuple[str, Path]]:
         for prefix in self._prefixes():
-            yield from ament.packages_in_prefix(prefix)
+            yield from ament.iterate_packages_in_prefix(prefix)
         for install in self._install_folders():
-            yield from ament.packages_in_install(install)
+            yield from ament.iterate_packages_in_install(install)
         for prefix in self._enclosing_prefixes():
-            yield from ament.packages_in_prefix(prefix)
+            yield from ament.iterate_packages_in_prefix(prefix)
         yield from self._enclosing_packages()
         for root in self._source_roots():
             yield from self._scan(root).packages().items()
-        yield from shipped_packages().items()
-        yield from substitutes()
+        yield from find_shipped_packages().items()
+        yield from iterate_substitutes()
 
     def _start_folders_and_parents(self) -> Iterator[Path]:
         visited: set[Path] = set()
@@ -282,9 +286,9 @@ class PackageFinder:
 
     # --- the text of the error -------------------------------------------------------------------------------
 
-    def _nearest(self, name: str) -> tuple[Phrase | None, bool]:
+    def _suggest_similar(self, name: str) -> tuple[Phrase | None, bool]:
         """Return a hint on a similar package name, or None, and whether the name is a misspelling."""
-        shipped = shipped_packages()
+        shipped = find_shipped_packages()
         candidates = [
             package for package in self.packages() if package not in shipped or is_misspelled(name, [package])
         ]
@@ -317,12 +321,12 @@ class PackageFinder:
                 phrase("{folder}, which does not contain a package name", folder=display_path(folder / "package.xml"))
                 for folder in scan.unnamed
             ]
-        shipped = joined(shipped_packages()) or phrase("none")
+        shipped = joined(find_shipped_packages()) or phrase("none")
         locations.append(phrase("the packages shipped with Linkwright: {shipped}", shipped=shipped))
         return locations
 
 
-def shipped_folder() -> Path | None:
+def find_shipped_folder() -> Path | None:
     """Return the folder of the shipped packages, or None if there is none.
 
     The folder is in the wheel, or in the repository of an editable install.
@@ -334,17 +338,17 @@ def shipped_folder() -> Path | None:
     return None
 
 
-def shipped_packages() -> dict[str, Path]:
+def find_shipped_packages() -> dict[str, Path]:
     """Return the packages shipped with Linkwright, as a mapping from name to folder."""
-    folder = shipped_folder()
+    folder = find_shipped_folder()
     return {} if folder is None else SourceScan(folder).packages()
 
 
-def _share_of_optional_sources(name: str, folder: Path | None) -> Path | None:
-    return None if folder is None else share_of_sources(name, folder)
+def _find_share_of_sources(name: str, folder: Path | None) -> Path | None:
+    return None if folder is None else find_share_of_sources(name, folder)
 
 
-def _absolute(path: str | Path) -> Path:
+def _to_absolute(path: str | Path) -> Path:
     """Return an absolute path without resolving links.
 
     Share folders often contain links.

@@ -7,7 +7,7 @@ from pathlib import Path
 _EXTENSIONS = {"msg": (".msg", ".idl"), "srv": (".srv", ".idl"), "action": (".action", ".idl")}
 
 
-def interface_files(share: Path, kind: str) -> dict[str, Path]:
+def find_interface_files(share: Path, kind: str) -> dict[str, Path]:
     """Return the files of the interfaces of one kind that a package defines.
 
     An IDL file that a build generated from another interface file with the same name is left out.
@@ -26,7 +26,7 @@ def interface_files(share: Path, kind: str) -> dict[str, Path]:
     return files
 
 
-def interface_file(share: Path, kind: str, name: str) -> Path | None:
+def find_interface_file(share: Path, kind: str, name: str) -> Path | None:
     """Return the file that defines an interface of a package, or None if there is no such file."""
     for extension in _EXTENSIONS[kind]:
         path = share / kind / (name + extension)

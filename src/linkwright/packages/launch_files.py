@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 
 _LAUNCH_SUFFIXES = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
 _MAX_DEPTH = 4
@@ -17,19 +17,19 @@ def is_launch_file_name(name: str) -> bool:
     return name.endswith(_LAUNCH_SUFFIXES)
 
 
-def launch_files_below(folder: Path) -> list[Path]:
-    """Return the launch files in a folder and a few levels below, sorted by name in each folder.
+def find_launch_files_below(folder: Path) -> list[Path]:
+    """Return the launch files in a folder and a few levels below, sorted by name.
 
     Hidden folders and the build folders of colcon are left out. A share folder may contain a file twice, at its path in
     the sources and at its installed path (see `share_layout`). Such a file is returned once.
     """
     launch_files: dict[str, Path] = {}
-    for path in _launch_files_within(folder, _MAX_DEPTH):
-        launch_files.setdefault(source_of(str(path)), path)
+    for path in _iterate_launch_files(folder, _MAX_DEPTH):
+        launch_files.setdefault(find_source(str(path)), path)
     return list(launch_files.values())
 
 
-def _launch_files_within(folder: Path, depth: int) -> Iterator[Path]:
+def _iterate_launch_files(folder: Path, depth: int) -> Iterator[Path]:
     try:
         entries = sorted(folder.iterdir())
     except OSError:
@@ -37,6 +37,6 @@ def _launch_files_within(folder: Path, depth: int) -> Iterator[Path]:
     for entry in entries:
         if entry.is_dir():
             if depth and not entry.name.startswith(".") and entry.name not in _BUILD_FOLDERS:
-                yield from _launch_files_within(entry, depth - 1)
+                yield from _iterate_launch_files(entry, depth - 1)
         elif is_launch_file_name(entry.name):
             yield entry

@@ -19,7 +19,7 @@ _RETENTION_S = 7 * 24 * 3600.0
 """Seconds before an unused layout is deleted. Until then, a running program may still use it."""
 
 
-def link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> Path:
+def make_link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]) -> Path:
     """Return a folder of links to a package's sources, with installed files at installed paths.
 
     Files that the build generates are written instead of linked. The folder is created if no process has created it for

@@ -20,7 +20,7 @@ _NAME = lazy_pattern(r"<package\b[^>]*>.*?<name>\s*([^<\s]+)\s*</name>", re.DOTA
 
 
 def package_name(folder: Path) -> str | None:
-    """Return the name in a folder's ``package.xml``, or None if the file or its name is missing.
+    """Return the name in a folder's ``package.xml``, or None if it is missing.
 
     The name is found by a search through the text, without an XML parser: a search for packages reads many manifests,
     and a broken manifest must not stop the search.
@@ -48,8 +48,8 @@ def enclosing_package(path: Path) -> tuple[str, Path] | None:
 IGNORE_MARKERS = frozenset({"COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"})
 SKIPPED_FOLDERS = frozenset({"build", "install", "log", "node_modules", "__pycache__", "site-packages"})
 
-MAXIMUM_DEPTH = 8
-MAXIMUM_FOLDERS = 3000
+MAX_DEPTH = 8
+MAX_FOLDERS = 3000
 
 
 class SourceScan:
@@ -57,7 +57,7 @@ class SourceScan:
 
     Folders nearer to the root come first, and siblings are sorted by name. A folder with a ``package.xml`` is a package
     and is not searched further. Hidden folders, build products and folders with an ignore marker are skipped. The
-    search ends `MAXIMUM_DEPTH` levels below the root or after `MAXIMUM_FOLDERS` folders, so that a search that starts
+    search ends `MAX_DEPTH` levels below the root or after `MAX_FOLDERS` folders, so that a search that starts
     in a home folder does not read the whole disk.
 
     Attributes:
@@ -108,7 +108,7 @@ class SourceScan:
         pending: deque[tuple[str, int]] = deque([(str(self.root), 0)])
         visited = 0
         while pending:
-            if visited >= MAXIMUM_FOLDERS:
+            if visited >= MAX_FOLDERS:
                 self.truncated = True
                 return
             folder, depth = pending.popleft()
@@ -124,7 +124,7 @@ class SourceScan:
                 else:
                     self.unnamed.append(path)
                 continue
-            if depth == MAXIMUM_DEPTH:
+            if depth == MAX_DEPTH:
                 self.truncated = self.truncated or bool(folders)
                 continue
             pending.extend((f"{folder}{os.sep}{entry}", depth + 1) for entry in folders)
@@ -139,7 +139,7 @@ def _list_folder(folder: str) -> tuple[set[str], list[str]]:
             for entry in entries:
                 name = entry.name
                 if entry.is_dir(follow_symlinks=True):
-                    if not name.startswith(".") and name not in SKIPPED_FOLDERS and not _links_upwards(entry):
+                    if not name.startswith(".") and name not in SKIPPED_FOLDERS and not _is_link_upwards(entry):
                         folders.append(name)
                 else:
                     files.add(name)
@@ -149,7 +149,7 @@ def _list_folder(folder: str) -> tuple[set[str], list[str]]:
     return files, folders
 
 
-def _links_upwards(entry: os.DirEntry[str]) -> bool:
+def _is_link_upwards(entry: os.DirEntry[str]) -> bool:
     """Return whether a folder is a link to a folder that contains it.
 
     Following such a link would never end.

@@ -24,39 +24,39 @@ def check_package_name(name: str) -> list[Diagnostic]:
     """Return the findings on the name of a package: errors (PKG201), or else warnings (PKG202)."""
     if not _IDENTIFIER.fullmatch(name):
         message = phrase(
-            "'{name}' cannot be the name of a package: {problem}", name=name, problem=_identifier_problem(name)
+            "'{name}' cannot be the name of a package: {problem}", name=name, problem=_find_identifier_problem(name)
         )
-        return [Diagnostic("PKG201", message, hint=_suggestion(name))]
+        return [Diagnostic("PKG201", message, hint=_suggest_name(name))]
     if keyword.iskeyword(name):
         message = phrase("'{name}' cannot be the name of a package: it is a Python keyword", name=name)
         return [Diagnostic("PKG201", message, hint=phrase("did you mean {names}?", names=quoted(f"{name}_robot")))]
-    return [] if _rep_144_advice(name) is None else [rep_144_warning(name)]
+    return [] if _find_rep_144_advice(name) is None else [make_rep_144_warning(name)]
 
 
-def rep_144_warning(name: str) -> Diagnostic:
+def make_rep_144_warning(name: str) -> Diagnostic:
     """Return the warning (PKG202) with the rule of REP 144 that a name violates."""
-    advice = _rep_144_advice(name) or _identifier_problem(name)
+    advice = _find_rep_144_advice(name) or _find_identifier_problem(name)
     message = phrase("package name '{name}' does not follow REP 144: {advice}", name=name, advice=advice)
-    return Diagnostic("PKG202", message, severity=Severity.WARNING, hint=_suggestion(name))
+    return Diagnostic("PKG202", message, severity=Severity.WARNING, hint=_suggest_name(name))
 
 
 def check_member_name(name: str, member_kind: str) -> list[Diagnostic]:
     """Return the findings on the name of a node or library (PKG203).
 
     Args:
-        name: the name.
+        name: the name of the node or library.
         member_kind: ``node`` or ``library``.
     """
     if _IDENTIFIER.fullmatch(name) and not keyword.iskeyword(name):
         return []
-    problem = phrase("it is a Python keyword") if keyword.iskeyword(name) else _identifier_problem(name)
+    problem = phrase("it is a Python keyword") if keyword.iskeyword(name) else _find_identifier_problem(name)
     return [
         Diagnostic(
             "PKG203",
             phrase(
                 "'{name}' cannot be the name of a {kind}: {problem}", name=name, kind=term(member_kind), problem=problem
             ),
-            hint=_suggestion(name),
+            hint=_suggest_name(name),
         )
     ]
 
@@ -78,7 +78,7 @@ def check_email(address: str) -> list[Diagnostic]:
 
 
 def is_accepted_name(name: str) -> bool:
-    """Return whether colcon builds a package with this name, even if REP 144 advises against it."""
+    """Return whether colcon accepts a package name, even if REP 144 advises against it."""
     return _PACKAGE_NAME.fullmatch(name) is not None
 
 
@@ -87,7 +87,7 @@ def is_email(address: str) -> bool:
     return _EMAIL.fullmatch(address) is not None
 
 
-def _identifier_problem(name: str) -> Phrase:
+def _find_identifier_problem(name: str) -> Phrase:
     if not name:
         return phrase("it is empty")
     invalid_characters = sorted(set(re.findall(r"[^A-Za-z0-9_]", name)))
@@ -99,7 +99,7 @@ def _identifier_problem(name: str) -> Phrase:
     return phrase("it must begin with a letter")
 
 
-def _rep_144_advice(name: str) -> Phrase | None:
+def _find_rep_144_advice(name: str) -> Phrase | None:
     if name != name.lower():
         return phrase("use lower case")
     if "__" in name:
@@ -109,12 +109,14 @@ def _rep_144_advice(name: str) -> Phrase | None:
     return None
 
 
-def _suggestion(name: str) -> Phrase | None:
+def _suggest_name(name: str) -> Phrase | None:
     suggested_name = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_").lstrip("0123456789_")
     if len(suggested_name) == 1:
         return phrase("choose a longer name, such as {names}", names=quoted(f"{suggested_name}_robot"))
     is_valid = (
-        _IDENTIFIER.fullmatch(suggested_name) and suggested_name != name and _rep_144_advice(suggested_name) is None
+        _IDENTIFIER.fullmatch(suggested_name)
+        and suggested_name != name
+        and _find_rep_144_advice(suggested_name) is None
     )
     return (
         phrase("did you mean {names}?", names=quoted(suggested_name))

@@ -26,7 +26,7 @@ from pathlib import Path
 
 from linkwright.files.user_folders import SHARES_SUBFOLDER
 from linkwright.loading.extensions import extensions
-from linkwright.packages.ament import install_prefix, share_in_prefix
+from linkwright.packages.ament import find_share_in_prefix, install_prefix
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.installed import InstalledFile
 
@@ -35,23 +35,23 @@ _PARTIAL_PREFIX = Path(__file__).parent / "substitutes"
 """The prefix of the packages that are replaced without files."""
 
 
-def substituted_share(name: str) -> Path | None:
+def find_substituted_share(name: str) -> Path | None:
     """Return the share folder of the substitute for a ROS package, or None if there is none."""
-    share = _share_with_files(name)
-    if share is None and name in _partly_replaced_packages():
+    share = _find_share_with_files(name)
+    if share is None and name in _find_partly_replaced_packages():
         return _PARTIAL_PREFIX / "share" / name
     return share
 
 
-def substitutes() -> Iterator[tuple[str, Path]]:
+def iterate_substitutes() -> Iterator[tuple[str, Path]]:
     """Yield the name and share folder of every substitute that has files, sorted by name."""
     for name in sorted(extensions(_GROUP)):
-        share = _share_with_files(name)
+        share = _find_share_with_files(name)
         if share is not None:
             yield name, share
 
 
-def _share_with_files(name: str) -> Path | None:
+def _find_share_with_files(name: str) -> Path | None:
     entry_point = extensions(_GROUP).get(name)
     if entry_point is None:
         return None
@@ -60,11 +60,11 @@ def _share_with_files(name: str) -> Path | None:
     except Exception as error:  # noqa: BLE001 - a broken package must not stop the search
         warnings.warn(f"'{entry_point.distribution}' provides no substitute for '{name}': {error}", stacklevel=2)
         return None
-    return share_in_prefix(prefix, name)
+    return find_share_in_prefix(prefix, name)
 
 
 @cache
-def substituted_executables() -> dict[str, frozenset[str]]:
+def find_substituted_executables() -> dict[str, frozenset[str]]:
     """Return the partly replaced packages, each with the names of the replaced executables.
 
     Modules, messages or nodes of Linkwright replace these packages.
@@ -74,10 +74,10 @@ def substituted_executables() -> dict[str, frozenset[str]]:
 
 
 @cache
-def _partly_replaced_packages() -> frozenset[str]:
+def _find_partly_replaced_packages() -> frozenset[str]:
     """Return the packages that Linkwright or one of its extensions replaces in part."""
     nodes = (name for group in ("linkwright.nodes", "linkwright.components") for name in extensions(group))
-    return frozenset({*substituted_executables(), *(name.partition("/")[0] for name in nodes)})
+    return frozenset({*find_substituted_executables(), *(name.partition("/")[0] for name in nodes)})
 
 
 def is_substitute(share: Path) -> bool:
@@ -85,10 +85,10 @@ def is_substitute(share: Path) -> bool:
 
     A substitute contains the launch files that other packages include, but not the rest of the package.
     """
-    return install_prefix(share) == _PARTIAL_PREFIX or share == _share_with_files(share.name)
+    return install_prefix(share) == _PARTIAL_PREFIX or share == _find_share_with_files(share.name)
 
 
-def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
+def find_substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
     """Return the files of a substitute that the unbuilt sources of the package lack.
 
     The result maps paths in the share folder to files. A launch file that a build generates, such as ros_gz_sim's
@@ -99,8 +99,8 @@ def substituted_files(name: str, folder: Path) -> dict[str, InstalledFile]:
         name: the package.
         folder: the source folder of the package.
     """
-    text = _text_with_targets(folder)  # checked first, because reading the entry points takes longer
-    share = None if text is None else _share_with_files(name)
+    text = _read_text_with_targets(folder)  # checked first, because reading the entry points takes longer
+    share = None if text is None else _find_share_with_files(name)
     if text is None or share is None or not _is_compiled(folder, text):
         return {}
     substitute_files = {file.relative_to(share).as_posix(): file for file in sorted(share.rglob("*")) if file.is_file()}
@@ -115,7 +115,7 @@ _COMPILING_COMMANDS = ("add_executable", "add_library", "add_module", "add_subdi
 """Fragments of the CMake commands that declare compiled targets, or run other files."""
 
 
-def _text_with_targets(folder: Path) -> str | None:
+def _read_text_with_targets(folder: Path) -> str | None:
     """Return the text of a ``CMakeLists.txt``, or None if it cannot declare compiled targets."""
     try:
         text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
@@ -136,7 +136,7 @@ def _is_compiled(folder: Path, text: str) -> bool:
 _LINK_FOLDER_MARK = os.path.join("", "linkwright", SHARES_SUBFOLDER, "")  # noqa: PTH118 - a part of the path as text
 
 
-def share_of_sources(name: str, folder: Path) -> Path:
+def find_share_of_sources(name: str, folder: Path) -> Path:
     """Return the share folder of an unbuilt package: its source folder, or a folder of links.
 
     If the links cannot be created, the result is the source folder. This happens on a full disk, or on Windows if the
@@ -148,31 +148,31 @@ def share_of_sources(name: str, folder: Path) -> Path:
     """
     if _LINK_FOLDER_MARK in str(folder):  # a launch file in a folder of links started the search
         return folder
-    moved_files = {path: file for path, file in _share_files(name, folder) if path != file.source}
-    moved_files |= substituted_files(name, folder)
+    moved_files = {path: file for path, file in _iterate_share_files(name, folder) if path != file.source}
+    moved_files |= find_substituted_files(name, folder)
     if not moved_files:
         return folder
-    from linkwright.packages.link_folder import link_folder
+    from linkwright.packages.link_folder import make_link_folder
 
     try:
-        return link_folder(name, folder, moved_files)
+        return make_link_folder(name, folder, moved_files)
     except OSError:
         return folder
 
 
-def source_of(path: str) -> str:
+def find_source(path: str) -> str:
     """Return the source file behind a file in a folder of links, and any other path unchanged."""
     return os.path.realpath(path) if _LINK_FOLDER_MARK in path else path
 
 
-def _share_files(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
+def _iterate_share_files(name: str, folder: Path) -> Iterator[tuple[str, InstalledFile]]:
     """Yield the files that a package installs into its share folder, each with its path there.
 
     Some files with the same path in the sources are omitted.
     """
     share = f"share/{name}/"
     with suppress(OSError, ValueError):
-        for file in _installed_files(folder, share):
+        for file in _iterate_installed_files(folder, share):
             if file.destination.startswith(share) and _is_inside_package(file.source):
                 yield file.destination[len(share) :], file
 
@@ -186,7 +186,7 @@ def _is_inside_package(source: str) -> bool:
     return not path.is_absolute() and path.parts[:1] != (os.pardir,)
 
 
-def _installed_files(folder: Path, share: str) -> Iterator[InstalledFile]:
+def _iterate_installed_files(folder: Path, share: str) -> Iterator[InstalledFile]:
     for build_file in ("CMakeLists.txt", "setup.py"):
         try:
             text = (folder / build_file).read_text(encoding="utf-8", errors="replace")

@@ -25,16 +25,16 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
         LinkwrightError: an error of `share`; PKG102, the URI has another form.
     """
     if not address.strip():
-        raise _bad_uri(phrase("the URI is empty; write the path of a file"))
+        raise _make_uri_error(phrase("the URI is empty; write the path of a file"))
     scheme = _SCHEME.match(address)
     if scheme is None:
         path = Path(address)
         return path if path.is_absolute() or relative_to is None else relative_to / path
     scheme_name, remainder = scheme.group(1).lower(), address[scheme.end() :]
     if scheme_name == "package":
-        return _package_path(address, remainder, share)
+        return _resolve_package_uri(address, remainder, share)
     if scheme_name == "file":
-        return _file_path(address, remainder)
+        return _resolve_file_uri(address, remainder)
     hint = phrase("use package://PACKAGE/PATH")
     if scheme_name in ("http", "https"):
         hint = phrase(
@@ -43,32 +43,34 @@ def resolve(address: str, share: Callable[[str], Path], relative_to: Path | None
     problem = phrase(
         "'{uri}' has the scheme '{scheme}', which does not name a local file", uri=address, scheme=scheme.group(1)
     )
-    raise _bad_uri(problem, hint)
+    raise _make_uri_error(problem, hint)
 
 
-def _package_path(address: str, rest: str, share: Callable[[str], Path]) -> Path:
+def _resolve_package_uri(address: str, rest: str, share: Callable[[str], Path]) -> Path:
     if not rest.startswith("//"):
-        raise _bad_uri(
+        raise _make_uri_error(
             phrase("'{uri}' has no '//' after the scheme", uri=address),
             phrase("write package://PACKAGE/PATH"),
         )
     name, _, path = rest[2:].partition("/")
     if not name:
-        raise _bad_uri(phrase("'{uri}' does not name a package", uri=address), phrase("write package://PACKAGE/PATH"))
+        raise _make_uri_error(
+            phrase("'{uri}' does not name a package", uri=address), phrase("write package://PACKAGE/PATH")
+        )
     return share(_decode(name)) / _decode(path).lstrip("/")
 
 
-def _file_path(address: str, rest: str) -> Path:
-    path = absolute_path(rest)
+def _resolve_file_uri(address: str, rest: str) -> Path:
+    path = parse_absolute_path(rest)
     if path is None:
-        raise _bad_uri(
+        raise _make_uri_error(
             phrase("'{uri}' has no absolute path", uri=address),
             phrase("write file:///ABSOLUTE/PATH, with three slashes"),
         )
     return Path(path)
 
 
-def absolute_path(rest: str, *, with_drives: bool = os.name == "nt") -> str | None:
+def parse_absolute_path(rest: str, *, with_drives: bool = os.name == "nt") -> str | None:
     """Return the path in a ``file:`` URI, or None if the path is not absolute.
 
     Args:
@@ -94,6 +96,6 @@ def _decode(text: str) -> str:
     return unquote(text)
 
 
-def _bad_uri(problem: Phrase, hint: Phrase | None = None) -> LinkwrightError:
+def _make_uri_error(problem: Phrase, hint: Phrase | None = None) -> LinkwrightError:
     """Return the error for an invalid resource URI (PKG102)."""
     return LinkwrightError(Diagnostic("PKG102", problem, hint=hint))

@@ -32,7 +32,7 @@ from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element
 from linkwright.xmltree.decoding import decode
-from linkwright.xmltree.patches import element_range
+from linkwright.xmltree.patches import find_element_range
 from linkwright.xmltree.reader import read_bytes
 
 _EXPANDED_NAME = ""
@@ -87,7 +87,7 @@ def _calls(element: Element) -> Iterator[CallSite]:
 
 def _find_source_range(element: Element) -> SourceRange | None:
     """Return the source range of an element, or of its tag name if its end is unknown, or None."""
-    offsets = element_range(element)
+    offsets = find_element_range(element)
     span = element.span() if offsets is None or element.source is None else element.source.span(*offsets)
     if span is None:
         return None

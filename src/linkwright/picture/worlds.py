@@ -13,10 +13,10 @@ from linkwright.geometry.surfaces import cone
 from linkwright.picture.bodies import Anchor, Body, Labels, Surface, Texture
 from linkwright.picture.materials import ROUND_SIDES, SurfaceLibrary, decode_texture, make_shape_surface
 from linkwright.picture.scene import Scene
-from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of, placed_links
+from linkwright.sdf.frames import FrameError, Frames, PlacedLink, place_links, placed_links
 from linkwright.sdf.links import Visual
 from linkwright.sdf.resources import Missing, ResourceFinder
-from linkwright.sdf.scripts import appearance
+from linkwright.sdf.scripts import find_appearance
 from linkwright.sdf.shapes import Cone, Ellipsoid, Empty, Mesh, Plane, Shape
 from linkwright.sdf.worlds import Sdf
 
@@ -54,7 +54,7 @@ def _iterate_placed_links(sdf: Sdf) -> Iterator[PlacedLink]:
         yield from placed_links(world)
     if not sdf.worlds:
         for model in sdf.models:
-            yield from links_of(model, Frames(model), IDENTITY, model.name)
+            yield from place_links(model, Frames(model), IDENTITY, model.name)
 
 
 def _placement_from_pose(pose: Transform) -> Placement:
@@ -91,7 +91,7 @@ class _WorldReader:
                     self._add_incomplete(placed_link.name, phrase("a coordinate is out of range"))
 
     def _read_visual(self, link: str, visual: Visual) -> Iterator[Surface]:
-        color, image = appearance(visual.material) if visual.material else (None, "")
+        color, image = find_appearance(visual.material) if visual.material else (None, "")
         red, green, blue, alpha = color or _DEFAULT_COLOR
         alpha *= 1.0 - visual.transparency
         texture = self._read_texture(link, visual, image) if image else None

@@ -19,7 +19,7 @@ from linkwright.lint.checking import Checker
 from linkwright.lint.targets import find_targets
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST, SKIPPED_FOLDERS, SourceScan, package_name
-from linkwright.packages.share_layout import share_of_sources
+from linkwright.packages.share_layout import find_share_of_sources
 
 TEST_FOLDERS = frozenset({"test", "tests"})
 """The names of test folders, whose files do not belong to a robot."""
@@ -126,12 +126,12 @@ class Version:
         """The share folders of the packages of the version, by the name of the package."""
         if self.commit is not None:
             return self.commit.packages
-        return {name: share_of_sources(name, folder) for name, folder in SourceScan(self.root).packages().items()}
+        return {name: find_share_of_sources(name, folder) for name, folder in SourceScan(self.root).packages().items()}
 
     def _nearest(self, folder: Path) -> dict[str, Path]:
         """Return the nearest share folder of each package that has several copies, by the name of the package."""
         return {
-            name: share_of_sources(name, max(copies, key=lambda copy: _common_parts(copy, folder)))
+            name: find_share_of_sources(name, max(copies, key=lambda copy: _common_parts(copy, folder)))
             for name, copies in self._copies.items()
         }
 

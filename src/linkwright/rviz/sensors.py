@@ -9,7 +9,7 @@ from linkwright.geometry.single import Transform, compose
 from linkwright.page.protocol.worlds import CameraScene, LidarScene, RayAngles
 from linkwright.sdf.cameras import Camera
 from linkwright.sdf.frames import FrameError, PlacedLink, placed_links, transform_of
-from linkwright.sdf.optics import optics_of
+from linkwright.sdf.optics import make_optics
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.sensors import Lidar, Sensor
 from linkwright.sdf.worlds import World
@@ -83,7 +83,7 @@ def _convert_lidar(placed_link: PlacedLink, sensor: Sensor, lidar: Lidar, pose: 
 
 
 def _convert_camera(placed_link: PlacedLink, sensor: Sensor, camera: Camera, pose: Transform) -> CameraScene:
-    optics = optics_of(camera)
+    optics = make_optics(camera)
     camera_pose = compose(pose, transform_of(camera.pose.pose))
     return CameraScene(
         name=SEPARATOR.join(filter(None, (placed_link.name, sensor.name, camera.name))),

@@ -14,11 +14,11 @@ from linkwright.geometry.single import Transform, compose, rotation_from_z
 from linkwright.images.heights import read_heights
 from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 from linkwright.page.protocol.robot import LinkScene, Shape, Submesh, Surface
-from linkwright.sdf.frames import Frames, PlacedLink, links_of
+from linkwright.sdf.frames import Frames, PlacedLink, place_links
 from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.materials import Workflow
 from linkwright.sdf.poses import RawPose
-from linkwright.sdf.scripts import appearance
+from linkwright.sdf.scripts import find_appearance
 from linkwright.sdf.shapes import (
     Cone,
     Ellipsoid,
@@ -79,7 +79,7 @@ class _Builder:
         frames = Frames(world)
         for model in world.models:
             model_frames = frames.inside(model.name)
-            for placed_link in links_of(model, model_frames, frames.pose(model.name), model.name):
+            for placed_link in place_links(model, model_frames, frames.pose(model.name), model.name):
                 self._add_link(placed_link)
         return self._content
 
@@ -193,7 +193,7 @@ class _Builder:
 
     def _set_material(self, link: str, shape: Shape, visual: Visual) -> None:
         material = visual.material
-        color, image = appearance(material) if material else (None, "")
+        color, image = find_appearance(material) if material else (None, "")
         shape.repaints = color is not None or image != ""
         if color is None:
             color = _DEFAULT_COLOR

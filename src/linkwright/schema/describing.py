@@ -12,7 +12,7 @@ def describe_element(rule: ElementRule) -> Phrase:
     heading = phrase("{name}: {meaning}", name=tag, meaning=term(rule.meaning))
     lines = [phrase("- {line}", line=describe_attribute(attribute)) for attribute in rule.attributes]
     if rule.text is not None:
-        meaning, facts = term(rule.text.meaning), joined(_facts(rule.text))
+        meaning, facts = term(rule.text.meaning), joined(_list_facts(rule.text))
         lines.append(phrase("- the text inside: {meaning} ({facts})", meaning=meaning, facts=facts))
     value_children = [] if rule.choice else [child for child in rule.children if child.is_value]
     lines += [phrase("- {line}", line=_describe_value(child)) for child in value_children]
@@ -37,21 +37,21 @@ def describe_attribute(attribute: AttributeRule) -> Phrase:
         "{name}: {meaning} ({facts})",
         name=f"`{attribute.name}`",
         meaning=term(attribute.meaning),
-        facts=joined(_facts(attribute)),
+        facts=joined(_list_facts(attribute)),
     )
 
 
 def _describe_value(rule: ElementRule) -> Phrase:
     """Return a line of Markdown about an element with a single value, as for an attribute."""
     assert rule.text is not None
-    facts = _facts(rule.text)
+    facts = _list_facts(rule.text)
     if rule.is_repeated:
         facts.append(phrase("any number"))
     name = f"`<{rule.tag}>`"
     return phrase("{name}: {meaning} ({facts})", name=name, meaning=term(rule.meaning), facts=joined(facts))
 
 
-def _facts(attribute: AttributeRule) -> list[Phrase]:
+def _list_facts(attribute: AttributeRule) -> list[Phrase]:
     kind = term(attribute.type.name)
     facts = [phrase("{type} in {unit}", type=kind, unit=term(attribute.unit)) if attribute.unit else kind]
     if attribute.required:

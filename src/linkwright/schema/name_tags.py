@@ -1,4 +1,7 @@
-"""The tags of elements of plugins, sensors and other programs whose texts are the names of links and joints."""
+"""The tags of elements whose texts are the names of links and joints.
+
+Plugins, sensors and other programs read these elements.
+"""
 
 from __future__ import annotations
 

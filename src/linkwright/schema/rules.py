@@ -80,7 +80,7 @@ class AttributeRule:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ElementRule:
-    """The rule of an element in its parent: its attributes, its children, and the object for it.
+    """The rule of an element in its parent: attributes, children, and the object for it.
 
     Attributes:
         tag: the element's name.

@@ -1,4 +1,4 @@
-"""The rigid bodies of a robot: links connected by fixed joints, and their poses in the body.
+"""The rigid bodies of a robot: links that fixed joints connect, and their poses.
 
 Source: libsdformat's parser of URDF, which merges links that fixed joints connect.
 """
@@ -21,7 +21,7 @@ class Part:
     """A link of a body, and the link's pose in the body.
 
     Attributes:
-        link: the link.
+        link: the link of the robot.
         pose: the pose of the link's frame in the frame of the body.
         joint: the fixed joint that attaches the link; None for the link that names the body.
     """
@@ -55,7 +55,7 @@ class Body:
         return self.parts[0].link.name
 
 
-def rigid_bodies(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]:
+def find_rigid_bodies(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]:
     """Return the bodies of a robot, parents before children.
 
     Children are ordered by joint name, as in gz.
@@ -70,7 +70,7 @@ def rigid_bodies(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]
     root = Body([Part(robot.links[robot.root])])
     bodies_by_link: dict[str, tuple[Body, Part]] = {robot.root: (root, root.parts[0])}
     bodies = [] if robot.root == WORLD else [root]
-    pending = _in_reverse_order(child_joints[robot.root])
+    pending = _sort_in_reverse(child_joints[robot.root])
     while pending:
         joint = pending.pop()
         link = robot.links[joint.child]
@@ -88,10 +88,10 @@ def rigid_bodies(robot: Robot, is_lumped: Callable[[Joint], bool]) -> list[Body]
             bodies.append(child_body)
             body = child_body
         bodies_by_link[link.name] = body, part
-        pending += _in_reverse_order(child_joints[link.name])
+        pending += _sort_in_reverse(child_joints[link.name])
     return bodies
 
 
-def _in_reverse_order(joints: list[Joint]) -> list[Joint]:
+def _sort_in_reverse(joints: list[Joint]) -> list[Joint]:
     """Return joints sorted by name in reverse, because the caller pops them from the end."""
     return sorted(joints, key=lambda joint: joint.name, reverse=True)

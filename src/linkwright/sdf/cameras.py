@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwright.schema import AttributeRule, ElementRule
-from linkwright.sdf.noise import NO_NOISE, Noise, noise_rule
+from linkwright.sdf.noise import NO_NOISE, Noise, make_noise_rule
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
 from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR2, object_rule, value
 
@@ -137,7 +137,7 @@ CAMERA = ElementRule(
             default=ImageFormat(),
         ),
         object_rule(Clip, "clip", "the near and far clipping distances", *_CLIP_VALUES, default=Clip()),
-        noise_rule(),
+        make_noise_rule(),
         object_rule(
             Distortion,
             "distortion",

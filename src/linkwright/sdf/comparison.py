@@ -28,7 +28,7 @@ def have_equal_content(first: Any, second: Any) -> bool:
         return bool(first == second or (first != first and second != second))
     if isinstance(first, Plugin) and not _have_same_content(first.element, second.element):
         return False
-    if isinstance(first, Visual | Collision) and _folder(first) != _folder(second):
+    if isinstance(first, Visual | Collision) and _find_mesh_folder(first) != _find_mesh_folder(second):
         return False
     return all(
         have_equal_content(getattr(first, field.name), getattr(second, field.name))
@@ -48,7 +48,7 @@ def _list_content(element: Element) -> tuple[object, ...]:
     return element.tag, element.attributes, element.text().split(), children
 
 
-def _folder(shape_element: Visual | Collision) -> Path | None:
+def _find_mesh_folder(shape_element: Visual | Collision) -> Path | None:
     """Return the base folder of the path of an element's mesh, or None."""
     shape, element = shape_element.geometry, shape_element.element
     if not isinstance(shape, Mesh | Heightmap) or "://" in shape.uri or element is None or element.source is None:

@@ -35,7 +35,7 @@ Lengths are in m, and positions are relative to the hips, which are 1 m above th
 """
 
 
-def actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
+def make_actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
     """Return the model of an actor: the shapes of its links, and its skin.
 
     Args:
@@ -60,7 +60,7 @@ def actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
     return Model(actor.name, static=True, links=tuple(links), element=actor.element)
 
 
-def road_model(road: Road) -> Model:
+def make_road_model(road: Road) -> Model:
     """Return the model of a road: a strip with its top surface at the height of the points."""
     visuals: list[Visual] = []
     for start, end in zip(road.points, road.points[1:], strict=False):

@@ -247,10 +247,12 @@ def placed_links(world: World) -> Iterator[PlacedLink]:
     """
     frames = Frames(world)
     for model in world.models:
-        yield from links_of(model, frames.inside(model.name), frames.pose(model.name), model.name)
+        yield from place_links(model, frames.inside(model.name), frames.pose(model.name), model.name)
 
 
-def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static: bool = False) -> Iterator[PlacedLink]:
+def place_links(
+    model: Model, frames: Frames, pose: Transform, name: str, *, static: bool = False
+) -> Iterator[PlacedLink]:
     """Yield all links of a model and its nested models, with their poses.
 
     Args:
@@ -270,7 +272,7 @@ def links_of(model: Model, frames: Frames, pose: Transform, name: str, *, static
     for nested_model in model.models:
         link_pose = compose(pose, frames.pose(nested_model.name))
         path = f"{name}{SEPARATOR}{nested_model.name}"
-        yield from links_of(nested_model, frames.inside(nested_model.name), link_pose, path, static=static)
+        yield from place_links(nested_model, frames.inside(nested_model.name), link_pose, path, static=static)
 
 
 def transform_of(pose: Pose) -> Transform:

@@ -12,7 +12,7 @@ from typing import TypeVar
 from linkwright.diagnostics import Diagnostic, phrase, quoted_names
 from linkwright.geometry.single import Pose, Transform, compose
 from linkwright.sdf import shapes
-from linkwright.sdf.bodies import Body, Part, rigid_bodies
+from linkwright.sdf.bodies import Body, Part, find_rigid_bodies
 from linkwright.sdf.frames import pose_of, transform_of
 from linkwright.sdf.gazebo import Extensions, LinkExtension
 from linkwright.sdf.joints import Axis, AxisLimit, AxisMimic, Joint
@@ -22,7 +22,7 @@ from linkwright.sdf.materials import Material, Pbr, Workflow
 from linkwright.sdf.models import Frame, Model
 from linkwright.sdf.poses import MODEL, WORLD, RawPose
 from linkwright.sdf.report import SdfReport
-from linkwright.sdf.scripts import gazebo_look, with_look
+from linkwright.sdf.scripts import find_gazebo_look, with_look
 from linkwright.sdf.sensors import Sensor
 from linkwright.urdf import Robot
 from linkwright.urdf import model as urdf
@@ -78,20 +78,20 @@ class _Converter:
         self._rigid_bodies = Bodies(robot)
 
     def model(self) -> Model:
-        bodies = rigid_bodies(self._robot, self._is_lumped)
+        bodies = find_rigid_bodies(self._robot, self._is_lumped)
         if self._is_lumping:
             bodies = self._remove_massless(bodies)
         parts = [part for body in bodies for part in body.parts]
         extensions = {part.link.name: self._extensions.link(part.link) for part in parts}
-        joints = [self._joint(body, body.joint) for body in bodies if body.joint is not None]
+        joints = [self._convert_joint(body, body.joint) for body in bodies if body.joint is not None]
         self._report_default_mass(bodies)
         model_extension = self._extensions.model(self._robot)
         return replace(
             model_extension,
             name=self._robot.name,
-            links=(*(self._link(body, extensions) for body in bodies), *model_extension.links),
+            links=(*(self._convert_link(body, extensions) for body in bodies), *model_extension.links),
             joints=(*(joint for joint in joints if joint is not None), *model_extension.joints),
-            frames=(*(frame for body in bodies for frame in self._frames(body)), *model_extension.frames),
+            frames=(*(frame for body in bodies for frame in self._convert_frames(body)), *model_extension.frames),
             element=self._robot.element,
         )
 
@@ -144,18 +144,18 @@ class _Converter:
             hint = phrase("give each link an <inertial>, which `linkwright inertia` computes")
             self._report.warning("SDF172", message, element, hint=hint)
 
-    def _link(self, body: Body, extensions: dict[str, LinkExtension]) -> Link:
+    def _convert_link(self, body: Body, extensions: dict[str, LinkExtension]) -> Link:
         extension = extensions[body.name].link
         link = body.parts[0].link
         merged_extensions = [extensions[part.link.name].link for part in body.parts[1:]]
         merged_poses = [part.pose for part in body.parts[1:]]
         sensors = [
-            _in_body_frame(sensor, pose)
+            _move_to_body_frame(sensor, pose)
             for merged_extension, pose in zip(merged_extensions, merged_poses, strict=True)
             for sensor in merged_extension.sensors
         ]
         lights = [
-            _in_body_frame(light, pose)
+            _move_to_body_frame(light, pose)
             for merged_extension, pose in zip(merged_extensions, merged_poses, strict=True)
             for light in merged_extension.lights
         ]
@@ -163,8 +163,8 @@ class _Converter:
             extension,
             pose=self._convert_pose(body),
             inertial=_combine_inertials(body.parts) or self._inertial_for_massless(link),
-            visuals=(*_visuals(body, extensions), *extension.visuals),
-            collisions=(*_collisions(body, extensions), *extension.collisions),
+            visuals=(*_convert_visuals(body, extensions), *extension.visuals),
+            collisions=(*_convert_collisions(body, extensions), *extension.collisions),
             sensors=(*extension.sensors, *sensors),
             lights=(*extension.lights, *lights),
             gravity=extension.gravity and all(merged_extension.gravity for merged_extension in merged_extensions),
@@ -195,9 +195,9 @@ class _Converter:
             return RawPose()
         if body.joint.type in _SDF_JOINT_TYPES and body.joint.name not in self._robot.links:
             return RawPose(relative_to=body.joint.name)
-        return _pose_in_parent(body)
+        return _compute_pose_in_parent(body)
 
-    def _joint(self, body: Body, joint: urdf.Joint) -> Joint | None:
+    def _convert_joint(self, body: Body, joint: urdf.Joint) -> Joint | None:
         if joint.type not in _SDF_JOINT_TYPES:
             if joint.type == "planar" and joint.element is not None:
                 message = phrase(
@@ -209,7 +209,7 @@ class _Converter:
         extension = self._extensions.joint(joint, self._robot)
         kind, axis = _SDF_JOINT_TYPES[joint.type], None
         if kind != "fixed":
-            axis = _axis(joint, extension.axis or Axis())
+            axis = _convert_axis(joint, extension.axis or Axis())
         elif self._is_lumping and self._extensions.becomes_revolute(joint):
             kind, axis = "revolute", Axis(limit=AxisLimit(0.0, 0.0))
         if joint.name in self._robot.links and joint.element is not None:
@@ -222,12 +222,12 @@ class _Converter:
             type=kind,
             parent=body.parent,
             child=body.name,
-            pose=_pose_in_parent(body),
+            pose=_compute_pose_in_parent(body),
             axis=axis,
             element=joint.element,
         )
 
-    def _frames(self, body: Body) -> Iterator[Frame]:
+    def _convert_frames(self, body: Body) -> Iterator[Frame]:
         """Yield the frames that represent the lumped links of a body and their joints."""
         for part in body.parts[1:]:
             joint, link = part.joint, part.link
@@ -254,11 +254,11 @@ class _Converter:
                 self._report.warning("SDF171", message, sensor.element, hint=hint)
 
 
-def _pose_in_parent(body: Body) -> RawPose:
+def _compute_pose_in_parent(body: Body) -> RawPose:
     return RawPose(body.pose, MODEL if body.parent == WORLD else body.parent)
 
 
-def _in_body_frame(posed: _Posed, pose: Transform) -> _Posed:
+def _move_to_body_frame(posed: _Posed, pose: Transform) -> _Posed:
     """Return a sensor or light with its pose converted from its link to the link's body.
 
     A pose relative to a named frame is not changed.
@@ -268,7 +268,7 @@ def _in_body_frame(posed: _Posed, pose: Transform) -> _Posed:
     return replace(posed, pose=RawPose(pose_of(compose(pose, transform_of(posed.pose.pose)))))
 
 
-def _pose_in_body(pose: Pose, part: Part) -> RawPose:
+def _convert_to_body_frame(pose: Pose, part: Part) -> RawPose:
     """Convert a pose from the frame of a part to the frame of the body that contains it."""
     return RawPose(pose if part.joint is None else pose_of(compose(part.pose, transform_of(pose))))
 
@@ -285,33 +285,33 @@ def _combine_inertials(parts: Sequence[Part]) -> Inertial | None:
     return Inertial(first.mass, RawPose(first.origin), tensor, element=first.element)
 
 
-def _visuals(body: Body, extensions: Mapping[str, LinkExtension]) -> Iterator[Visual]:
+def _convert_visuals(body: Body, extensions: Mapping[str, LinkExtension]) -> Iterator[Visual]:
     visuals = ((part, visual) for part in body.parts for visual in part.link.visuals)
     for index, (part, visual) in enumerate(visuals):
         extension = extensions[part.link.name].visual
         yield replace(
             extension,
-            name=_shape_name(body, part, visual.name, "visual", index),
-            geometry=_shape(visual.geometry),
-            pose=_pose_in_body(visual.origin, part),
-            material=_material(visual.material, extension.material),
+            name=_make_shape_name(body, part, visual.name, "visual", index),
+            geometry=_convert_shape(visual.geometry),
+            pose=_convert_to_body_frame(visual.origin, part),
+            material=_convert_material(visual.material, extension.material),
             element=visual.element,
         )
 
 
-def _collisions(body: Body, extensions: Mapping[str, LinkExtension]) -> Iterator[Collision]:
+def _convert_collisions(body: Body, extensions: Mapping[str, LinkExtension]) -> Iterator[Collision]:
     collisions = ((part, collision) for part in body.parts for collision in part.link.collisions)
     for index, (part, collision) in enumerate(collisions):
         yield replace(
             extensions[part.link.name].collision,
-            name=_shape_name(body, part, collision.name, "collision", index),
-            geometry=_shape(collision.geometry),
-            pose=_pose_in_body(collision.origin, part),
+            name=_make_shape_name(body, part, collision.name, "collision", index),
+            geometry=_convert_shape(collision.geometry),
+            pose=_convert_to_body_frame(collision.origin, part),
             element=collision.element,
         )
 
 
-def _shape_name(body: Body, part: Part, shape_name: str, kind: str, count: int) -> str:
+def _make_shape_name(body: Body, part: Part, shape_name: str, kind: str, count: int) -> str:
     """Return the name of a visual or collision, as libsdformat forms it.
 
     Examples are ``wheel_visual``, ``wheel_visual_1`` and ``base_fixed_joint_lump__camera_visual_2``.
@@ -322,13 +322,13 @@ def _shape_name(body: Body, part: Part, shape_name: str, kind: str, count: int) 
     return name if name.startswith(body.name) else f"{body.name}{_LUMP_SEPARATOR}{name}"
 
 
-def _shape(geometry: urdf.Geometry) -> shapes.Shape:
+def _convert_shape(geometry: urdf.Geometry) -> shapes.Shape:
     if isinstance(geometry, urdf.Mesh):
         return shapes.Mesh(geometry.filename, geometry.scale)
     return geometry
 
 
-def _material(urdf_material: urdf.Material | None, extension: Material | None) -> Material | None:
+def _convert_material(urdf_material: urdf.Material | None, extension: Material | None) -> Material | None:
     """Return the material of a visual, or None if there is none.
 
     The colors and scripts of ``<gazebo>`` take precedence over the URDF material.
@@ -336,7 +336,7 @@ def _material(urdf_material: urdf.Material | None, extension: Material | None) -
     if (
         extension is not None
         and extension.script is not None
-        and (look := gazebo_look(extension.script.name)) is not None
+        and (look := find_gazebo_look(extension.script.name)) is not None
     ):
         return with_look(extension, look)
     if urdf_material is None or (extension is not None and (extension.diffuse or extension.ambient)):
@@ -344,18 +344,18 @@ def _material(urdf_material: urdf.Material | None, extension: Material | None) -
     sdf_material = extension or Material()
     if urdf_material.rgba is not None:
         red, green, blue, alpha = urdf_material.rgba
-        color = (_brightened(red), _brightened(green), _brightened(blue), alpha)
+        color = (_brighten(red), _brighten(green), _brighten(blue), alpha)
         sdf_material = replace(sdf_material, ambient=color, diffuse=color)
     if urdf_material.texture is not None and sdf_material.pbr is None:
         sdf_material = replace(sdf_material, pbr=Pbr(metal=Workflow(albedo_map=urdf_material.texture)))
     return sdf_material
 
 
-def _brightened(component: float) -> float:
+def _brighten(component: float) -> float:
     return min(max(component * _BRIGHTNESS_FACTOR, 0.0), 1.0)
 
 
-def _axis(joint: urdf.Joint, extension: Axis) -> Axis:
+def _convert_axis(joint: urdf.Joint, extension: Axis) -> Axis:
     """Return the axis of a joint, with the spring that its ``<gazebo>`` element sets."""
     limit, dynamics, mimic = AxisLimit(), extension.dynamics, None
     if joint.limit is not None:

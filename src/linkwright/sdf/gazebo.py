@@ -104,22 +104,22 @@ class Extensions:
 
         The model contains plugins, and links and joints that URDF cannot express.
         """
-        model_element = _element_at(robot.element, "model", robot.name)
+        model_element = _make_element_at(robot.element, "model", robot.name)
         for gazebo in self._by_name.get("", ()):
-            model_element.children += _sdf_children(gazebo)
+            model_element.children += _iterate_sdf_children(gazebo)
             self._add_old_tags(model_element, gazebo, _MODEL_TAGS, MODEL)
         model: Model = read_element(model_element, MODEL, self._report)
         return model
 
     def link(self, link: urdf.Link) -> LinkExtension:
         """Return the settings of a link, its visuals and its collisions."""
-        link_element = _element_at(link.element, "link", link.name)
+        link_element = _make_element_at(link.element, "link", link.name)
         visual, collision = (
-            _element_at(link.element, "visual", link.name),
-            _element_at(link.element, "collision", link.name),
+            _make_element_at(link.element, "visual", link.name),
+            _make_element_at(link.element, "collision", link.name),
         )
         for gazebo in self._by_name.get(link.name, ()):
-            link_element.children += _sdf_children(gazebo)
+            link_element.children += _iterate_sdf_children(gazebo)
             for shape, paths_by_tag, rule in ((visual, _VISUAL_TAGS, VISUAL), (collision, _COLLISION_TAGS, COLLISION)):
                 for element in gazebo.elements(shape.tag):
                     _merge_shape_settings(shape, element)
@@ -133,13 +133,13 @@ class Extensions:
 
     def joint(self, joint: urdf.Joint, robot: Robot) -> Joint:
         """Return an SDF joint with the sensors, spring and force feedback of a joint."""
-        joint_element = _element_at(joint.element, "joint", joint.name)
+        joint_element = _make_element_at(joint.element, "joint", joint.name)
         joint_element.attributes["type"] = "fixed"
         _set_text(joint_element, "parent", joint.parent, joint_element)
         _set_text(joint_element, "child", joint.child, joint_element)
         for gazebo in self._by_name.get(joint.name, ()):
             if joint.name not in robot.links:
-                joint_element.children += map(_copied_element, _sdf_children(gazebo))
+                joint_element.children += map(_copy_element, _iterate_sdf_children(gazebo))
             self._add_old_tags(joint_element, gazebo, _JOINT_TAGS, JOINT)
         sdf_joint: Joint = read_element(joint_element, JOINT, self._report)
         return sdf_joint
@@ -159,7 +159,7 @@ class Extensions:
 
     def _is_true(self, joint: urdf.Joint, tag: str) -> bool:
         elements = (element for gazebo in self._by_name.get(joint.name, ()) for element in gazebo.elements(tag))
-        return any(_tag_value(element).casefold() in _TRUE_VALUES for element in elements)
+        return any(_read_tag_value(element).casefold() in _TRUE_VALUES for element in elements)
 
     def _add_old_tags(self, sdf_element: Element, gazebo: Element, words: _PathsByTag, rule: ElementRule) -> None:
         """Add the SDF elements for the old tags in `gazebo` to an element.
@@ -168,15 +168,15 @@ class Extensions:
         """
         for old_element in gazebo.elements():
             for path in words.get(old_element.tag, ()):
-                value_rule, text = _rule_at(rule, path), _tag_value(old_element)
+                value_rule, text = _find_rule(rule, path), _read_tag_value(old_element)
                 assert value_rule.text is not None
                 if value_rule.text.type is TRUTH:
-                    text = _boolean_text(old_element.tag, text)
+                    text = _convert_boolean(old_element.tag, text)
                 try:
                     value_rule.text.type.read(text)
                 except ValueError:
                     self._report.malformed(
-                        _with_text(old_element, text),
+                        _copy_with_text(old_element, text),
                         replace(value_rule, tag=old_element.tag),
                         value_rule.text,
                         sdf_element,
@@ -187,14 +187,14 @@ class Extensions:
                     _set_text(sdf_element, "material/script/uri", _MATERIALS_URI, old_element)
 
 
-def _element_at(element: Element | None, tag: str, name: str) -> Element:
+def _make_element_at(element: Element | None, tag: str, name: str) -> Element:
     """Return a new SDF element with the source position of a URDF element."""
     if element is None:
         return Element(tag, {"name": name})
     return Element(tag, {"name": name}, element.source, element.offset, element.origin)
 
 
-def _sdf_children(gazebo: Element) -> Iterator[Element]:
+def _iterate_sdf_children(gazebo: Element) -> Iterator[Element]:
     """Yield the SDF child elements of ``<gazebo>``, without old tags, visuals and collisions."""
     return (element for element in gazebo.elements() if element.tag not in _OLD_TAGS and element.tag not in _SHAPE_TAGS)
 
@@ -207,12 +207,12 @@ def _merge_shape_settings(shape: Element, settings: Element) -> None:
     for element in settings.elements():
         if element.tag in ("surface", "material"):
             shape.children = [child for child in shape.elements() if child.tag != element.tag]
-        shape.children.append(_copied_element(element))
+        shape.children.append(_copy_element(element))
 
 
-def _copied_element(element: Element) -> Element:
+def _copy_element(element: Element) -> Element:
     copy = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
-    copy.children = [_copied_element(child) if isinstance(child, Element) else child for child in element.children]
+    copy.children = [_copy_element(child) if isinstance(child, Element) else child for child in element.children]
     return copy
 
 
@@ -230,18 +230,18 @@ def _set_text(ancestor: Element, path: str, text: str, source_element: Element) 
     ancestor.children[:] = [Text(text)]
 
 
-def _with_text(old_element: Element, text: str) -> Element:
+def _copy_with_text(old_element: Element, text: str) -> Element:
     element = Element(old_element.tag, None, old_element.source, old_element.offset, old_element.origin)
     element.children.append(Text(text))
     return element
 
 
-def _tag_value(old_element: Element) -> str:
+def _read_tag_value(old_element: Element) -> str:
     """Return the value of an old tag, from its attribute ``value`` or its text."""
     return old_element.attributes.get("value", old_element.text()).strip()
 
 
-def _boolean_text(tag: str, text: str) -> str:
+def _convert_boolean(tag: str, text: str) -> str:
     """Return the value of an old boolean tag as ``true`` or ``false``, as in SDF.
 
     Any other text becomes ``false``.
@@ -252,7 +252,7 @@ def _boolean_text(tag: str, text: str) -> str:
     return "true" if folded_text in _TRUE_VALUES else "false"
 
 
-def _rule_at(rule: ElementRule, path: str) -> ElementRule:
+def _find_rule(rule: ElementRule, path: str) -> ElementRule:
     for tag in path.split("/"):
         rule = rule.child_rules[tag]
     return rule

@@ -67,7 +67,7 @@ class _Named(Protocol):
     def name(self) -> str: ...
 
 
-def _names(*groups: Iterable[_Named]) -> set[str]:
+def _collect_names(*groups: Iterable[_Named]) -> set[str]:
     return {entity.name for group in groups for entity in group}
 
 
@@ -84,7 +84,7 @@ class _Resolver:
     def world(self, world: World, path: Path) -> World:
         models = [self.model(model, path, ()) for model in world.models]
         lights, actors, unresolved_includes = list(world.lights), list(world.actors), []
-        names = _names(models, world.frames, world.joints)
+        names = _collect_names(models, world.frames, world.joints)
         for include in world.includes:
             entity = self.entities[id(include.element)] = self._load_entity(include, path, ())
             self._check_name(entity, include, names)
@@ -115,7 +115,7 @@ class _Resolver:
         nested_models = [self.model(nested, path, chain) for nested in model.models]
         merged_models: list[tuple[Include, Model]] = []
         unresolved_includes = []
-        names = _names(model.links, model.joints, model.frames, nested_models)
+        names = _collect_names(model.links, model.joints, model.frames, nested_models)
         for include in model.includes:
             entity = self._load_entity(include, path, chain)
             if not include.merge:
@@ -148,7 +148,7 @@ class _Resolver:
         """
         if not include.uri:
             return None  # The reader has reported the missing address.
-        model_path = self._path(include.uri, path.parent)
+        model_path = self._find_model(include.uri, path.parent)
         if isinstance(model_path, Missing):
             message = phrase("'{uri}' is left out: {reason}", uri=include.uri, reason=model_path.reason)
             self._report("SDF160", message, include, model_path.hint, model_path.severity)
@@ -181,7 +181,7 @@ class _Resolver:
         )
         return None
 
-    def _path(self, uri: str, folder: Path) -> Path | Missing:
+    def _find_model(self, uri: str, folder: Path) -> Path | Missing:
         """Return the file of a model, which is searched for once."""
         key = uri, folder
         if key not in self._paths:

@@ -29,12 +29,12 @@ def has_more_links(data: bytes | str, limit: int) -> bool:
     counter = _Counter(limit)
     parser.StartElementHandler, parser.EndElementHandler = counter.begin, counter.end
     parser.EntityDeclHandler = counter.stop
-    with suppress(expat.ExpatError, _DoneError, LookupError, ValueError):
+    with suppress(expat.ExpatError, _CountingDoneError, LookupError, ValueError):
         parser.Parse(data, True)
     return counter.count > limit
 
 
-class _DoneError(Exception):
+class _CountingDoneError(Exception):
     """Raised to stop parsing when there is nothing more to count."""
 
 
@@ -48,14 +48,14 @@ class _Counter:
         if name in _COUNTED_TAGS and not self._skipped_depth:
             self.count += 1
             if self.count > self._limit:
-                raise _DoneError
+                raise _CountingDoneError
         self._skipped_depth += name not in _CONTAINER_TAGS
 
     def end(self, name: str) -> None:
         self._skipped_depth -= name not in _CONTAINER_TAGS
         if name == "world" and not self._skipped_depth:
-            raise _DoneError
+            raise _CountingDoneError
 
     def stop(self, *_arguments: object) -> None:
         """Stop counting at an entity declaration, because an entity may contain any text."""
-        raise _DoneError
+        raise _CountingDoneError

@@ -98,7 +98,7 @@ class Collision:
 
 @dataclass(frozen=True, slots=True)
 class Decay:
-    """Velocity damping: the fractions of linear and angular velocity that are lost in each step."""
+    """Velocity damping: the fractions of the velocities that are lost in each step."""
 
     linear: float = 0.0
     angular: float = 0.0

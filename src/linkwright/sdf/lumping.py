@@ -23,7 +23,7 @@ def lump_inertials(parts: Sequence[Part]) -> Inertial | None:
     mass. Source of these axes: libsdformat's URDF parser.
     """
     part_properties = [
-        _mass_properties(part.link.inertial).moved(pose_of(part.pose)) for part in parts if part.link.inertial
+        _compute_mass_properties(part.link.inertial).moved(pose_of(part.pose)) for part in parts if part.link.inertial
     ]
     if not part_properties:
         return None
@@ -41,7 +41,7 @@ def lump_inertials(parts: Sequence[Part]) -> Inertial | None:
     )
 
 
-def _mass_properties(inertial: urdf.Inertial) -> MassProperties:
+def _compute_mass_properties(inertial: urdf.Inertial) -> MassProperties:
     i = inertial
     tensor = np.array([[i.ixx, i.ixy, i.ixz], [i.ixy, i.iyy, i.iyz], [i.ixz, i.iyz, i.izz]])
     return MassProperties(i.mass, inertia=tensor).moved(i.origin)

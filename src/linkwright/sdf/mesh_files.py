@@ -20,7 +20,7 @@ def shapes_of(model: Model) -> Iterator[Visual | Collision]:
         yield from shapes_of(nested_model)
 
 
-def mesh_files(models: Iterable[Model], finder: ResourceFinder) -> tuple[Path, ...]:
+def find_mesh_files(models: Iterable[Model], finder: ResourceFinder) -> tuple[Path, ...]:
     """Return the existing mesh and heightmap files of models, without duplicates."""
     paths: dict[Path, None] = {}
     for shape in (model_shape for model in models for model_shape in shapes_of(model)):

@@ -1,4 +1,4 @@
-"""The elements ``<model>`` and ``<frame>``, and ``<include>`` for a model from another file.
+"""The elements ``<model>``, ``<frame>`` and ``<include>``.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``model.sdf``, ``frame.sdf``.
 """

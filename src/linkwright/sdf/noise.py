@@ -61,7 +61,7 @@ _NOISE_RULES = (
 )
 
 
-def _noise_of(type: str, old_type: str, **parameters: float) -> Noise:  # noqa: A002 - the attribute's name
+def _make_noise(type: str, old_type: str, **parameters: float) -> Noise:  # noqa: A002 - the attribute's name
     """Return the noise for the values in a ``<noise>`` element of any SDF version.
 
     In older files, the type is a child element, `old_type`. Numbers without a type mean Gaussian noise, as in Gazebo.
@@ -69,7 +69,7 @@ def _noise_of(type: str, old_type: str, **parameters: float) -> Noise:  # noqa: 
     return Noise(old_type or type or ("gaussian" if any(parameters.values()) else "none"), **parameters)
 
 
-def noise_rule() -> ElementRule:
+def make_noise_rule() -> ElementRule:
     """Return the rule of the element ``<noise>``."""
     return ElementRule(
         "noise",
@@ -79,16 +79,16 @@ def noise_rule() -> ElementRule:
             value("type", TEXT, "the type of noise, up to SDF 1.4", default="", field="old_type", get=never_written),
             *_NOISE_RULES,
         ),
-        make=_noise_of,
+        make=_make_noise,
         keeps_element=True,
         default=NO_NOISE,
         field="noise",
     )
 
 
-def wrapped_noise_rule(tag: str, meaning: str, target: str = "") -> ElementRule:
+def make_wrapped_noise_rule(tag: str, meaning: str, target: str = "") -> ElementRule:
     """Return the rule of an element that contains only ``<noise>``, such as ``<x>``."""
-    inner_rule = replace(noise_rule(), get=_same_noise)
+    inner_rule = replace(make_noise_rule(), get=_same_noise)
     return object_rule(_same_noise, tag, meaning, inner_rule, default=NO_NOISE, field=target or tag)
 
 
@@ -96,14 +96,14 @@ def _same_noise(noise: Noise) -> Noise:
     return noise
 
 
-def noise_xyz_rule(tag: str, meaning: str, default_noise: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
+def make_noise_xyz_rule(tag: str, meaning: str, default_noise: NoiseXyz | None = NO_NOISE_XYZ) -> ElementRule:
     """Return the rule of an element with noise for x, y and z.
 
     `default_noise` is the value of a missing element.
     """
     axis_rules = (
-        wrapped_noise_rule("x", "along x"),
-        wrapped_noise_rule("y", "along y"),
-        wrapped_noise_rule("z", "along z"),
+        make_wrapped_noise_rule("x", "along x"),
+        make_wrapped_noise_rule("y", "along y"),
+        make_wrapped_noise_rule("z", "along z"),
     )
     return object_rule(NoiseXyz, tag, meaning, *axis_rules, default=default_noise)

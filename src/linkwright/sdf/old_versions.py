@@ -44,20 +44,20 @@ def upgrade_element(element: Element, rule: ElementRule) -> Element:
     """
     new_element = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
     new_element.children = [
-        _upgraded_child(child, rule) if isinstance(child, Element) else child for child in element.children
+        _upgrade_child(child, rule) if isinstance(child, Element) else child for child in element.children
     ]
     existing_tags = {child.tag for child in new_element.elements()}
     for name, value in element.attributes.items():
         tag = _NEW_NAMES.get((rule.tag, name), name)
         if name not in rule.attribute_rules and tag in rule.child_rules and tag not in existing_tags:
-            new_element.children.append(_value_element(element, rule.child_rules[tag], value))
+            new_element.children.append(_make_value_element(element, rule.child_rules[tag], value))
     if rule.text is not None and not element.text().strip():
         value = next((element.attributes[name] for name in _VALUE_ATTRIBUTES if name in element.attributes), "")
         new_element.children.append(Text(value))
     return new_element
 
 
-def _upgraded_child(child: Element, rule: ElementRule) -> Node:
+def _upgrade_child(child: Element, rule: ElementRule) -> Node:
     tag = _NEW_NAMES.get((rule.tag, child.tag), child.tag)
     if child.tag == _ORIGIN and _POSE in child.attributes:
         tag = _POSE
@@ -69,11 +69,11 @@ def _upgraded_child(child: Element, rule: ElementRule) -> Node:
     return new_element
 
 
-def _value_element(element: Element, rule: ElementRule, value: str) -> Element:
+def _make_value_element(element: Element, rule: ElementRule, value: str) -> Element:
     """Return the new element, described by `rule`, that replaces an attribute of `element`."""
     new_element = Element(rule.tag, None, element.source, element.offset, element.origin)
     if "name" in rule.child_rules:
-        new_element.children.append(_value_element(element, rule.child_rules["name"], value))
+        new_element.children.append(_make_value_element(element, rule.child_rules["name"], value))
     else:
         new_element.children.append(Text(value))
     return new_element

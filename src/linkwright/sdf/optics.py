@@ -15,7 +15,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.sdf.cameras import Camera, Distortion
 
-_ITERATIONS = 20
+_MAX_ITERATIONS = 20
 """The number of fixed-point iterations to undistort a point."""
 _MAX_REACH = 2.0
 """The maximum distance from the principal point to an edge of the pinhole image, in sizes of the final image."""
@@ -45,14 +45,14 @@ class Optics:
 
     @cached_property
     def rays(self) -> Array:
-        """The direction (x, y, 1) of each pixel in the axes of the image, shape (height * width, 3)."""
+        """The direction (x, y, 1) of each pixel in image axes, shape (height * width, 3)."""
         column_slopes = (np.arange(self.width) + 0.5 - self.cx) / self.fx
         row_slopes = (np.arange(self.height) + 0.5 - self.cy) / self.fy
         x: Array
         y: Array
         x, y = (grid.ravel() for grid in np.meshgrid(column_slopes, row_slopes))
         if self.distortion is not None:
-            x, y = undistorted(self.distortion, x, y)
+            x, y = undistort(self.distortion, x, y)
         rays: Array = np.stack([x, y, np.ones_like(x)], axis=-1)
         return rays
 
@@ -149,7 +149,7 @@ class Optics:
         return pixels
 
 
-def optics_of(camera: Camera) -> Optics:
+def make_optics(camera: Camera) -> Optics:
     """Return the optics of an SDF camera."""
     width, height = max(camera.image.width, 1), max(camera.image.height, 1)
     clip = camera.clip
@@ -176,13 +176,13 @@ def distort(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
     return distorted_x, distorted_y
 
 
-def undistorted(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
+def undistort(lens: Distortion, x: Array, y: Array) -> tuple[Array, Array]:
     """Return x and y at z = 1 before the distortion of a lens.
 
     A fixed-point iteration computes them. Points for which it diverges are returned unchanged.
     """
     estimated_x, estimated_y = x.copy(), y.copy()
-    for _ in range(_ITERATIONS):
+    for _ in range(_MAX_ITERATIONS):
         distorted = distort(lens, estimated_x, estimated_y)
         estimated_x, estimated_y = estimated_x + (x - distorted[0]), estimated_y + (y - distorted[1])
     has_converged = (np.abs(estimated_x) < 10) & (np.abs(estimated_y) < 10)  # The comparison is false for NaN.

@@ -52,7 +52,7 @@ def library_name(filename: str) -> str:
     return _GZ_PREFIX.sub("gz-sim-", name.removeprefix("lib"))
 
 
-def original_library(class_name: str) -> str:
+def find_original_library(class_name: str) -> str:
     """Return the library that defines a class, derived from the namespace of the class.
 
     For the namespace ``ign_ros2_control`` it is ``ign_ros2_control-system``; for a class without a namespace it is

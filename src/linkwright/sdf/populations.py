@@ -64,7 +64,7 @@ class Population:
     element: Element | None = field(default=None, compare=False, repr=False)
 
 
-def models_of(population: Population) -> Iterator[Model]:
+def generate_models(population: Population) -> Iterator[Model]:
     """Yield the models of a population, named ``NAME_clone_0``, ``NAME_clone_1`` and so on.
 
     As in Gazebo, a population without a box or cylinder has no models unless it is a grid.

@@ -15,14 +15,14 @@ from linkwright.diagnostics import Diagnostic, did_you_mean, phrase
 from linkwright.schema import ElementRule, reader_of
 from linkwright.sdf.old_versions import is_old, upgrade_element
 from linkwright.sdf.poses import POSE, SEPARATOR, WORLD
-from linkwright.sdf.report import NEWEST, SdfReport
-from linkwright.sdf.unread import changes_nothing, links_of_static_models
+from linkwright.sdf.report import NEWEST_VERSION, SdfReport
+from linkwright.sdf.unread import changes_nothing, find_static_links
 from linkwright.sdf.worlds import SDF, Sdf
 from linkwright.xmltree import Document, Element
 
-_OLD_ROOT = "gazebo"
+_OLD_ROOT_TAG = "gazebo"
 """The tag of the root element in SDF 1.0 to 1.2."""
-_FRAME = "frame"
+_FRAME_TAG = "frame"
 """The child element that any element with a pose could have in SDF 1.5 and 1.6."""
 _VERSION = re.compile(r"1\.([0-9]{1,2})").fullmatch
 _NEWEST_FLAT_MINOR = 7
@@ -39,7 +39,7 @@ _OTHER_FORMATS = {
     "launch": phrase("a launch file"),
 }
 
-WITHOUT_EFFECT = {
+TAGS_WITHOUT_EFFECT = {
     "actor": {"static"},
     "world": {"audio", "gui"},
     "physics": {"bullet", "dart", "dt", "magnetic_field", "ode", "profile", "simbody", "update_rate"},
@@ -104,7 +104,7 @@ WITHOUT_EFFECT = {
     "metal": {"subsurface"},
 }
 """Child elements, by their parent, that Linkwright recognizes but ignores, and those that ros2_control reads itself."""
-OPEN = frozenset({"plugin", "gui", "state"})
+OPEN_TAGS = frozenset({"plugin", "gui", "state"})
 """Elements with content of other programs, and the state saved by Gazebo."""
 
 
@@ -128,11 +128,11 @@ def read(document: Document) -> Reading:
     """
     report = SdfReport()
     root = document.root
-    if root.tag != "sdf" and not (root.tag == _OLD_ROOT and "version" in root.attributes):
+    if root.tag != "sdf" and not (root.tag == _OLD_ROOT_TAG and "version" in root.attributes):
         _explain_root(root, report)
         return Reading(None, report.in_order())
     _check_version(root, report)
-    report.is_of_classic = _minor(root) <= _NEWEST_LENIENT_MINOR
+    report.is_of_classic = _find_minor_version(root) <= _NEWEST_LENIENT_MINOR
     if is_too_deep(root, report):
         return Reading(None, report.in_order())
     sdf: Sdf = read_element(upgrade_element(root, SDF) if is_old(root) else root, SDF, report)
@@ -147,10 +147,10 @@ def read_element(element: Element, rule: ElementRule, report: SdfReport) -> Any:
 
     The caller must first check the element with `is_too_deep`.
     """
-    content = reader_of(rule, NEWEST).read(element, element, report)
+    content = reader_of(rule, NEWEST_VERSION).read(element, element, report)
     allows_separators = _allows_separators(element)
-    known_elements = list(_known_elements(element, rule))
-    static_links = links_of_static_models(known_element for known_element, _ in known_elements)
+    known_elements = list(_iterate_known_elements(element, rule))
+    static_links = find_static_links(known_element for known_element, _ in known_elements)
     for nested_element, nested_rule in known_elements:
         _check_names(nested_element, report, flat=allows_separators)
         unread_children = [
@@ -190,7 +190,7 @@ def _check_version(root: Element, report: SdfReport) -> None:
     if version_text is None:
         return  # The reader reports a missing version.
     version_match = _VERSION(version_text.strip())
-    if version_match and int(version_match[1]) <= NEWEST[1]:
+    if version_match and int(version_match[1]) <= NEWEST_VERSION[1]:
         return
     message = phrase("SDF version '{version}' does not exist", version=version_text)
     hint = phrase("use a version from 1.0 to 1.12; the file is read as 1.12")
@@ -208,15 +208,15 @@ def _find_too_deep(root: Element) -> Element | None:
     return None
 
 
-def _known_elements(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementRule]]:
+def _iterate_known_elements(root: Element, rule: ElementRule) -> Iterator[tuple[Element, ElementRule]]:
     """Yield an element and its known descendants in document order, each with its rule.
 
-    The elements in `OPEN` and their content are left out.
+    The elements in `OPEN_TAGS` and their content are left out.
     """
     pending = [(root, rule)]
     while pending:
         element, rule = pending.pop()
-        if rule.tag in OPEN:
+        if rule.tag in OPEN_TAGS:
             continue
         yield element, rule
         rules = rule.child_rules
@@ -230,7 +230,7 @@ def _is_ignored(element: Element, rule: ElementRule) -> bool:
     Such elements have a namespace prefix, or are valid SDF that has no effect here.
     """
     tag = element.tag
-    return ":" in tag or tag in WITHOUT_EFFECT.get(rule.tag, ()) or (tag == _FRAME and POSE in rule.children)
+    return ":" in tag or tag in TAGS_WITHOUT_EFFECT.get(rule.tag, ()) or (tag == _FRAME_TAG and POSE in rule.children)
 
 
 def _allows_separators(root: Element) -> bool:
@@ -238,13 +238,13 @@ def _allows_separators(root: Element) -> bool:
 
     Up to SDF 1.7, the links of an included model became links of the including model, with such names.
     """
-    return _minor(root) <= _NEWEST_FLAT_MINOR
+    return _find_minor_version(root) <= _NEWEST_FLAT_MINOR
 
 
-def _minor(root: Element) -> int:
+def _find_minor_version(root: Element) -> int:
     """Return the minor number of a file's SDF version, or else the newest one."""
     version_match = _VERSION(root.attributes.get("version", "").strip())
-    return NEWEST[1] if version_match is None else int(version_match[1])
+    return NEWEST_VERSION[1] if version_match is None else int(version_match[1])
 
 
 def _check_names(element: Element, report: SdfReport, *, flat: bool) -> None:

@@ -40,7 +40,7 @@ def _check_owner(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
         yield from _check_pose(posed_element.pose, posed_element.element, frames)
     for frame in owner.frames:
         if frame.attached_to and not _is_known(frame.attached_to, frames):
-            yield _missing_frame(frame.element, "attached_to", frame.attached_to, frames)
+            yield _make_missing_frame_error(frame.element, "attached_to", frame.attached_to, frames)
     for link in links:
         link_children: tuple[Visual | Collision | Sensor | Light, ...] = (
             *link.visuals,
@@ -55,7 +55,7 @@ def _check_owner(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
                 for diagnostic in _check_pose(link_child.pose, link_child.element, frames)
             )
     for joint in owner.joints:
-        yield from _joint(joint, frames)
+        yield from _check_joint(joint, frames)
     yield from _check_cycles((*owner.frames, *links, *owner.joints, *owner.models), frames)
     for model in owner.models:
         if frames.elements_by_name.get(model.name) is model:
@@ -64,15 +64,15 @@ def _check_owner(owner: World | Model, frames: Frames) -> Iterator[Diagnostic]:
 
 def _check_model(model: Model, frames: Frames) -> Iterator[Diagnostic]:
     if not (model.links or model.models or model.includes or model.static):
-        message = phrase("{element} has no links", element=_description(model.element))
-        yield _error("SDF132", message, model.element, hint=phrase("add a <link>, or make the model static"))
+        message = phrase("{element} has no links", element=_describe(model.element))
+        yield _make_error("SDF132", message, model.element, hint=phrase("add a <link>, or make the model static"))
     for attribute in ("canonical_link", "placement_frame"):
         name = getattr(model, attribute)
         if name and not _is_known(name, frames):
-            yield _missing_frame(model.element, attribute, name, frames)
+            yield _make_missing_frame_error(model.element, attribute, name, frames)
 
 
-def _joint(joint: Joint, frames: Frames) -> Iterator[Diagnostic]:
+def _check_joint(joint: Joint, frames: Frames) -> Iterator[Diagnostic]:
     for end_tag in ("parent", "child"):
         name = getattr(joint, end_tag)
         if not name or (name == WORLD and end_tag == "parent") or _is_known(name, frames):
@@ -81,19 +81,21 @@ def _joint(joint: Joint, frames: Frames) -> Iterator[Diagnostic]:
         message = phrase(
             "<{tag}> of {owner} refers to '{name}', which does not exist",
             tag=end_tag,
-            owner=_description(joint.element),
+            owner=_describe(joint.element),
             name=name,
         )
-        yield _error("SDF140", message, element or joint.element, hint=did_you_mean(name, _link_candidates(frames)))
+        yield _make_error(
+            "SDF140", message, element or joint.element, hint=did_you_mean(name, _list_link_candidates(frames))
+        )
     if joint.parent and joint.parent == joint.child:
-        message = phrase("{owner} connects '{name}' to itself", owner=_description(joint.element), name=joint.child)
-        yield _error("SDF140", message, joint.element)
+        message = phrase("{owner} connects '{name}' to itself", owner=_describe(joint.element), name=joint.child)
+        yield _make_error("SDF140", message, joint.element)
     yield from _check_pose(joint.pose, joint.element, frames)
     for axis, tag in ((joint.axis, "axis"), (joint.axis2, "axis2")):
         if axis is not None and axis.expressed_in and not _is_known(axis.expressed_in, frames):
             element = joint.element.first(tag) if joint.element is not None else None
             xyz = element.first("xyz") if element is not None else None
-            yield _missing_frame(xyz, "expressed_in", axis.expressed_in, frames)
+            yield _make_missing_frame_error(xyz, "expressed_in", axis.expressed_in, frames)
 
 
 def _check_pose(pose: RawPose | None, element: Element | None, frames: Frames) -> Iterator[Diagnostic]:
@@ -101,7 +103,7 @@ def _check_pose(pose: RawPose | None, element: Element | None, frames: Frames) -
         return
     pose_element = element.first("pose") if element is not None else None
     attribute = "relative_to" if pose_element is not None and "relative_to" in pose_element.attributes else "frame"
-    yield _missing_frame(pose_element, attribute, pose.relative_to, frames)
+    yield _make_missing_frame_error(pose_element, attribute, pose.relative_to, frames)
 
 
 def _check_cycles(elements: tuple[Frame | Link | Joint | Model, ...], frames: Frames) -> Iterator[Diagnostic]:
@@ -114,7 +116,7 @@ def _check_cycles(elements: tuple[Frame | Link | Joint | Model, ...], frames: Fr
         reported.add(frozenset(cycle))
         message = phrase("the poses of these frames depend on each other in a cycle: {value}", value=" -> ".join(cycle))
         first_element = frames.elements_by_name.get(cycle[0])
-        yield _error(
+        yield _make_error(
             "SDF142",
             message,
             (first_element or element).element,
@@ -142,23 +144,23 @@ def _is_known(name: str, frames: Frames) -> bool:
     return bool(frames.owner.includes)
 
 
-def _missing_frame(element: Element | None, attribute: str, name: str, frames: Frames) -> Diagnostic:
+def _make_missing_frame_error(element: Element | None, attribute: str, name: str, frames: Frames) -> Diagnostic:
     message = phrase("'{attribute}' refers to '{name}', which does not exist", attribute=attribute, name=name)
     hint = did_you_mean(name, frames.elements_by_name) or phrase(
         "choose from {names}", names=joined([*frames.elements_by_name][:8] or [MODEL])
     )
-    return _error("SDF141", message, element, attribute, hint)
+    return _make_error("SDF141", message, element, attribute, hint)
 
 
-def _link_candidates(frames: Frames) -> list[str]:
+def _list_link_candidates(frames: Frames) -> list[str]:
     return [name for name, element in frames.elements_by_name.items() if not isinstance(element, Joint)]
 
 
-def _description(element: Element | None) -> Phrase:
+def _describe(element: Element | None) -> Phrase:
     return phrase("a model") if element is None else describe_element(element)
 
 
-def _error(
+def _make_error(
     code: str, message: Phrase, element: Element | None, attribute: str | None = None, hint: Phrase | None = None
 ) -> Diagnostic:
     if element is None:

@@ -9,29 +9,29 @@ from typing import Any
 from linkwright.diagnostics import Note, Phrase, Severity, counted, did_you_mean, joined, nearest, phrase, term
 from linkwright.schema import UNREADABLE, AttributeRule, ElementRule
 from linkwright.sdf.poses import WORLD
-from linkwright.sdf.unread import allowed_parents
+from linkwright.sdf.unread import find_allowed_parents
 from linkwright.sdf.values import (
-    COUNTS,
     INTEGER,
     NUMBER,
+    NUMBER_COUNTS,
     TIME,
     TRUTH,
     VECTOR2,
     VECTOR3,
-    leading_number,
-    leading_numbers,
-    numbers,
+    parse_leading_number,
+    parse_leading_numbers,
+    parse_numbers,
 )
 from linkwright.urdf.report import Findings
 from linkwright.urdf.values import number_hint, vector_hint
 from linkwright.xmltree import Element
 
-NEWEST = (1, 12)
+NEWEST_VERSION = (1, 12)
 """The newest supported version of SDF. Older files are read with its rules, as in libsdformat."""
 
 
 def describe_element(element: Element) -> Phrase:
-    """Return a description of an element for messages, such as ``link 'chassis'`` or ``<pose>``."""
+    """Return the description of an element for messages, such as ``link 'chassis'``."""
     name = element.attributes.get("name")
     if name is None:
         return phrase("<{tag}>", tag=element.tag)
@@ -44,7 +44,7 @@ class SdfReport(Findings):
     __slots__ = ("_misspelled", "is_of_classic")
 
     def __init__(self) -> None:
-        super().__init__(NEWEST)
+        super().__init__(NEWEST_VERSION)
         self.is_of_classic = False
         """Whether the SDF version is older than 1.7. Gazebo classic accepts more than newer libsdformat."""
         self._misspelled: list[Element] = []
@@ -78,17 +78,19 @@ class SdfReport(Findings):
         is_text = attribute is rule.text
         text = element.text().strip() if is_text else element.attributes[attribute.name]
         message, hint = _explain_value(_describe_location(element, rule, attribute, owner), text, attribute, element)
-        number = leading_number(text) if attribute.type in (NUMBER, INTEGER) else None
+        number = parse_leading_number(text) if attribute.type in (NUMBER, INTEGER) else None
         if number is not None and isfinite(number):
             self.warning("SDF121", message, element, None if is_text else attribute.name, hint=hint)
             return int(number) if attribute.type is INTEGER else number
-        if attribute.type in (VECTOR2, VECTOR3) and (vector := leading_numbers(text, COUNTS[attribute.type])):
+        if attribute.type in (VECTOR2, VECTOR3) and (
+            vector := parse_leading_numbers(text, NUMBER_COUNTS[attribute.type])
+        ):
             self.warning("SDF121", message, element, None if is_text else attribute.name, hint=hint)
             return vector
         if (
             self.is_of_classic
-            and attribute.type in COUNTS
-            and (completed_text := _with_missing_zeros(text, COUNTS[attribute.type]))
+            and attribute.type in NUMBER_COUNTS
+            and (completed_text := _append_zeros(text, NUMBER_COUNTS[attribute.type]))
         ):
             note = Note(phrase("Gazebo classic reads missing numbers as 0, but newer Gazebo versions reject the file"))
             self.warning("SDF121", message, element, None if is_text else attribute.name, notes=(note,), hint=hint)
@@ -149,7 +151,7 @@ class SdfReport(Findings):
                 continue
             if hint is None:
                 parent_tags = [
-                    f"<{parent_tag}>" for parent_tag in allowed_parents(element.tag) if parent_tag != rule.tag
+                    f"<{parent_tag}>" for parent_tag in find_allowed_parents(element.tag) if parent_tag != rule.tag
                 ]
                 hint = phrase("put it directly in {tags}", tags=" or ".join(parent_tags)) if parent_tags else None
             if hint is not None:
@@ -198,13 +200,13 @@ class SdfReport(Findings):
         self._add(severity, "SDF110", message, element, "name", phrase("give each of them a different name"), notes)
 
 
-def _with_missing_zeros(text: str, count: int) -> str:
+def _append_zeros(text: str, count: int) -> str:
     """Return a text with zeros appended for missing numbers.
 
     The result is empty if no number is missing or a number is invalid.
     """
     try:
-        values = numbers(text)
+        values = parse_numbers(text)
     except ValueError:
         return ""
     return f"{text} {'0 ' * (count - len(values))}" if 0 < len(values) < count else ""
@@ -232,8 +234,8 @@ def _explain_value(
 ) -> tuple[Phrase, Phrase | None]:
     """Return the message and the hint, or None, for an invalid value of an attribute."""
     values = {"subject": subject, "value": text}
-    if attribute.type in COUNTS:
-        return _explain_numbers(values, text, COUNTS[attribute.type], element)
+    if attribute.type in NUMBER_COUNTS:
+        return _explain_numbers(values, text, NUMBER_COUNTS[attribute.type], element)
     if attribute.type is TRUTH:
         return phrase("{subject} must be true or false, not '{value}'", **values), phrase("write true or false")
     if attribute.type in (NUMBER, TIME):
@@ -249,10 +251,10 @@ def _explain_numbers(values: dict[str, Any], text: str, count: int, element: Ele
     is_quaternion = element.attributes.get("rotation_format") == "quat_xyzw"
     count += is_quaternion
     try:
-        found_count = len(numbers(text))
+        found_count = len(parse_numbers(text))
     except ValueError:
         return phrase("{subject} is not {count} numbers: '{value}'", **values, count=count), vector_hint(text, count)
-    if found_count == count and not all(map(isfinite, numbers(text))):
+    if found_count == count and not all(map(isfinite, parse_numbers(text))):
         return phrase("{subject} is not {count} numbers: '{value}'", **values, count=count), None
     if found_count == count:
         return phrase("the quaternion in {subject} has length zero: '{value}'", **values), phrase(

@@ -17,10 +17,10 @@ from urllib.parse import unquote, urlsplit
 from linkwright.diagnostics import LinkwrightError, Phrase, Severity, did_you_mean, joined, phrase, quoted
 from linkwright.diagnostics.misspellings import find_misspelled
 from linkwright.packages import PackageFinder, enclosing_package
-from linkwright.packages.finder import shipped_folder
+from linkwright.packages.finder import find_shipped_folder
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
-from linkwright.packages.uri import absolute_path
+from linkwright.packages.uri import parse_absolute_path
 from linkwright.xmltree.reader import parse_file
 
 SEARCH_VARIABLES = (
@@ -32,7 +32,7 @@ SEARCH_VARIABLES = (
 )
 """The environment variables that list folders with models and their files, in the order of the search."""
 
-CONFIG = "model.config"
+MODEL_CONFIG = "model.config"
 _MODEL_FILE = "model.sdf"
 _WORLD_SUFFIXES = (".world", ".sdf")
 _OWN_MODELS_FOLDER = Path(__file__).parent / "models"
@@ -115,7 +115,7 @@ class ResourceFinder:
             return self._find_model_uri(address, unquote(path_after_scheme).lstrip("/"), nearby_file)
         if scheme in ("http", "https"):
             return self._find_in_cache(address)
-        if scheme == "file" and absolute_path(f"//{path_after_scheme}") is None:
+        if scheme == "file" and parse_absolute_path(f"//{path_after_scheme}") is None:
             return self._find_file_uri(address, unquote(path_after_scheme), nearby_file)
         try:
             path = self._packages.resolve(address, nearby_file)
@@ -123,7 +123,7 @@ class ResourceFinder:
             suggested_scheme = find_misspelled(scheme, _SCHEMES)
             hint = error.diagnostics[0].hint if suggested_scheme is None else did_you_mean(scheme, [suggested_scheme])
             return Missing(error.diagnostics[0].message, hint)
-        return path if path.exists() else _no_file(path)
+        return path if path.exists() else _explain_missing_file(path)
 
     def model(self, address: str, nearby_file: Path) -> Path | Missing:
         """Return the SDF file for a model's URI, or the reason why there is none.
@@ -133,7 +133,7 @@ class ResourceFinder:
         path = self.file(address, nearby_file)
         if isinstance(path, Missing) or not path.is_dir():
             return path
-        return model_file(path)
+        return find_model_file(path)
 
     def models(self) -> dict[str, Path]:
         """Return the folders of all models on the search path, by name.
@@ -179,7 +179,7 @@ class ResourceFinder:
         The name is a path, a ``file://`` address or a name on the search path.
         """
         file = name.removeprefix("file://")
-        path = Path(file if file == name else absolute_path(f"//{file}") or file).expanduser()
+        path = Path(file if file == name else parse_absolute_path(f"//{file}") or file).expanduser()
         if path.is_file():
             return path
         known_worlds = {} if "/" in name else self.worlds()
@@ -197,9 +197,9 @@ class ResourceFinder:
                     yield Path(folder)
         shares = self._packages.packages()
         for share in shares.values():
-            yield from exported_folders(share, "gazebo_model_path")
-            yield from exported_folders(share, "gazebo_media_path")
-            yield from hooked_folders(share)
+            yield from find_exported_folders(share, "gazebo_model_path")
+            yield from find_exported_folders(share, "gazebo_media_path")
+            yield from find_hooked_folders(share)
         for share in shares.values():
             yield share.parent
         for share in shares.values():
@@ -212,7 +212,9 @@ class ResourceFinder:
             if Path(path).is_absolute()
             else [nearby_file / path, *(folder / path for folder in self._folders)]
         )
-        return next((candidate for candidate in candidates if candidate.exists()), None) or _no_file(candidates[0])
+        return next((candidate for candidate in candidates if candidate.exists()), None) or _explain_missing_file(
+            candidates[0]
+        )
 
     def _find_file_uri(self, address: str, path: str, nearby_file: Path) -> Path | Missing:
         parent_folders = (folder.parent for folder in self._folders)
@@ -234,7 +236,7 @@ class ResourceFinder:
         if not path:
             return Missing(phrase("'{uri}' does not name a model", uri=address), phrase("write model://MODEL"))
         if nearby_file not in self._nearby_folders:
-            self._nearby_folders[nearby_file] = _around(nearby_file.absolute())
+            self._nearby_folders[nearby_file] = _list_folders_around(nearby_file.absolute())
         nearby_folders = self._nearby_folders[nearby_file]
         for folder in (
             *self._folders,
@@ -247,8 +249,8 @@ class ResourceFinder:
                 return candidate
         name, _, path_in_model = path.partition("/")
         for folder in self._folders:
-            if (folder / name).is_dir() and (_is_ours(nearby_file) or not _is_ours(folder)):
-                return _no_file(folder / path)
+            if (folder / name).is_dir() and (_is_own_model(nearby_file) or not _is_own_model(folder)):
+                return _explain_missing_file(folder / path)
         reason = phrase("there is no model '{name}' on the search path", name=name)
         renamed_folder = next(
             (path for path in nearby_folders[:2] if path_in_model and (path / path_in_model).exists()), None
@@ -278,9 +280,9 @@ class ResourceFinder:
         if len(parts) < 3 or parts[1] not in ("models", "worlds"):
             return Missing(phrase("'{uri}' is not the address of a model", uri=address), None)
         owner, kind, name, *version_and_file = parts
-        for cache in fuel_caches(self._environment):
+        for cache in list_fuel_caches(self._environment):
             model_folder = cache / host / owner.lower() / kind / name.lower()
-            cached_path = _version_in(model_folder, version_and_file)
+            cached_path = _find_version(model_folder, version_and_file)
             if cached_path is not None and cached_path.exists():
                 return cached_path
         own_model = _SUN_AND_GROUND.get(name.lower())
@@ -293,7 +295,7 @@ class ResourceFinder:
         return Missing(phrase("the Fuel model '{name}' is not in the cache", name=name), hint, Severity.INFO)
 
 
-def fuel_caches(environment: Mapping[str, str]) -> Iterator[Path]:
+def list_fuel_caches(environment: Mapping[str, str]) -> Iterator[Path]:
     """Yield gz's folders of downloaded models, which may not exist."""
     cache_path = environment.get("GZ_FUEL_CACHE_PATH") or environment.get("IGN_FUEL_CACHE_PATH")
     if cache_path:
@@ -303,10 +305,10 @@ def fuel_caches(environment: Mapping[str, str]) -> Iterator[Path]:
 
 
 def _is_model(folder: Path) -> bool:
-    return (folder / CONFIG).is_file() or (folder / _MODEL_FILE).is_file()
+    return (folder / MODEL_CONFIG).is_file() or (folder / _MODEL_FILE).is_file()
 
 
-def _around(folder: Path) -> tuple[Path, ...]:
+def _list_folders_around(folder: Path) -> tuple[Path, ...]:
     """Return a folder and its parents, up to the folder of its package.
 
     Outside of a package, return the folder and one parent.
@@ -317,14 +319,14 @@ def _around(folder: Path) -> tuple[Path, ...]:
     return folders[: last_index + 1]
 
 
-def model_file(folder: Path) -> Path | Missing:
+def find_model_file(folder: Path) -> Path | Missing:
     """Return the SDF file in a model's folder, or the reason why there is none.
 
     The file is the one with the newest supported version in ``model.config``, or else ``model.sdf``.
     """
     newest: tuple[int, Path] | None = None
     with suppress(LinkwrightError):
-        for element in parse_file(folder / CONFIG).root.elements("sdf"):
+        for element in parse_file(folder / MODEL_CONFIG).root.elements("sdf"):
             version = re.fullmatch(r"1\.([0-9]+)", element.attributes.get("version", "1.0").strip())
             minor = int(version[1]) if version else 0
             path = folder / element.text().strip()
@@ -336,7 +338,7 @@ def model_file(folder: Path) -> Path | Missing:
     if path.is_file():
         return path
     template = next((path for path in sorted(folder.glob("*.sdf.*")) if path.suffix in _TEMPLATE_SUFFIXES), None)
-    return _no_file(path) if template is None else _missing_template_output(template, path)
+    return _explain_missing_file(path) if template is None else _explain_template_output(template, path)
 
 
 def _contains_world(file: Path) -> bool:
@@ -344,7 +346,7 @@ def _contains_world(file: Path) -> bool:
     return b"<world" in file.read_bytes()
 
 
-def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
+def find_exported_folders(share: Path, attribute: str) -> Iterator[Path]:
     """Yield the folders that a package exports to Gazebo in its ``package.xml``.
 
     `attribute` is the attribute of ``<gazebo_ros>`` that lists these folders. ``${prefix}`` in a folder is replaced
@@ -363,7 +365,7 @@ def exported_folders(share: Path, attribute: str) -> Iterator[Path]:
                     yield Path(os.path.normpath(folder.replace("${prefix}", str(share))))
 
 
-def hooked_folders(share: Path) -> Iterator[Path]:
+def find_hooked_folders(share: Path) -> Iterator[Path]:
     """Yield the folders that a package's environment hooks add to `SEARCH_VARIABLES`.
 
     The templates of hooks in the sources of the package are also read. Source: ``ament_environment_hooks`` and the
@@ -377,7 +379,7 @@ def hooked_folders(share: Path) -> Iterator[Path]:
                     yield Path(os.path.normpath(share.parent / (path_match["path"] or "")))
 
 
-def _version_in(model_folder: Path, version_and_file: list[str]) -> Path | None:
+def _find_version(model_folder: Path, version_and_file: list[str]) -> Path | None:
     """Return the folder or file in a cached model that the rest of a Fuel address names.
 
     Without a version, or with ``tip``, the newest version is used. Return None if no version is cached.
@@ -404,12 +406,12 @@ def _normalized_suffix(path: Path) -> str:
     return ".sdf" if suffix == ".world" else suffix
 
 
-def _is_ours(folder: Path) -> bool:
+def _is_own_model(folder: Path) -> bool:
     """Return whether a folder belongs to the models of this program.
 
     These models replace models of Gazebo, but have fewer files.
     """
-    shipped = shipped_folder()
+    shipped = find_shipped_folder()
     return folder.is_relative_to(_OWN_MODELS_FOLDER) or (
         shipped is not None and folder.absolute().is_relative_to(shipped)
     )
@@ -422,18 +424,18 @@ def _find_in_other_case(path: Path) -> Path | None:
     return None
 
 
-def _missing_template_output(template: Path, path: Path) -> Missing:
+def _explain_template_output(template: Path, path: Path) -> Missing:
     hint = phrase("the build creates it from '{name}'", name=template.name)
     return Missing(phrase("'{path}' does not exist", path=str(path)), hint, Severity.INFO)
 
 
-def _no_file(path: Path) -> Missing:
+def _explain_missing_file(path: Path) -> Missing:
     template = next(
         (entry for entry in (path.with_name(path.name + suffix) for suffix in _TEMPLATE_SUFFIXES) if entry.is_file()),
         None,
     )
     if template is not None:
-        return _missing_template_output(template, path)
+        return _explain_template_output(template, path)
     hint = None
     with suppress(OSError):
         kind = _normalized_suffix(path)

@@ -32,12 +32,14 @@ def with_saved_state(world: World) -> World:
     light_poses = {light_state.name: light_state.pose for light_state in state.lights if light_state.pose is not None}
     return replace(
         world,
-        models=tuple(_with_state(model, model_states.get(model.name), _world_pose(frames, model)) for model in models),
+        models=tuple(
+            _with_state(model, model_states.get(model.name), _compute_world_pose(frames, model)) for model in models
+        ),
         lights=tuple(replace(light, pose=light_poses.get(light.name, light.pose)) for light in lights),
     )
 
 
-def _world_pose(frames: Frames, model: Model) -> Transform:
+def _compute_world_pose(frames: Frames, model: Model) -> Transform:
     try:
         return frames.pose(model.name)
     except FrameError:

@@ -89,16 +89,16 @@ _BUILT_IN_LOOKS = {
     "ZincYellow": _uniform_look(0.9725, 0.9529, 0.2078),
 }
 """Gazebo's built-in materials by name without prefix. Textured materials have the approximate color of their image."""
-_PREFIX = "Gazebo/"
+_GAZEBO_PREFIX = "Gazebo/"
 _MAX_SCRIPT_BYTES = 1_000_000
 """The maximum size of a script in bytes. The script with Gazebo's materials has 19 000."""
 _TOKENS = re.compile(r"//[^\n]*|/\*.*?\*/|\{|\}|\n|[^\s{}]+", re.DOTALL)
-_COLORS = ("ambient", "diffuse", "specular", "emissive")
+_COLOR_NAMES = ("ambient", "diffuse", "specular", "emissive")
 
 
-def gazebo_look(name: str) -> Look | None:
+def find_gazebo_look(name: str) -> Look | None:
     """Return the look of a built-in material of Gazebo, such as ``Gazebo/Grey``, or None."""
-    return _BUILT_IN_LOOKS.get(name.removeprefix(_PREFIX)) if name.startswith(_PREFIX) else None
+    return _BUILT_IN_LOOKS.get(name.removeprefix(_GAZEBO_PREFIX)) if name.startswith(_GAZEBO_PREFIX) else None
 
 
 def with_look(material: Material, look: Look) -> Material:
@@ -116,12 +116,12 @@ def with_look(material: Material, look: Look) -> Material:
     )
 
 
-def appearance(material: Material) -> tuple[Color | None, str]:
+def find_appearance(material: Material) -> tuple[Color | None, str]:
     """Return the color of a material or None, and the address of its color image or ``""``.
 
     Material scripts were read with the world. For a model from text, only Gazebo's own material names are known here.
     """
-    gazebo_material = gazebo_look(material.script.name) if material.script else None
+    gazebo_material = find_gazebo_look(material.script.name) if material.script else None
     if gazebo_material is not None:
         material = with_look(material, gazebo_material)
     workflow = material.pbr and (material.pbr.metal or material.pbr.specular)
@@ -130,7 +130,7 @@ def appearance(material: Material) -> tuple[Color | None, str]:
 
 
 def with_scripts(sdf: Sdf, finder: ResourceFinder) -> Sdf:
-    """Return the content of a file with its materials completed from the scripts that they name.
+    """Return the content of a file with its materials completed from scripts.
 
     Args:
         sdf: the content of the file, with its includes resolved.
@@ -166,11 +166,11 @@ class _ScriptLibrary:
         folder = Path() if source is None else Path(source.name).parent
         paths = {uri: self._finder.file(uri.strip(), folder) for uri in script.uris if uri and uri.strip()}
         existing_paths = {uri: path for uri, path in paths.items() if not isinstance(path, Missing)}
-        for file in (file for existing_path in existing_paths.values() for file in _script_files(existing_path)):
+        for file in (file for existing_path in existing_paths.values() for file in _list_script_files(existing_path)):
             look = self._read(file).get(script.name)
             if look is not None:
-                return look._replace(image=_image(look.image, file, existing_paths))
-        return gazebo_look(script.name)
+                return look._replace(image=_find_image(look.image, file, existing_paths))
+        return find_gazebo_look(script.name)
 
     def _read(self, file: Path) -> dict[str, Look]:
         if file not in self._files:
@@ -181,7 +181,7 @@ class _ScriptLibrary:
         return self._files[file]
 
 
-def _image(name: str, script: Path, paths: Mapping[str, Path]) -> str:
+def _find_image(name: str, script: Path, paths: Mapping[str, Path]) -> str:
     """Return the URI of a texture that a script names, or an empty string if it is missing.
 
     The file is searched for in the folders of the material, beside the script, and in the folder ``textures`` next to
@@ -197,7 +197,7 @@ def _image(name: str, script: Path, paths: Mapping[str, Path]) -> str:
     return ""
 
 
-def _script_files(path: Path) -> list[Path]:
+def _list_script_files(path: Path) -> list[Path]:
     if not path.is_dir():
         return [path]
     with suppress(OSError):
@@ -213,12 +213,12 @@ def read_script(text: str) -> dict[str, Look]:
     looks: dict[str, Look] = {}
     current = ""
     depth = 0
-    for line in _lines(text):
+    for line in _split_lines(text):
         keyword, *arguments = line
         if keyword == "material" and depth == 0 and arguments:
             current = arguments[0].strip('"')
             parent = arguments[-1].strip('"') if ":" in arguments else ""
-            looks[current] = looks.get(parent) or gazebo_look(parent) or Look()
+            looks[current] = looks.get(parent) or find_gazebo_look(parent) or Look()
         elif keyword in "{}":
             depth = max(0, depth + (1 if keyword == "{" else -1))
         elif current and depth:
@@ -229,7 +229,7 @@ def read_script(text: str) -> dict[str, Look]:
 def _with_property(look: Look, keyword: str, values: list[str]) -> Look:
     if keyword == "texture" and values and not look.image:
         return look._replace(image=values[0].strip('"'))
-    if keyword in _COLORS and getattr(look, keyword) is None:
+    if keyword in _COLOR_NAMES and getattr(look, keyword) is None:
         with suppress(ValueError):
             numbers = [float(value) for value in values[:4]]
             # In a specular color, the last of four or five numbers is the shininess.
@@ -240,7 +240,7 @@ def _with_property(look: Look, keyword: str, values: list[str]) -> Look:
     return look
 
 
-def _lines(text: str) -> Iterator[list[str]]:
+def _split_lines(text: str) -> Iterator[list[str]]:
     """Yield the symbols of each nonempty line, without comments.
 
     Each brace counts as a line.

@@ -12,7 +12,15 @@ from typing import Any
 from linkwright.geometry.single import Vector3
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.cameras import CAMERA, Camera
-from linkwright.sdf.noise import NO_NOISE, NO_NOISE_XYZ, Noise, NoiseXyz, noise_rule, noise_xyz_rule, wrapped_noise_rule
+from linkwright.sdf.noise import (
+    NO_NOISE,
+    NO_NOISE_XYZ,
+    Noise,
+    NoiseXyz,
+    make_noise_rule,
+    make_noise_xyz_rule,
+    make_wrapped_noise_rule,
+)
 from linkwright.sdf.plugins import PLUGIN, Plugin
 from linkwright.sdf.poses import AT_ORIGIN, POSE, RawPose
 from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3, name_of, never_written, object_rule, value
@@ -249,7 +257,7 @@ def _lidar_rule(tag: str) -> ElementRule:
             get=lambda lidar: _ScanValues(lidar.horizontal, lidar.vertical),
         ),
         _RANGE,
-        noise_rule(),
+        make_noise_rule(),
         value("visibility_mask", INTEGER, "a bit mask of the visuals that are visible", default="4294967295"),
     )
 
@@ -275,8 +283,8 @@ _IMU = object_rule(
     _make_imu,
     "imu",
     "the noise and the reference frame of an IMU",
-    noise_xyz_rule("angular_velocity", "the noise on the angular velocity"),
-    noise_xyz_rule("linear_acceleration", "the noise on the acceleration"),
+    make_noise_xyz_rule("angular_velocity", "the noise on the angular velocity"),
+    make_noise_xyz_rule("linear_acceleration", "the noise on the acceleration"),
     value("enable_orientation", TRUTH, "whether the IMU also measures its orientation", default="true"),
     object_rule(
         _OrientationReference,
@@ -316,7 +324,10 @@ def _make_navsat(position_sensing: _SensingNoise, velocity_sensing: _SensingNois
 
 def _navsat_rule(tag: str) -> ElementRule:
     def sensing(kind: str, meaning: str) -> ElementRule:
-        noise_rules = (wrapped_noise_rule("horizontal", "horizontally"), wrapped_noise_rule("vertical", "vertically"))
+        noise_rules = (
+            make_wrapped_noise_rule("horizontal", "horizontally"),
+            make_wrapped_noise_rule("vertical", "vertically"),
+        )
         get_both = attrgetter(f"horizontal_{kind}", f"vertical_{kind}")
         return object_rule(
             _SensingNoise,
@@ -342,8 +353,8 @@ _FORCE_TORQUE = object_rule(
     "the frame and the noise of a force-torque sensor",
     value("frame", TEXT, "the frame of the measurement: child, parent or sensor", default="child"),
     value("measure_direction", TEXT, "the direction: child_to_parent or parent_to_child", default="child_to_parent"),
-    noise_xyz_rule("force", "the noise on the force"),
-    noise_xyz_rule("torque", "the noise on the torque"),
+    make_noise_xyz_rule("force", "the noise on the force"),
+    make_noise_xyz_rule("torque", "the noise on the torque"),
 )
 
 _SONAR = object_rule(
@@ -406,20 +417,20 @@ SENSOR = ElementRule(
         ),
         _navsat_rule("navsat"),
         replace(_navsat_rule("gps"), get=never_written),
-        noise_xyz_rule("magnetometer", "the noise of a magnetometer", None),
+        make_noise_xyz_rule("magnetometer", "the noise of a magnetometer", None),
         object_rule(
             Altimeter,
             "altimeter",
             "the noise of an altimeter",
-            wrapped_noise_rule("vertical_position", "the noise on the height"),
-            wrapped_noise_rule("vertical_velocity", "the noise on the vertical velocity"),
+            make_wrapped_noise_rule("vertical_position", "the noise on the height"),
+            make_wrapped_noise_rule("vertical_velocity", "the noise on the vertical velocity"),
         ),
         object_rule(
             AirPressure,
             "air_pressure",
             "the reference altitude and the noise of a barometer",
             value("reference_altitude", NUMBER, "the altitude of the world's origin", "m", default="0"),
-            wrapped_noise_rule("pressure", "the noise on the pressure", "noise"),
+            make_wrapped_noise_rule("pressure", "the noise on the pressure", "noise"),
         ),
         _FORCE_TORQUE,
         _SONAR,

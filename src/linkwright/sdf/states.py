@@ -1,4 +1,4 @@
-"""The element ``<state>``: the poses of models and lights when Gazebo classic saved a world.
+"""The element ``<state>``: the poses of models and lights in a saved world.
 
 Source of the elements and defaults: the SDFormat specification 1.12, ``state.sdf``.
 """

@@ -12,7 +12,7 @@ import re
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, SourceText, phrase
 from linkwright.xmltree import Document
 from linkwright.xmltree.decoding import decode
-from linkwright.xmltree.tinyxml import COMMENT, forbidden, parse_as_tinyxml
+from linkwright.xmltree.tinyxml import COMMENT, make_forbidden_warning, parse_as_tinyxml
 
 _EMPTY_CODE, _NOT_TEXT_CODE, _NOT_XML_CODE = "XML105", "XML104", "XML206"
 _LATE_DECLARATION = re.compile(rf"(?:\s|{COMMENT})+(<\?xml\s[^>]*\?>)")
@@ -38,7 +38,9 @@ def parse_as_gazebo(text: str | bytes, name: str) -> tuple[Document, tuple[Diagn
         source = SourceText(name, text)
         span = source.span(late_declaration.start(1), late_declaration.start(1) + len("<?xml"))
         warnings.append(
-            forbidden(message, span, source, phrase("remove everything before it"), _TOLERATED_BY_SIMULATORS)
+            make_forbidden_warning(
+                message, span, source, phrase("remove everything before it"), _TOLERATED_BY_SIMULATORS
+            )
         )
         corrected_text = (
             corrected_text[: late_declaration.start(1)]

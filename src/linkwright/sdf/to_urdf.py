@@ -111,7 +111,7 @@ class _Converter:
         root = self._frames.link("")
         self._check_tree(root, parent_joints)
         joints = [self._convert_joint(joint, parent_joints) for joint in model.joints]
-        links = {link.name: self._link(link, parent_joints.get(link.name)) for link in model.links}
+        links = {link.name: self._convert_link(link, parent_joints.get(link.name)) for link in model.links}
         materials = [
             visual.material for link in links.values() for visual in link.visuals if visual.material is not None
         ]
@@ -197,7 +197,7 @@ class _Converter:
         """
         return self._frames.pose(parent_joints[link].name if link in parent_joints else link)
 
-    def _link(self, link: Link, parent_joint: Joint | None) -> urdf.Link:
+    def _convert_link(self, link: Link, parent_joint: Joint | None) -> urdf.Link:
         pose_in_joint = IDENTITY
         if parent_joint is not None:
             pose_in_joint = compose(invert(self._frames.pose(parent_joint.name)), self._frames.pose(link.name))

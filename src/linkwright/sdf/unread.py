@@ -16,16 +16,16 @@ _HARMLESS_PAIRS = frozenset({("collision", "material")})
 """Pairs of parent and child tags that no reader needs: a collision is never drawn, so its color has no effect."""
 
 
-def allowed_parents(tag: str) -> tuple[str, ...]:
+def find_allowed_parents(tag: str) -> tuple[str, ...]:
     """Return the tags of an element's allowed parents.
 
     The result is empty if SDF does not define the element, or allows it in more than three parents.
     """
-    parents = _parents_by_tag().get(tag, ())
+    parents = _index_parents().get(tag, ())
     return tuple(sorted(parents)) if len(parents) <= _MAX_PARENTS else ()
 
 
-def links_of_static_models(elements: Iterable[Element]) -> frozenset[int]:
+def find_static_links(elements: Iterable[Element]) -> frozenset[int]:
     """Return the ``id()`` of each link element in static models among `elements`."""
     return frozenset(
         id(link)
@@ -47,13 +47,13 @@ def changes_nothing(child: Element, parent: Element, static_links: frozenset[int
     text = child.text().strip()
     if not text:
         return True
-    numbers = _numbers(text)
+    numbers = _parse_numbers(text)
     if child.tag == "scale":
         return bool(numbers) and all(value == _NEUTRAL_SCALE for value in numbers)
-    return child.tag not in _parents_by_tag() and (text in _FALSE_TEXTS or (bool(numbers) and not any(numbers)))
+    return child.tag not in _index_parents() and (text in _FALSE_TEXTS or (bool(numbers) and not any(numbers)))
 
 
-def _numbers(text: str) -> list[float]:
+def _parse_numbers(text: str) -> list[float]:
     try:
         return [float(token) for token in text.split()]
     except ValueError:
@@ -61,7 +61,7 @@ def _numbers(text: str) -> list[float]:
 
 
 @cache
-def _parents_by_tag() -> dict[str, frozenset[str]]:
+def _index_parents() -> dict[str, frozenset[str]]:
     """Return the tags of the allowed parents of each element, by tag."""
     parents: dict[str, set[str]] = {}
     visited_rules: set[int] = set()

@@ -18,7 +18,7 @@ from linkwright.schema import UNREADABLE, AttributeRule, ElementRule, ValueType
 _NUMBER_PATTERN = re.compile(
     r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|inf(?:inity)?|nan)", re.IGNORECASE
 )
-_STREAM_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_NUMBER_PREFIX = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 """The pattern of a number as C++ reads it from a stream."""
 _TRUTH_VALUES = {"true": True, "1": True, "false": False, "0": False}
 
@@ -26,7 +26,7 @@ Color = tuple[float, float, float, float]
 """Red, green, blue, alpha, each from 0 to 1."""
 
 
-def number(text: str) -> float:
+def parse_number(text: str) -> float:
     """Parse one number.
 
     Raises:
@@ -37,25 +37,25 @@ def number(text: str) -> float:
     return float(text)
 
 
-def numbers(text: str) -> tuple[float, ...]:
+def parse_numbers(text: str) -> tuple[float, ...]:
     """Parse a list of numbers that are separated by whitespace.
 
     Raises:
         ValueError: an item is not a number.
     """
-    return tuple(map(number, text.split()))
+    return tuple(map(parse_number, text.split()))
 
 
-def shortest_text(value: float) -> str:
+def format_shortest(value: float) -> str:
     """Format a number with as few characters as possible without loss."""
     return repr(float(value) or 0.0).removesuffix(".0")  # ``or 0.0`` changes -0.0 to 0.0
 
 
-def _joined(values: Iterable[float]) -> str:
-    return " ".join(map(shortest_text, values))
+def _format_numbers(values: Iterable[float]) -> str:
+    return " ".join(map(format_shortest, values))
 
 
-def leading_number(text: str) -> float | None:
+def parse_leading_number(text: str) -> float | None:
     """Return the number at the start of a text, or None if there is none.
 
     libsdformat reads the same number with ``std::stod``.
@@ -64,80 +64,80 @@ def leading_number(text: str) -> float | None:
     return None if number_match is None else float(number_match[0])
 
 
-def leading_numbers(text: str, count: int) -> tuple[float, ...] | None:
+def parse_leading_numbers(text: str, count: int) -> tuple[float, ...] | None:
     """Return the first `count` numbers of a text, or None if there are fewer.
 
     libsdformat reads the same numbers with the operator ``>>``.
     """
-    numbers_match = re.match(rf"\s*{_STREAM_NUMBER}(?:\s+{_STREAM_NUMBER}){{{count - 1}}}", text)
+    numbers_match = re.match(rf"\s*{_NUMBER_PREFIX}(?:\s+{_NUMBER_PREFIX}){{{count - 1}}}", text)
     return None if numbers_match is None else tuple(map(float, numbers_match[0].split()))
 
 
-def _integer(text: str) -> int:
+def _parse_integer(text: str) -> int:
     if text.strip()[:2].casefold() == "0x":
         return int(text, 16)
-    value = number(text)
+    value = parse_number(text)
     if not value.is_integer():
         raise ValueError(text)
     return int(value)
 
 
-def _truth(text: str) -> bool:
+def _parse_truth(text: str) -> bool:
     try:
         return _TRUTH_VALUES[text.strip().casefold()]
     except KeyError:
         raise ValueError(text) from None
 
 
-def _finite(text: str) -> tuple[float, ...]:
-    values = numbers(text)
+def _parse_finite(text: str) -> tuple[float, ...]:
+    values = parse_numbers(text)
     if not all(map(isfinite, values)):
         raise ValueError(text)
     return values
 
 
-def _vector3(text: str) -> Vector3:
-    x, y, z = _finite(text)
+def _parse_vector3(text: str) -> Vector3:
+    x, y, z = _parse_finite(text)
     return x, y, z
 
 
-def _vector2(text: str) -> tuple[float, float]:
-    x, y = _finite(text)
+def _parse_vector2(text: str) -> tuple[float, float]:
+    x, y = _parse_finite(text)
     return x, y
 
 
-def _color(text: str) -> Color:
-    red, green, blue, alpha = (*numbers(text), 1.0)[:4] if len(text.split()) == 3 else numbers(text)
+def _parse_color(text: str) -> Color:
+    red, green, blue, alpha = (*parse_numbers(text), 1.0)[:4] if len(text.split()) == 3 else parse_numbers(text)
     return red, green, blue, alpha
 
 
-def _time(text: str) -> float:
+def _parse_time(text: str) -> float:
     """Parse seconds and nanoseconds, or only seconds, and return seconds."""
-    parts = numbers(text)
+    parts = parse_numbers(text)
     if len(parts) == 1:
         return parts[0]
     seconds, nanoseconds = parts
     return seconds + nanoseconds * 1e-9
 
 
-def _pose_numbers(text: str) -> tuple[float, ...]:
-    pose_values = _finite(text)
+def _parse_pose_numbers(text: str) -> tuple[float, ...]:
+    pose_values = _parse_finite(text)
     if len(pose_values) not in (6, 7):
         raise ValueError(text)
     return pose_values
 
 
 TEXT = ValueType("text")
-NUMBER = ValueType("number", number, shortest_text)
-INTEGER = ValueType("integer", _integer)
-TRUTH = ValueType("true or false", _truth, lambda value: "true" if value else "false")
-VECTOR2 = ValueType("2 numbers", _vector2, _joined)
-VECTOR3 = ValueType("3 numbers", _vector3, _joined)
-COLOR = ValueType("3 or 4 numbers from 0 to 1", _color, _joined)
-TIME = ValueType("seconds, or seconds and nanoseconds", _time, shortest_text)
-POSE = ValueType("6 numbers", _pose_numbers, _joined)
+NUMBER = ValueType("number", parse_number, format_shortest)
+INTEGER = ValueType("integer", _parse_integer)
+TRUTH = ValueType("true or false", _parse_truth, lambda value: "true" if value else "false")
+VECTOR2 = ValueType("2 numbers", _parse_vector2, _format_numbers)
+VECTOR3 = ValueType("3 numbers", _parse_vector3, _format_numbers)
+COLOR = ValueType("3 or 4 numbers from 0 to 1", _parse_color, _format_numbers)
+TIME = ValueType("seconds, or seconds and nanoseconds", _parse_time, format_shortest)
+POSE = ValueType("6 numbers", _parse_pose_numbers, _format_numbers)
 
-COUNTS = {VECTOR2: 2, VECTOR3: 3, COLOR: 4, POSE: 6}
+NUMBER_COUNTS = {VECTOR2: 2, VECTOR3: 3, COLOR: 4, POSE: 6}
 """The number of components of a value, by type."""
 
 

@@ -29,7 +29,7 @@ def with_mass(model: Model, factor: float) -> Model:
 
 
 def with_friction(model: Model, coefficient: float) -> Model:
-    """Return a model with one coefficient of friction for all its collisions in both directions."""
+    """Return a model with one coefficient of friction for all its collisions."""
 
     def scaled(collision: Collision) -> Collision:
         friction = replace(collision.surface.friction or Friction(), mu=coefficient, mu2=coefficient)
@@ -39,7 +39,7 @@ def with_friction(model: Model, coefficient: float) -> Model:
 
 
 def with_noise(model: Model, factor: float) -> Model:
-    """Return a model with the noise and bias in all ``<noise>`` elements multiplied by a factor."""
+    """Return a model with all noise and bias multiplied by a factor."""
 
     def scaled(noise: Noise) -> Noise:
         return replace(noise, **{name: getattr(noise, name) * factor for name in _SCALED_NOISE})

@@ -82,7 +82,7 @@ class _Section:
         poses = [poses_by_time[time] for time in self._times]
         self._times[0] = min(self._times[0], 0.0)  # The walk starts at the first point at once.
         tangent_scale = 0.5 * (1.0 - trajectory.tension)
-        self._keyframes = [_keyframe_at(poses, index, tangent_scale) for index in range(len(poses))]
+        self._keyframes = [_make_keyframe(poses, index, tangent_scale) for index in range(len(poses))]
         self.length = self._times[-1]
 
     def pose(self, seconds: float) -> Transform:
@@ -93,10 +93,10 @@ class _Section:
         next_keyframe = self._keyframes[index + 1]
         fraction = (seconds - self._times[index]) / (self._times[index + 1] - self._times[index])
         fraction = min(max(fraction, 0.0), 1.0)
-        return (*_interpolated_point(keyframe, next_keyframe, fraction), *_squad(keyframe, next_keyframe, fraction))
+        return (*_interpolate_position(keyframe, next_keyframe, fraction), *_squad(keyframe, next_keyframe, fraction))
 
 
-def _keyframe_at(poses: list[Transform], index: int, tangent_scale: float) -> _Keyframe:
+def _make_keyframe(poses: list[Transform], index: int, tangent_scale: float) -> _Keyframe:
     x, y, z, *_ = poses[index]
     previous_pose, next_pose = poses[max(index - 1, 0)], poses[min(index + 1, len(poses) - 1)]
     tangent = (
@@ -119,7 +119,7 @@ def _keyframe_at(poses: list[Transform], index: int, tangent_scale: float) -> _K
     return _Keyframe((x, y, z), orientation, tangent, quaternion_multiply(orientation, offset))
 
 
-def _interpolated_point(start: _Keyframe, end: _Keyframe, fraction: float) -> Vector3:
+def _interpolate_position(start: _Keyframe, end: _Keyframe, fraction: float) -> Vector3:
     """Return the position between two waypoints on a cubic Hermite curve.
 
     `fraction` is from 0 to 1.

@@ -18,7 +18,7 @@ from linkwright.sdf.lights import LIGHT, Light
 from linkwright.sdf.models import FRAME, INCLUDE, MODEL, Frame, Include, Model
 from linkwright.sdf.physics import PHYSICS, Physics
 from linkwright.sdf.plugins import PLUGIN, Plugin
-from linkwright.sdf.populations import POPULATION, Population, models_of
+from linkwright.sdf.populations import POPULATION, Population, generate_models
 from linkwright.sdf.skies import FOG, SKY, Fog, Sky
 from linkwright.sdf.states import STATE, State
 from linkwright.sdf.values import (
@@ -99,7 +99,7 @@ class World:
     Lengths are in meters, gravity in m/s2, the magnetic field in tesla and wind in m/s.
 
     Attributes:
-        gravity: the gravity; None if the world does not set it (`gravity_of` then returns the effective gravity).
+        gravity: the gravity; None if the world does not set it (`find_gravity` then returns the effective gravity).
         states: the saved states; Gazebo classic uses the last one.
     """
 
@@ -136,24 +136,24 @@ class Sdf:
     element: Element | None = field(default=None, compare=False, repr=False)
 
 
-def gravity_of(world: World) -> Vector3:
+def find_gravity(world: World) -> Vector3:
     """Return the effective gravity of a world in m/s2.
 
     The world's own gravity takes precedence over the gravity of its physics (up to SDF 1.5), and over the default.
     """
     if world.gravity is not None:
         return world.gravity
-    physics = physics_of(world)
+    physics = find_physics(world)
     return physics.gravity or (0.0, 0.0, -9.8)
 
 
 def with_populations(world: World) -> World:
     """Replace the populations of a world by copies of their models."""
-    copies = (model for population in world.populations for model in models_of(population))
+    copies = (model for population in world.populations for model in generate_models(population))
     return replace(world, models=(*world.models, *copies), populations=())
 
 
-def physics_of(world: World) -> Physics:
+def find_physics(world: World) -> Physics:
     """Return the physics settings that a world marks as default, or else the first settings.
 
     For a world without physics settings, return SDF's defaults.

@@ -12,12 +12,12 @@ from typing import Any
 from linkwright import xmltree
 from linkwright.schema import ElementRule, write_element
 from linkwright.sdf.models import MODEL, Model
-from linkwright.sdf.reader import OPEN, WITHOUT_EFFECT
+from linkwright.sdf.reader import OPEN_TAGS, TAGS_WITHOUT_EFFECT
 from linkwright.sdf.worlds import SDF, Sdf, World
 from linkwright.xmltree import Document, Element, write
 from linkwright.xmltree.writer import strip_mixed_text
 
-VERSION = "1.11"
+WRITTEN_VERSION = "1.11"
 """The SDF version of the output, which is the newest that gz Harmonic, and so ROS Jazzy, can read."""
 _DEFAULT_NAMESPACE = "http://gazebosim.org/schema"
 """The namespace for prefixes that a file uses but does not declare. Gazebo accepts such files."""
@@ -44,7 +44,7 @@ def save_model_of_world(model: Model) -> WrittenModel:
     The includes of the model must not be resolved.
     """
     element = write_element(MODEL, model, _restore_ignored_content)
-    return WrittenModel(xmltree.write_element(element, depth=2), frozenset(_prefixes(element)))
+    return WrittenModel(xmltree.write_element(element, depth=2), frozenset(_iterate_prefixes(element)))
 
 
 def save_world(world: World, models: Sequence[WrittenModel]) -> str:
@@ -59,7 +59,7 @@ def save_world(world: World, models: Sequence[WrittenModel]) -> str:
     """
     if not models:
         return save(world)
-    root = _root_element(Sdf(VERSION, worlds=(replace(world, models=(Model(_PLACEHOLDER_NAME),)),)))
+    root = _make_root(Sdf(WRITTEN_VERSION, worlds=(replace(world, models=(Model(_PLACEHOLDER_NAME),)),)))
     _declare_prefixes(root, {prefix for model in models for prefix in model.prefixes})
     text_before, _, text_after = write(Document(root)).partition(
         xmltree.write_element(Element("model", {"name": _PLACEHOLDER_NAME}), depth=2)
@@ -77,17 +77,17 @@ def save(document: Sdf | World | Model) -> str:
         document: a world, a model or the content of a file; its includes must not be resolved.
     """
     if isinstance(document, World):
-        document = Sdf(VERSION, worlds=(document,))
+        document = Sdf(WRITTEN_VERSION, worlds=(document,))
     elif isinstance(document, Model):
-        document = Sdf(VERSION, models=(document,))
-    root = _root_element(document)
+        document = Sdf(WRITTEN_VERSION, models=(document,))
+    root = _make_root(document)
     _declare_prefixes(root)
     return write(Document(root))
 
 
-def _root_element(sdf: Sdf) -> Element:
+def _make_root(sdf: Sdf) -> Element:
     """Return the root element of a file, with the namespaces that the original declares."""
-    root = write_element(SDF, replace(sdf, version=VERSION), _restore_ignored_content)
+    root = write_element(SDF, replace(sdf, version=WRITTEN_VERSION), _restore_ignored_content)
     source_attributes = {} if sdf.element is None else sdf.element.attributes
     root.attributes |= {name: value for name, value in source_attributes.items() if name.startswith("xmlns")}
     return root
@@ -95,7 +95,7 @@ def _root_element(sdf: Sdf) -> Element:
 
 def _declare_prefixes(root: Element, extra_prefixes: Iterable[str] = ()) -> None:
     """Declare the XML prefixes in `extra_prefixes` and in `root` and its descendants."""
-    for prefix in sorted({*_prefixes(root), *extra_prefixes}):
+    for prefix in sorted({*_iterate_prefixes(root), *extra_prefixes}):
         root.attributes.setdefault(f"xmlns:{prefix}", _DEFAULT_NAMESPACE)
 
 
@@ -104,12 +104,12 @@ def _restore_ignored_content(element: Element, rule: ElementRule, instance: Any)
     source_element: Element | None = getattr(instance, "element", None)
     if source_element is None:
         return
-    if rule.tag in OPEN:
+    if rule.tag in OPEN_TAGS:
         stripped = strip_mixed_text(source_element)
         element.attributes = stripped.attributes | element.attributes
         element.children = stripped.children
         return
-    ignored_tags = WITHOUT_EFFECT.get(rule.tag, ())
+    ignored_tags = TAGS_WITHOUT_EFFECT.get(rule.tag, ())
     element.children += (
         strip_mixed_text(element)
         for element in source_element.elements()
@@ -117,7 +117,7 @@ def _restore_ignored_content(element: Element, rule: ElementRule, instance: Any)
     )
 
 
-def _prefixes(root: Element) -> Iterator[str]:
+def _iterate_prefixes(root: Element) -> Iterator[str]:
     for element in root.walk():
         for name in (element.tag, *element.attributes):
             prefix, colon, _ = name.partition(":")

@@ -15,7 +15,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import with_saved_state
-from linkwright.sdf.worlds import World, gravity_of, physics_of
+from linkwright.sdf.worlds import World, find_gravity, find_physics
 from linkwright.simulation.actuators import Motor, Servo
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.restitution import Stepper
@@ -591,4 +591,4 @@ class Simulation:
 
 def _get_compiled_properties(world: World) -> tuple[object, ...]:
     """Return the properties of a world whose change requires rebuilding MuJoCo's model."""
-    return gravity_of(world), physics_of(world).max_step_size, world.scene, world.lights
+    return find_gravity(world), find_physics(world).max_step_size, world.scene, world.lights

@@ -120,7 +120,7 @@ class Inertial:
 
     @classmethod
     def of(cls, properties: MassProperties) -> Inertial:
-        """Return the ``<inertial>`` with these mass properties in the link frame, in the link's axes."""
+        """Return the ``<inertial>`` with these mass properties, in the axes of the link frame."""
         tensor = properties.inertia
         x, y, z = (float(coordinate) for coordinate in properties.center)
         ixx, ixy, ixz, iyy, iyz, izz = (float(tensor[i, j]) for i in range(3) for j in range(i, 3))

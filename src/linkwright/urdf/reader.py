@@ -26,7 +26,7 @@ from linkwright.loading.lean_typing import Any, TypeVar
 from linkwright.schema.reading import UNREADABLE, reader_of
 from linkwright.schema.rules import ElementRule, Version
 from linkwright.urdf.model import Joint, Limit, Link, Material, Robot, Visual
-from linkwright.urdf.report import BLACK, UrdfReport, owner_name
+from linkwright.urdf.report import BLACK, UrdfReport, describe_owner
 from linkwright.urdf.schema import AXIS, COLLISION, INERTIAL, JOINT, LIMIT, LINK, MATERIAL, NEWEST_VERSION, VISUAL
 from linkwright.urdf.tree import find_root
 from linkwright.urdf.values import degrees_hint, looks_like_degree_limits, looks_like_degrees
@@ -34,11 +34,11 @@ from linkwright.xmltree import Document, Element
 
 _BOUNDED_TYPES = ("revolute", "prismatic")
 _AXIS_TYPES = ("revolute", "continuous", "prismatic", "planar")
-_WITHOUT_AXIS = replace(JOINT, children=tuple(child for child in JOINT.children if child is not AXIS))
+_JOINT_WITHOUT_AXIS = replace(JOINT, children=tuple(child for child in JOINT.children if child is not AXIS))
 
 
 def read_link(element: Element, materials: MaterialTable, findings: UrdfReport) -> Link:
-    """Return a link with its readable parts, and add the materials that it defines to the table."""
+    """Return a link with its readable parts, and add its materials to the table."""
     name = element.attributes.get("name")
     if name is None:
         findings.missing_attribute(element, LINK, LINK.attributes[0], element)
@@ -72,12 +72,12 @@ def _drop_unreadable_parts(values: dict[str, Any], findings: UrdfReport) -> None
         values[rule.target] = readable
     if first_unreadable is not None:
         note = phrase(
-            "urdfdom drops these parts of {owner}: {parts}", owner=owner_name(element), parts=joined(lost_parts)
+            "urdfdom drops these parts of {owner}: {parts}", owner=describe_owner(element), parts=joined(lost_parts)
         )
-        findings.annotate(_first_error(*first_unreadable, element, findings.version), Note(note))
+        findings.annotate(_find_first_error(*first_unreadable, element, findings.version), Note(note))
 
 
-def _first_error(rule: ElementRule, part: Element, owner: Element, version: Version) -> Diagnostic:
+def _find_first_error(rule: ElementRule, part: Element, owner: Element, version: Version) -> Diagnostic:
     """Return the error at which urdfdom stops reading a part of a link.
 
     urdfdom reads the children of a part in the order of the rule.
@@ -164,7 +164,9 @@ class MaterialTable:
                 hint = phrase("a later link defines it: move the definition to robot level")
             else:
                 hint = did_you_mean(material.name, self.materials) or phrase("define it at robot level")
-            message = phrase("material '{name}' of {owner} is not defined", name=material.name, owner=owner_name(owner))
+            message = phrase(
+                "material '{name}' of {owner} is not defined", name=material.name, owner=describe_owner(owner)
+            )
             self._findings.warning("URDF160", message, element, "name", hint=hint)
 
 
@@ -181,7 +183,7 @@ def read_joint(element: Element, findings: UrdfReport) -> Joint:
     without ``<axis>``, but 0 0 0 for an ``<axis>`` without 'xyz'.
     """
     errors_before = findings.error_count
-    rule = JOINT if element.attributes.get("type") in _AXIS_TYPES else _WITHOUT_AXIS
+    rule = JOINT if element.attributes.get("type") in _AXIS_TYPES else _JOINT_WITHOUT_AXIS
     joint: Joint = reader_of(rule, findings.version).read(element, element, findings)
     if joint.type in _BOUNDED_TYPES:
         _check_bounds(element, joint, findings)
@@ -201,7 +203,7 @@ def _check_bounds(joint_element: Element, joint: Joint, findings: UrdfReport) ->
                     message = phrase(
                         "<limit> of {kind} {owner} has no '{name}'",
                         kind=joint.type,
-                        owner=owner_name(joint_element),
+                        owner=describe_owner(joint_element),
                         name=name,
                     )
                     hint = phrase("URDF 1.2 requires both 'lower' and 'upper'")
@@ -218,7 +220,7 @@ def _check_angles(element: Element, limit: Limit, owner: Element, findings: Urdf
             message = phrase(
                 "'{name}' in <limit> of {owner} looks like degrees: '{value}'",
                 name=name,
-                owner=owner_name(owner),
+                owner=describe_owner(owner),
                 value=element.attributes[name],
             )
             findings.warning("URDF190", message, element, name, hint=degrees_hint(value))
@@ -379,7 +381,7 @@ def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
 
     urdfdom does not check this.
     """
-    cycles = _mimic_cycles(joints)
+    cycles = _find_mimic_cycles(joints)
     for joint in joints.values():
         if joint.mimic is None:
             continue
@@ -401,7 +403,7 @@ def _check_mimics(joints: dict[str, Joint], findings: UrdfReport) -> None:
             findings.warning("URDF181", message, element, "joint", hint=phrase("remove <mimic> from one of the joints"))
 
 
-def _mimic_cycles(joints: Mapping[str, Joint]) -> dict[str, list[str]]:
+def _find_mimic_cycles(joints: Mapping[str, Joint]) -> dict[str, list[str]]:
     """Return the mimic joints on a cycle, each with the names on the cycle from there on.
 
     Long lists of names are shortened.

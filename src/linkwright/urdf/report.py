@@ -21,10 +21,10 @@ from linkwright.loading.lean_typing import Any
 from linkwright.schema.reading import UNREADABLE
 from linkwright.schema.rules import AttributeRule, ElementRule, Version
 from linkwright.urdf.values import (
-    COUNTS,
     JOINT_TYPE,
     JOINT_TYPES,
     NUMBER,
+    NUMBER_COUNTS,
     RGBA,
     TEXT,
     number_hint,
@@ -177,7 +177,7 @@ _JOINT_ALIASES = {
 _SHAPE_ALIASES = {"cube": "box", "cuboid": "box", "ball": "sphere", "tube": "cylinder", "rod": "cylinder"}
 
 
-def owner_name(owner: Element) -> Phrase:
+def describe_owner(owner: Element) -> Phrase:
     """Return the name of an element's owner in messages: ``joint 'elbow'``, ``the robot``."""
     name = owner.attributes.get("name")
     if owner.tag == "joint":
@@ -199,17 +199,17 @@ class UrdfReport(Findings):
 
     def missing_attribute(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
         """Report that a required attribute is missing."""
-        hint = _missing_attribute_hint(element, rule, attribute)
+        hint = _make_missing_attribute_hint(element, rule, attribute)
         if attribute.name == "name" and rule.tag == "link":
             message, hint = phrase("a link has no 'name'"), phrase('add name="..."')
         elif attribute.name == "name" and rule.tag == "joint":
             message, hint = phrase("a joint has no 'name'"), phrase('add name="..."')
         elif attribute.type is JOINT_TYPE:
-            message = phrase("{owner} has no 'type'", owner=owner_name(owner))
+            message = phrase("{owner} has no 'type'", owner=describe_owner(owner))
             hint = phrase('add type="...": {names}', names=joined(JOINT_TYPES))
         else:
             name = attribute.name
-            message = phrase("<{tag}> of {owner} has no '{name}'", tag=rule.tag, owner=owner_name(owner), name=name)
+            message = phrase("<{tag}> of {owner} has no '{name}'", tag=rule.tag, owner=describe_owner(owner), name=name)
         self.error("URDF120", message, element, hint=hint)
 
     def malformed(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> Any:
@@ -219,16 +219,18 @@ class UrdfReport(Findings):
         attributes are unreadable.
         """
         name, value = attribute.name, element.attributes[attribute.name]
-        fields = {"name": name, "tag": rule.tag, "owner": owner_name(owner), "value": value}
+        fields = {"name": name, "tag": rule.tag, "owner": describe_owner(owner), "value": value}
         if attribute.type is JOINT_TYPE:
-            message = phrase("the type '{type}' of {owner} is not a joint type", type=value, owner=owner_name(owner))
-            self.error("URDF140", message, element, name, hint=_joint_type_hint(value))
+            message = phrase(
+                "the type '{type}' of {owner} is not a joint type", type=value, owner=describe_owner(owner)
+            )
+            self.error("URDF140", message, element, name, hint=_make_joint_type_hint(value))
             return UNREADABLE
         if attribute.type is NUMBER:
             message = phrase("'{name}' in <{tag}> of {owner} is not a number: '{value}'", **fields)
-            self.error("URDF121", message, element, name, hint=_number_hint(rule, attribute, value))
+            self.error("URDF121", message, element, name, hint=_make_number_hint(rule, attribute, value))
             return UNREADABLE
-        count = COUNTS[attribute.type]
+        count = NUMBER_COUNTS[attribute.type]
         try:
             values = numbers(value)
         except ValueError:
@@ -244,7 +246,7 @@ class UrdfReport(Findings):
             **fields,
             expected=count,
         )
-        self.error("URDF122", message, element, name, hint=_count_hint(rule, attribute, values))
+        self.error("URDF122", message, element, name, hint=_make_count_hint(rule, attribute, values))
         return UNREADABLE
 
     def too_new(self, element: Element, rule: ElementRule, attribute: AttributeRule, owner: Element) -> None:
@@ -253,7 +255,7 @@ class UrdfReport(Findings):
             "'{name}' in <{tag}> of {owner} is ignored: it needs URDF {version}",
             name=attribute.name,
             tag=rule.tag,
-            owner=owner_name(owner),
+            owner=describe_owner(owner),
             version=f"{attribute.since[0]}.{attribute.since[1]}",
         )
         hint = phrase('write <robot version="1.2" ...>')
@@ -272,13 +274,13 @@ class UrdfReport(Findings):
         similar_tags = nearest(child.tag, [candidate.tag for candidate in candidates], limit=1)
         misspelled_child = next((candidate for candidate in candidates if candidate.tag in similar_tags), None)
         hint = phrase(
-            "add <{tag}/>: {meaning}", tag=f"{child.tag}{_usual_attributes(child)}", meaning=term(child.meaning)
+            "add <{tag}/>: {meaning}", tag=f"{child.tag}{_list_usual_attributes(child)}", meaning=term(child.meaning)
         )
         if misspelled_child is not None:
             hint = phrase(
                 "did you mean '{name}' instead of '{given_name}'?", name=child.tag, given_name=misspelled_child.tag
             )
-        owner_text = owner_name(owner)
+        owner_text = describe_owner(owner)
         if kind:
             owner_text = phrase("{kind} {owner}", kind=kind, owner=owner_text)
         elif rule.tag not in ("link", "joint"):
@@ -290,18 +292,18 @@ class UrdfReport(Findings):
         """Report that a geometry does not contain a shape."""
         assert rule.tag == "geometry"
         hint = phrase("add a box, cylinder, sphere or mesh")
-        self.error("URDF131", phrase("<geometry> of {owner} is empty", owner=owner_name(owner)), element, hint=hint)
+        self.error("URDF131", phrase("<geometry> of {owner} is empty", owner=describe_owner(owner)), element, hint=hint)
 
     def unknown_choice(self, child: Element, rule: ElementRule, owner: Element) -> None:
         """Report an element in a geometry that is not a shape, or not a shape of this version."""
         if child.tag in rule.child_rules:
             hint = phrase('write <robot version="1.1" ...>, or build it from a cylinder and two spheres')
             self.error(
-                "URDF132", phrase("<capsule> of {owner} needs URDF 1.1", owner=owner_name(owner)), child, hint=hint
+                "URDF132", phrase("<capsule> of {owner} needs URDF 1.1", owner=describe_owner(owner)), child, hint=hint
             )
             return
-        message = phrase("<{tag}> in <geometry> of {owner} is not a shape", tag=child.tag, owner=owner_name(owner))
-        self.error("URDF132", message, child, hint=_shape_hint(child.tag, rule.children))
+        message = phrase("<{tag}> in <geometry> of {owner} is not a shape", tag=child.tag, owner=describe_owner(owner))
+        self.error("URDF132", message, child, hint=_make_shape_hint(child.tag, rule.children))
 
     def _malformed_color(self, color: Element, values: tuple[float, ...], material: Element) -> Any:
         text = color.attributes["rgba"]
@@ -327,13 +329,13 @@ class UrdfReport(Findings):
         return BLACK  # urdfdom uses black without a message
 
 
-def _number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phrase | None:
+def _make_number_hint(rule: ElementRule, attribute: AttributeRule, value: str) -> Phrase | None:
     if rule.tag == "limit" and attribute.usually_written and "inf" in value.casefold():
         return phrase("only finite numbers are read; a joint that turns without bounds is 'continuous'")
     return number_hint(value)
 
 
-def _joint_type_hint(type_text: str) -> Phrase:
+def _make_joint_type_hint(type_text: str) -> Phrase:
     """Return a hint for correcting an unknown joint type."""
     lower_case = type_text.strip().casefold()
     if lower_case in JOINT_TYPES:
@@ -346,7 +348,7 @@ def _joint_type_hint(type_text: str) -> Phrase:
     return did_you_mean(type_text, JOINT_TYPES) or phrase("choose from {names}", names=joined(JOINT_TYPES))
 
 
-def _shape_hint(tag: str, shapes: tuple[ElementRule, ...]) -> Phrase:
+def _make_shape_hint(tag: str, shapes: tuple[ElementRule, ...]) -> Phrase:
     """Return a hint for correcting an unknown shape."""
     if tag.startswith("xacro:"):
         return phrase("xacro did not evaluate this: expand the file with xacro first")
@@ -357,7 +359,7 @@ def _shape_hint(tag: str, shapes: tuple[ElementRule, ...]) -> Phrase:
     return did_you_mean(tag, names) or phrase("choose from {names}", names=joined(names))
 
 
-def _count_hint(rule: ElementRule, attribute: AttributeRule, values: tuple[float, ...]) -> Phrase:
+def _make_count_hint(rule: ElementRule, attribute: AttributeRule, values: tuple[float, ...]) -> Phrase:
     if rule.tag == "mesh" and len(values) == 1:
         return phrase("give a factor for each axis: '{value}'", value=" ".join([f"{values[0]:g}"] * 3))
     return phrase(
@@ -365,7 +367,7 @@ def _count_hint(rule: ElementRule, attribute: AttributeRule, values: tuple[float
     )
 
 
-def _missing_attribute_hint(element: Element, rule: ElementRule, attribute: AttributeRule) -> Phrase:
+def _make_missing_attribute_hint(element: Element, rule: ElementRule, attribute: AttributeRule) -> Phrase:
     unknown_attributes = [name for name in element.attributes if name not in rule.attribute_rules]
     similar_names = nearest(attribute.name, unknown_attributes, limit=1)
     if similar_names:
@@ -383,7 +385,7 @@ def _missing_attribute_hint(element: Element, rule: ElementRule, attribute: Attr
     return phrase('add {name}="...": {meaning}', **fields)
 
 
-def _usual_attributes(rule: ElementRule) -> str:
+def _list_usual_attributes(rule: ElementRule) -> str:
     return "".join(
         f' {attribute.name}="..."' for attribute in rule.attributes if attribute.required or attribute.usually_written
     )

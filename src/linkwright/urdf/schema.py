@@ -32,7 +32,7 @@ from linkwright.urdf.model import (
     Robot,
     Safety,
 )
-from linkwright.urdf.report import Findings, owner_name
+from linkwright.urdf.report import Findings, describe_owner
 from linkwright.urdf.values import (
     JOINT_TYPE,
     JOINT_TYPES_TEXT,
@@ -50,8 +50,8 @@ from linkwright.urdf.values import (
 from linkwright.xmltree import Element
 
 _ROUNDING = 1e-15
-_SIZES = ("size", "radius", "length")
-_UNSIGNED = ("effort", "velocity", "acceleration", "deceleration", "jerk")
+_SIZE_ATTRIBUTES = ("size", "radius", "length")
+_UNSIGNED_ATTRIBUTES = ("effort", "velocity", "acceleration", "deceleration", "jerk")
 
 
 def pose_of(xyz: Vector3, rpy: Vector3, quaternion: Quaternion | None) -> Pose:
@@ -73,7 +73,7 @@ def check_origin(pose: Pose, element: Element, owner: Element, findings: Finding
     if pose.quaternion is not None:
         if "rpy" not in element.attributes:
             return pose
-        message = phrase("<origin> of {owner} has both 'rpy' and 'quat_xyzw'", owner=owner_name(owner))
+        message = phrase("<origin> of {owner} has both 'rpy' and 'quat_xyzw'", owner=describe_owner(owner))
         findings.error("URDF170", message, element, "quat_xyzw", hint=phrase("keep one of them"))
         return UNREADABLE
     roll, pitch, yaw = pose.rpy
@@ -82,7 +82,7 @@ def check_origin(pose: Pose, element: Element, owner: Element, findings: Finding
     if looks_like_degrees(roll, pitch, yaw) and "quat_xyzw" not in element.attributes:
         message = phrase(
             "'rpy' in <origin> of {owner} looks like degrees: '{rpy}'",
-            owner=owner_name(owner),
+            owner=describe_owner(owner),
             rpy=element.attributes["rpy"],
         )
         findings.warning("URDF190", message, element, "rpy", hint=degrees_hint(roll, pitch, yaw))
@@ -97,7 +97,7 @@ def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Fi
     if findings.version < (1, 2):
         return geometry
     is_valid = True
-    for name in _SIZES:
+    for name in _SIZE_ATTRIBUTES:
         value = shape.attributes.get(name)
         if value is not None and shape.tag != "mesh" and min(numbers(value)) <= 0:
             is_valid = False
@@ -105,7 +105,7 @@ def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Fi
                 "'{name}' in <{tag}> of {owner} is not above zero: '{value}'",
                 name=name,
                 tag=shape.tag,
-                owner=owner_name(owner),
+                owner=describe_owner(owner),
                 value=value,
             )
             findings.error("URDF123", message, shape, name, hint=phrase("give a size above zero, as URDF 1.2 requires"))
@@ -115,7 +115,7 @@ def check_sizes(geometry: Geometry, shape: Element, owner: Element, findings: Fi
 def check_link_name(link_names: tuple[str], element: Element, owner: Element, findings: Findings) -> tuple[str]:
     """Check that the name of a joint's parent or child link is not empty."""
     if not link_names[0]:
-        message = phrase("'link' in <{tag}> of {owner} is empty", tag=element.tag, owner=owner_name(owner))
+        message = phrase("'link' in <{tag}> of {owner} is empty", tag=element.tag, owner=describe_owner(owner))
         findings.error("URDF124", message, element, "link", hint=phrase("give the name of a link"))
     return link_names
 
@@ -124,7 +124,7 @@ def check_dynamics(dynamics: Dynamics, element: Element, owner: Element, finding
     """Check that at least one of damping and friction is set."""
     if "damping" in element.attributes or "friction" in element.attributes:
         return dynamics
-    message = phrase("<dynamics> of {owner} has neither 'damping' nor 'friction'", owner=owner_name(owner))
+    message = phrase("<dynamics> of {owner} has neither 'damping' nor 'friction'", owner=describe_owner(owner))
     hint = phrase('add damping="..." or friction="...", or remove <dynamics>')
     findings.error("URDF120", message, element, hint=hint)
     return UNREADABLE
@@ -141,16 +141,16 @@ def check_limit(limit: Limit, element: Element, owner: Element, findings: Findin
     if limit.upper < limit.lower:
         message = phrase(
             "'upper' in <limit> of {owner} is below 'lower': '{upper}'",
-            owner=owner_name(owner),
+            owner=describe_owner(owner),
             upper=attributes["upper"],
         )
         findings.error("URDF123", message, element, "upper", hint=phrase("exchange the two values"))
-    for name in _UNSIGNED:
+    for name in _UNSIGNED_ATTRIBUTES:
         if name in attributes and number(attributes[name]) < 0:
             message = phrase(
                 "'{name}' in <limit> of {owner} is negative: '{value}'",
                 name=name,
-                owner=owner_name(owner),
+                owner=describe_owner(owner),
                 value=attributes[name],
             )
             findings.error("URDF123", message, element, name, hint=phrase("give its magnitude, without a sign"))
@@ -160,7 +160,7 @@ def check_limit(limit: Limit, element: Element, owner: Element, findings: Findin
 NEWEST_VERSION: Version = (1, 2)
 
 
-def _number(name: str, meaning: str, unit: str = "", **details: Any) -> AttributeRule:
+def _number_attribute(name: str, meaning: str, unit: str = "", **details: Any) -> AttributeRule:
     return AttributeRule(name, NUMBER, meaning, unit, **details)
 
 
@@ -189,7 +189,7 @@ ORIGIN = ElementRule(
     check=check_origin,
 )
 
-_RADIUS = _number("radius", "radius", "m", required=True)
+_RADIUS = _number_attribute("radius", "radius", "m", required=True)
 
 SHAPES = (
     ElementRule(
@@ -201,14 +201,14 @@ SHAPES = (
     ElementRule(
         "cylinder",
         "a cylinder along z, centered at the origin",
-        (_RADIUS, _number("length", "length along z", "m", required=True)),
+        (_RADIUS, _number_attribute("length", "length along z", "m", required=True)),
         make=Cylinder,
     ),
     ElementRule("sphere", "a sphere centered at the origin", (_RADIUS,), make=Sphere),
     ElementRule(
         "capsule",
         "a cylinder along z with a half sphere at each end, centered at the origin",
-        (_RADIUS, _number("length", "length of the cylindrical part", "m", required=True)),
+        (_RADIUS, _number_attribute("length", "length of the cylindrical part", "m", required=True)),
         since=(1, 1),
         make=Capsule,
     ),
@@ -253,13 +253,16 @@ INERTIAL = ElementRule(
     children=(
         ORIGIN,
         ElementRule(
-            "mass", "the mass", (_number("value", "the mass", "kg", required=True, field="mass"),), required=True
+            "mass",
+            "the mass",
+            (_number_attribute("value", "the mass", "kg", required=True, field="mass"),),
+            required=True,
         ),
         ElementRule(
             "inertia",
             "the inertia tensor about the center of mass, in the axes of the inertial frame",
             tuple(
-                _number(name, f"the {name[1:]} component", "kg m2", required=True)
+                _number_attribute(name, f"the {name[1:]} component", "kg m2", required=True)
                 for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
             ),
             required=True,
@@ -337,17 +340,17 @@ LIMIT = ElementRule(
     "limit",
     "the bounds of motion; revolute and prismatic joints need them",
     (
-        _number(
+        _number_attribute(
             "lower", "minimum position", "rad or m", default="0", usually_written=True, later_default=(_URDF_1_2, -inf)
         ),
-        _number("upper", "maximum position", "rad or m", default="0", usually_written=True, **_NO_BOUND),
-        _number("effort", "maximum torque or force", "N m or N", required=True, until=_URDF_1_2, **_NO_BOUND),
-        _number("velocity", "maximum speed", "rad/s or m/s", required=True, until=_URDF_1_2, **_NO_BOUND),
-        _number("acceleration", "maximum acceleration", "rad/s2 or m/s2", since=_URDF_1_2),
-        _number(
+        _number_attribute("upper", "maximum position", "rad or m", default="0", usually_written=True, **_NO_BOUND),
+        _number_attribute("effort", "maximum torque or force", "N m or N", required=True, until=_URDF_1_2, **_NO_BOUND),
+        _number_attribute("velocity", "maximum speed", "rad/s or m/s", required=True, until=_URDF_1_2, **_NO_BOUND),
+        _number_attribute("acceleration", "maximum acceleration", "rad/s2 or m/s2", since=_URDF_1_2),
+        _number_attribute(
             "deceleration", "maximum deceleration; the acceleration when absent", "rad/s2 or m/s2", since=_URDF_1_2
         ),
-        _number("jerk", "maximum jerk", "rad/s3 or m/s3", since=_URDF_1_2),
+        _number_attribute("jerk", "maximum jerk", "rad/s3 or m/s3", since=_URDF_1_2),
     ),
     make=Limit,
     check=check_limit,
@@ -358,8 +361,8 @@ MIMIC = ElementRule(
     "follow another joint: multiplier * its position + offset",
     (
         AttributeRule("joint", TEXT, "the joint to follow", required=True),
-        _number("multiplier", "a factor on the position of that joint", default="1", usually_written=True),
-        _number("offset", "a value added to the result", "rad or m", default="0", usually_written=True),
+        _number_attribute("multiplier", "a factor on the position of that joint", default="1", usually_written=True),
+        _number_attribute("offset", "a value added to the result", "rad or m", default="0", usually_written=True),
     ),
     make=Mimic,
 )
@@ -368,16 +371,16 @@ SAFETY = ElementRule(
     "safety_controller",
     "gains and soft limits of a safety controller",
     (
-        _number("k_velocity", "effort per velocity error", "N m s/rad or N s/m", required=True),
-        _number("k_position", "velocity per position error", "1/s", default="0", usually_written=True),
-        _number(
+        _number_attribute("k_velocity", "effort per velocity error", "N m s/rad or N s/m", required=True),
+        _number_attribute("k_position", "velocity per position error", "1/s", default="0", usually_written=True),
+        _number_attribute(
             "soft_lower_limit",
             "the lower position at which it starts to act",
             "rad or m",
             default="0",
             usually_written=True,
         ),
-        _number(
+        _number_attribute(
             "soft_upper_limit",
             "the upper position at which it starts to act",
             "rad or m",
@@ -393,8 +396,8 @@ DYNAMICS = ElementRule(
     "dynamics",
     "damping, friction, or both",
     (
-        _number("damping", "viscous damping", "N m s/rad or N s/m", default="0", usually_written=True),
-        _number("friction", "static friction", "N m or N", default="0", usually_written=True),
+        _number_attribute("damping", "viscous damping", "N m s/rad or N s/m", default="0", usually_written=True),
+        _number_attribute("friction", "static friction", "N m or N", default="0", usually_written=True),
     ),
     make=Dynamics,
     check=check_dynamics,
@@ -404,8 +407,8 @@ CALIBRATION = ElementRule(
     "calibration",
     "reference positions",
     (
-        _number("rising", "the position at which the reference signal rises", "rad or m"),
-        _number("falling", "the position at which the reference signal falls", "rad or m"),
+        _number_attribute("rising", "the position at which the reference signal rises", "rad or m"),
+        _number_attribute("falling", "the position at which the reference signal falls", "rad or m"),
     ),
     make=Calibration,
 )

@@ -67,7 +67,7 @@ def find_root(links: Mapping[str, Link], joints: Sequence[Joint], findings: Find
     roots = [name for name in links if name not in child_links]
     if not roots:
         findings.rejected = True
-        _report_loop(_loop_from(joints[0].child, joints), joints, phrase("no link is the root"), findings)
+        _report_loop(_find_loop(joints[0].child, joints), joints, phrase("no link is the root"), findings)
         return ""
     if len(roots) > 1:
         _check_parents(joints, findings)
@@ -107,7 +107,7 @@ def _report_roots(roots: Sequence[str], links: Mapping[str, Link], findings: Fin
     names_text = (
         quoted_names(roots, " and ") if len(roots) < 6 else phrase("{names}, ...", names=quoted_names(roots[:5]))
     )
-    notes = [Note(phrase("'{name}' has no parent", name=name), _span_of(links[name].element)) for name in roots[:5]]
+    notes = [Note(phrase("'{name}' has no parent", name=name), _find_span(links[name].element)) for name in roots[:5]]
     element = links[roots[1]].element
     assert element is not None
     findings.reject(
@@ -165,7 +165,7 @@ def _check_parents(joints: Sequence[Joint], findings: Findings) -> None:
             child_element,
             "link",
             hint=phrase("remove one of the joints, or add a link for it: a link has only one parent"),
-            notes=(Note(phrase("'{name}' is defined here", name=first.name), _span_of(first.element)),),
+            notes=(Note(phrase("'{name}' is defined here", name=first.name), _find_span(first.element)),),
         )
 
 
@@ -195,10 +195,10 @@ def _check_reachable(root: str, links: Mapping[str, Link], joints: Sequence[Join
     unreachable_links = [name for name in links if name not in visited]
     if unreachable_links:
         consequence = phrase("{count} links are not below the root '{root}'", count=len(unreachable_links), root=root)
-        _report_loop(_loop_from(unreachable_links[0], joints), joints, consequence, findings)
+        _report_loop(_find_loop(unreachable_links[0], joints), joints, consequence, findings)
 
 
-def _loop_from(link: str, joints: Sequence[Joint]) -> list[str]:
+def _find_loop(link: str, joints: Sequence[Joint]) -> list[str]:
     """Return the links of the cycle above a link, from parent to child.
 
     The first and the last link are the same.
@@ -226,5 +226,5 @@ def _report_loop(loop: Sequence[str], joints: Sequence[Joint], consequence: str,
     )
 
 
-def _span_of(element: Element | None) -> Span | None:
+def _find_span(element: Element | None) -> Span | None:
     return None if element is None else element.span()

@@ -31,7 +31,7 @@ _DECIMAL_CHARACTERS = re.compile(r"[-+.0-9eE ]*").fullmatch
 
 _NAME = re.compile(r"[A-Za-z_]\w*").fullmatch
 
-_UNITS = {
+_UNIT_HINTS = {
     "deg": (phrase("angles are in radians"), 0.017453292519943295),
     "degrees": (phrase("angles are in radians"), 0.017453292519943295),
     "°": (phrase("angles are in radians"), 0.017453292519943295),
@@ -113,14 +113,14 @@ def number_hint(text: str) -> Phrase | None:
         return phrase("give one number")
     if stripped != to_ascii_text(stripped) and _is_number(to_ascii_text(stripped)):
         return phrase("use ASCII characters: '{text}'", text=to_ascii_text(stripped))
-    if stripped in _UNITS:
-        return _UNITS[stripped][0]
+    if stripped in _UNIT_HINTS:
+        return _UNIT_HINTS[stripped][0]
     name = stripped.strip("${}\uff5b\uff5d")
     if _NAME(name) and ("_" in name or name != stripped):
         return phrase("if it is the name of a xacro property, write {expression}", expression=f"${{{name}}}")
     match = _WITH_UNIT.fullmatch(text)
-    if match and match[2] in _UNITS:
-        reason, factor = _UNITS[match[2]]
+    if match and match[2] in _UNIT_HINTS:
+        reason, factor = _UNIT_HINTS[match[2]]
         return phrase("{reason}: '{value:.6g}'", reason=reason, value=float(match[1]) * factor)
     return None
 
@@ -206,11 +206,11 @@ JOINT_TYPES: tuple[str, ...] = get_args(JointType)
 JOINT_TYPES_TEXT = ", ".join(JOINT_TYPES)
 
 
-def _number_text(value: float) -> str | None:
+def _format_number(value: float) -> str | None:
     return None if isinf(value) else shortest_text(value)
 
 
-def _list_text(values: Iterable[float]) -> str:
+def _format_list(values: Iterable[float]) -> str:
     return " ".join(map(shortest_text, values))
 
 
@@ -232,18 +232,18 @@ def _read_joint_type(text: str) -> str:
     return text
 
 
-def _version(text: str) -> Version:
+def _parse_version(text: str) -> Version:
     major, minor = map(int, text.split("."))
     return major, minor
 
 
 TEXT = ValueType("text")
-NUMBER = ValueType("number", number, _number_text)
-VECTOR3 = ValueType("3 numbers", vector3, _list_text)
-QUATERNION = ValueType("4 numbers", _read_quaternion, _list_text)
-RGBA = ValueType("4 numbers from 0 to 1", _read_rgba, _list_text)
+NUMBER = ValueType("number", number, _format_number)
+VECTOR3 = ValueType("3 numbers", vector3, _format_list)
+QUATERNION = ValueType("4 numbers", _read_quaternion, _format_list)
+RGBA = ValueType("4 numbers from 0 to 1", _read_rgba, _format_list)
 JOINT_TYPE = ValueType("joint type", _read_joint_type)
-VERSION = ValueType("version", _version, lambda version: f"{version[0]}.{version[1]}")
+VERSION = ValueType("version", _parse_version, lambda version: f"{version[0]}.{version[1]}")
 
-COUNTS = {VECTOR3: 3, QUATERNION: 4, RGBA: 4}
+NUMBER_COUNTS = {VECTOR3: 3, QUATERNION: 4, RGBA: 4}
 """The count of numbers in a value, by the type of the value."""

@@ -34,7 +34,7 @@ def meanings(name: str) -> list[Phrase]:
                     paths_by_text.setdefault(phrase("- {line}", line=describe_attribute(attribute)), []).append(
                         (*path, attribute.name)
                     )
-    return [joined([_path_heading(paths), text], "\n\n") for text, paths in paths_by_text.items()]
+    return [joined([_format_heading(paths), text], "\n\n") for text, paths in paths_by_text.items()]
 
 
 def names() -> list[str]:
@@ -58,6 +58,6 @@ def _ends_with(path: _Path, suffix: _Path) -> bool:
     return path[-len(suffix) :] == suffix
 
 
-def _path_heading(paths: list[_Path]) -> str:
+def _format_heading(paths: list[_Path]) -> str:
     """Return a Markdown heading that lists paths relative to ``<robot>``."""
     return "# " + ", ".join(f"`{'.'.join(path[1:] or path)}`" for path in paths)

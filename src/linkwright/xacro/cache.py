@@ -112,9 +112,9 @@ def read_document(path: str, overlay: Overlay | None = None) -> Document:
         LinkwrightError: see `linkwright.xmltree.parse_file`.
     """
     if _SHARE_LINKS in path:  # a folder with links to the files of an unbuilt package
-        from linkwright.packages.share_layout import source_of  # imported here because few robots need it
+        from linkwright.packages.share_layout import find_source  # imported here because few robots need it
 
-        path = source_of(path)
+        path = find_source(path)
     unsaved = None if overlay is None else overlay.document(path)
     if unsaved is not None:
         return unsaved

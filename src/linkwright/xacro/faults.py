@@ -252,7 +252,7 @@ def _is_conditional(preceding_text: str) -> bool:
 
 def attribute_span(element: Element, name: str, start: int | None, end: int | None) -> Span | None:
     """Return the location of a part of an attribute's value, as exactly as possible, or None."""
-    from linkwright.xmltree.positions import attribute_value_range, raw_offset
+    from linkwright.xmltree.positions import attribute_value_range, find_raw_offset
 
     source = element.source
     if source is None:
@@ -266,7 +266,9 @@ def attribute_span(element: Element, name: str, start: int | None, end: int | No
         return source.span(value_range[0] + start, value_range[0] + end)
     if "&" not in raw_value and "\n" not in raw_value and "\t" not in raw_value and value is not None:
         return source.span(*value_range)  # the value differs from the source, such as in a block that was evaluated
-    return source.span(raw_offset(source.text, *value_range, start), raw_offset(source.text, *value_range, end))
+    return source.span(
+        find_raw_offset(source.text, *value_range, start), find_raw_offset(source.text, *value_range, end)
+    )
 
 
 def attribute_name_span(element: Element, name: str) -> Span | None:
@@ -285,7 +287,7 @@ def attribute_name_span(element: Element, name: str) -> Span | None:
 
 def text_part_span(text: Text, start: int | None, end: int | None) -> Span | None:
     """Return the location of a part of some character data, as exactly as possible, or None."""
-    from linkwright.xmltree.positions import raw_offset
+    from linkwright.xmltree.positions import find_raw_offset
 
     source = text.source
     if source is None:
@@ -297,7 +299,9 @@ def text_part_span(text: Text, start: int | None, end: int | None) -> Span | Non
         return source.span(text.offset, limit)
     if content.startswith(text.data, text.offset):
         return source.span(text.offset + start, text.offset + end)
-    return source.span(raw_offset(content, text.offset, limit, start), raw_offset(content, text.offset, limit, end))
+    return source.span(
+        find_raw_offset(content, text.offset, limit, start), find_raw_offset(content, text.offset, limit, end)
+    )
 
 
 def find_xml_hint(diagnostic: Diagnostic) -> Phrase | None:

@@ -57,11 +57,11 @@ def decode_with_encoding(data: bytes, name: str) -> Decoded:
         LinkwrightError: XML104 if the bytes are not text in the file's encoding, or XML106 if the file is a Git LFS
             pointer whose content was not fetched.
     """
-    _raise_if_pointer(data, name)
+    _check_not_pointer(data, name)
     for mark, encoding in _BYTE_ORDER_MARKS:
         if data.startswith(mark):
             return _decode(data[len(mark) :], encoding, name, phrase("its byte order mark specifies this encoding"))
-    _raise_if_binary(data, name)
+    _check_not_binary(data, name)
     try:
         return Decoded(data.decode(UTF_8))
     except UnicodeDecodeError:
@@ -80,17 +80,17 @@ def wrap_text(text: str, name: str) -> Decoded:
     Raises:
         LinkwrightError: XML106 if the text is a Git LFS pointer.
     """
-    _raise_if_pointer(text[:_POINTER_CHECK_LENGTH].encode("utf-8", "replace"), name)
+    _check_not_pointer(text[:_POINTER_CHECK_LENGTH].encode("utf-8", "replace"), name)
     return Decoded(text)
 
 
-def _raise_if_pointer(data: bytes, name: str) -> None:
+def _check_not_pointer(data: bytes, name: str) -> None:
     if is_pointer(data):
         message = phrase("cannot read '{path}': {reason}", path=name, reason=POINTER_REASON)
         raise LinkwrightError(Diagnostic("XML106", message, hint=POINTER_HINT))
 
 
-def _raise_if_binary(data: bytes, name: str) -> None:
+def _check_not_binary(data: bytes, name: str) -> None:
     beginning = data[:_BINARY_CHECK_LENGTH]
     if b"\0" not in beginning:
         return

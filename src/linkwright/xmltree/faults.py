@@ -10,17 +10,17 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, So
 from linkwright.diagnostics.lookalikes import lookalike_hint
 from linkwright.loading.deferred import lazy_pattern
 
-_CODE = expat_errors.codes
-_NO_ELEMENT = _CODE[expat_errors.XML_ERROR_NO_ELEMENTS]
-_INVALID_TOKEN = _CODE[expat_errors.XML_ERROR_INVALID_TOKEN]
-_UNCLOSED_TOKEN = _CODE[expat_errors.XML_ERROR_UNCLOSED_TOKEN]
-_MISMATCH = _CODE[expat_errors.XML_ERROR_TAG_MISMATCH]
-_DUPLICATE = _CODE[expat_errors.XML_ERROR_DUPLICATE_ATTRIBUTE]
-_JUNK = _CODE[expat_errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]
-_UNDEFINED_ENTITY = _CODE[expat_errors.XML_ERROR_UNDEFINED_ENTITY]
-_MISPLACED_DECLARATION = _CODE[expat_errors.XML_ERROR_MISPLACED_XML_PI]
-_SYNTAX = _CODE[expat_errors.XML_ERROR_SYNTAX]
-_UNCLOSED_CDATA = _CODE[expat_errors.XML_ERROR_UNCLOSED_CDATA_SECTION]
+_EXPAT_CODES = expat_errors.codes
+_NO_ELEMENT = _EXPAT_CODES[expat_errors.XML_ERROR_NO_ELEMENTS]
+_INVALID_TOKEN = _EXPAT_CODES[expat_errors.XML_ERROR_INVALID_TOKEN]
+_UNCLOSED_TOKEN = _EXPAT_CODES[expat_errors.XML_ERROR_UNCLOSED_TOKEN]
+_MISMATCH = _EXPAT_CODES[expat_errors.XML_ERROR_TAG_MISMATCH]
+_DUPLICATE = _EXPAT_CODES[expat_errors.XML_ERROR_DUPLICATE_ATTRIBUTE]
+_JUNK = _EXPAT_CODES[expat_errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]
+_UNDEFINED_ENTITY = _EXPAT_CODES[expat_errors.XML_ERROR_UNDEFINED_ENTITY]
+_MISPLACED_DECLARATION = _EXPAT_CODES[expat_errors.XML_ERROR_MISPLACED_XML_PI]
+_SYNTAX = _EXPAT_CODES[expat_errors.XML_ERROR_SYNTAX]
+_UNCLOSED_CDATA = _EXPAT_CODES[expat_errors.XML_ERROR_UNCLOSED_CDATA_SECTION]
 
 _CLOSING_TAG = lazy_pattern(r"</\s*([^\s>]*)\s*>?")
 _BARE_ATTRIBUTE = lazy_pattern(r"([^\s=/>\"'<]+)\s*$")
@@ -51,7 +51,7 @@ _NAMESPACES = {"xacro": "http://www.ros.org/wiki/xacro", "xi": "http://www.w3.or
 """The namespaces of the prefixes that descriptions use."""
 _AMPERSAND_HINT = phrase("write '&amp;' for the character '&'")
 _AND_HINT = phrase("write 'and' in an expression, or '&amp;' for each '&'")
-_MERGE_MARK = "<<<<<<< "
+_MERGE_MARKER = "<<<<<<< "
 """The text at the start of a merge conflict that git writes into a file."""
 _LESS_HINT = phrase("close the quotes of the attribute before it, or write '&lt;' for the character '<'")
 
@@ -67,10 +67,10 @@ def syntax_error(
         offset: the character offset at which expat stopped.
         open_elements: the name and offset of each element that is not yet closed, outermost first.
     """
-    return LinkwrightError(_Fault(source, offset, open_elements).describe(error))
+    return LinkwrightError(_FaultFinder(source, offset, open_elements).describe(error))
 
 
-def undeclared_prefix(source: SourceText, offset: int, name: str) -> LinkwrightError:
+def undeclared_prefix_error(source: SourceText, offset: int, name: str) -> LinkwrightError:
     """Return the error for a name whose namespace prefix is not declared."""
     prefix, _, local_name = name.partition(":")
     similar = [] if prefix in _NAMESPACES else nearest(prefix, _NAMESPACES, 1)
@@ -91,7 +91,7 @@ def undeclared_prefix(source: SourceText, offset: int, name: str) -> LinkwrightE
     )
 
 
-def forbidden_entity(source: SourceText, offset: int, message: Phrase) -> LinkwrightError:
+def forbidden_entity_error(source: SourceText, offset: int, message: Phrase) -> LinkwrightError:
     """Return the error for an entity that would read another file or grow without bound."""
     return LinkwrightError(
         Diagnostic(
@@ -118,14 +118,14 @@ _FIRST_ELEMENTS = (
 """The first elements of files, by the ends of their names."""
 
 
-def _first_element_hint(name: str) -> Phrase:
+def _make_first_element_hint(name: str) -> Phrase:
     for end, element in _FIRST_ELEMENTS:
         if name.endswith(end):
             return phrase("such a file begins with {element}; was the file saved?", element=element)
     return phrase("was the file saved?")
 
 
-class _Fault:
+class _FaultFinder:
     def __init__(self, source: SourceText, offset: int, open_elements: list[tuple[str, int]]) -> None:
         self._source = source
         self._text = source.text
@@ -136,7 +136,7 @@ class _Fault:
         code = error.code
         if not self._text.strip():
             message = phrase("'{name}' is empty", name=self._source.name)
-            hint = _first_element_hint(self._source.name)
+            hint = _make_first_element_hint(self._source.name)
             return Diagnostic("XML105", message, span=self._source.span(0, 0), hint=hint, source=self._source)
         if template := self._template():
             return template
@@ -178,7 +178,7 @@ class _Fault:
             )
         if code == _SYNTAX and self._open == []:
             return self._not_xml()
-        return self._diagnostic("XML206", _expat_message(error))
+        return self._diagnostic("XML206", _translate_expat_message(error))
 
     def _template(self) -> Diagnostic | None:
         """Return the error for a template whose placeholders are not valid XML, or None."""
@@ -304,12 +304,12 @@ class _Fault:
 
     def _unfinished_merge(self) -> Diagnostic | None:
         line = self._text.rfind("\n", 0, self._offset) + 1
-        if not self._text.startswith(_MERGE_MARK, line):
+        if not self._text.startswith(_MERGE_MARKER, line):
             return None
         return self._diagnostic(
             "XML206",
             phrase("there is an unresolved merge conflict here"),
-            len(_MERGE_MARK.rstrip()),
+            len(_MERGE_MARKER.rstrip()),
             offset=line,
             hint=phrase("keep one of the two, and remove the lines with '<<<<<<<', '=======' and '>>>>>>>'"),
         )
@@ -324,10 +324,10 @@ class _Fault:
         return None if self._character == "<" or "<" in self._text[: self._offset] else self._not_xml()
 
     def _lone_ampersand(self) -> Diagnostic | None:
-        match_ = _LONE_AMPERSAND.search(self._preceding_text)
-        if match_ is None:
+        match = _LONE_AMPERSAND.search(self._preceding_text)
+        if match is None:
             return None
-        start = self._offset - len(match_[0])
+        start = self._offset - len(match[0])
         hint = _AND_HINT if self._text[start : start + 2] == "&&" else _AMPERSAND_HINT
         return self._diagnostic("XML206", phrase("'&' does not begin an entity"), offset=start, hint=hint)
 
@@ -375,20 +375,20 @@ class _Fault:
         """Return the error for unclosed quotes around a value of the previous tag, or None."""
         tag_start = self._text.rfind("<", 0, self._offset)
         tag = _QUOTED.sub(lambda value: " " * len(value[0]), self._text[max(tag_start, 0) : self._offset])
-        match_ = _OPEN_QUOTE.search(tag)
-        if tag_start < 0 or match_ is None or ">" not in match_[2]:
+        match = _OPEN_QUOTE.search(tag)
+        if tag_start < 0 or match is None or ">" not in match[2]:
             return None
-        message = phrase("the quotes around the value of '{attribute}' are not closed", attribute=match_[1])
-        hint = lookalike_hint(match_[2]) or phrase("write a quote at the end of the value")
-        return self._diagnostic("XML206", message, len(match_[1]), offset=tag_start + match_.start(), hint=hint)
+        message = phrase("the quotes around the value of '{attribute}' are not closed", attribute=match[1])
+        hint = lookalike_hint(match[2]) or phrase("write a quote at the end of the value")
+        return self._diagnostic("XML206", message, len(match[1]), offset=tag_start + match.start(), hint=hint)
 
     def _unclosed_quote(self) -> Diagnostic | None:
-        match_ = _UNCLOSED_QUOTE.search(self._preceding_text)
-        if match_ is None:
+        match = _UNCLOSED_QUOTE.search(self._preceding_text)
+        if match is None:
             return None
-        message = phrase("the quotes around the value of '{attribute}' are not closed", attribute=match_[1])
-        start, hint = self._offset - len(match_[0]), phrase("write a quote at the end of the value")
-        return self._diagnostic("XML206", message, len(match_[1]), offset=start, hint=hint)
+        message = phrase("the quotes around the value of '{attribute}' are not closed", attribute=match[1])
+        start, hint = self._offset - len(match[0]), phrase("write a quote at the end of the value")
+        return self._diagnostic("XML206", message, len(match[1]), offset=start, hint=hint)
 
     def _missing_space(self) -> Diagnostic | None:
         if not self._preceding_text.endswith(('"', "'")) or not _NAME.match(self._character):
@@ -421,5 +421,5 @@ class _Fault:
         return self._diagnostic("XML204", message, max(1, len(attribute)), hint=phrase("keep one of the two"))
 
 
-def _expat_message(error: ExpatError) -> Phrase:
+def _translate_expat_message(error: ExpatError) -> Phrase:
     return phrase("this is not well-formed XML: {reason}", reason=foreign(str(error).partition(":")[0]))

@@ -57,7 +57,7 @@ class _Node:
 
     @property
     def is_verbatim(self) -> bool:
-        """Whether whitespace in the content may be significant, so that the content must not change.
+        """Whether whitespace in the content may be significant and must not change.
 
         This is the case if the content is only whitespace or includes text, or if the element has ``xml:space``.
         """
@@ -89,7 +89,7 @@ def format_text(text: str, name: str, style: Style = Style()) -> str:  # noqa: B
     body = text[len(byte_order_mark) :]
     layout = _Layout(body, style, newline)
     formatted = byte_order_mark + layout.document(_read_nodes(body))
-    if not _are_equal(_top_nodes(original), _top_nodes(parse(formatted, name))):
+    if not _are_equal(_list_top_nodes(original), _list_top_nodes(parse(formatted, name))):
         message = phrase("'{file}' cannot be formatted without changing its meaning", file=name)
         raise LinkwrightError(Diagnostic("XML303", message, hint=phrase("report this as a bug, and attach the file")))
     return formatted
@@ -173,7 +173,7 @@ class _Layout:
             else:
                 if blanks.count("\n") > 1:
                     parts.append(self._newline)
-                parts += [self._margin(depth), self._format_node(node, depth), self._newline]
+                parts += [self._make_margin(depth), self._format_node(node, depth), self._newline]
             previous, blanks = node, ""
         if blanks.count("\n") > 1:
             parts.append(self._newline)
@@ -198,10 +198,10 @@ class _Layout:
             return start + self._text[node.token.end : node.closing.start] + end
         if "\n" not in self._text[node.token.start : node.end]:
             line = self._format_on_one_line(node)
-            if len(self._margin(depth)) + len(line) <= self._style.width:
+            if len(self._make_margin(depth)) + len(line) <= self._style.width:
                 return line
         inner = self._format_lines(node.children, depth + 1)
-        return start + self._newline + inner + self._margin(depth) + end
+        return start + self._newline + inner + self._make_margin(depth) + end
 
     def _format_on_one_line(self, node: _Node) -> str:
         """Return a node with its content on one line."""
@@ -238,15 +238,15 @@ class _Layout:
         Attributes stay on their lines. If a line becomes too long, its attributes continue on the next line.
         """
         attributes = tag.attributes()
-        margin = self._margin(depth)
+        margin = self._make_margin(depth)
         line = self._format_tag_on_one_line(tag)
         is_broken = bool(attributes) and "\n" in tag.text[: attributes[-1].end - tag.start]
         if not attributes or (not is_broken and len(margin) + len(line) <= self._style.width):
             return line
-        rows = self._rows(tag, attributes)
+        rows = self._group_by_line(tag, attributes)
         opening = f"<{tag.name}"
-        step = self._margin(depth + 1)
-        if rows[0] and len(rows) > 1 and self._column(rows[1][0]) == self._column(rows[0][0]):
+        step = self._make_margin(depth + 1)
+        if rows[0] and len(rows) > 1 and self._compute_column(rows[1][0]) == self._compute_column(rows[0][0]):
             step = margin + " " * (len(opening) + 1)
         lines = [margin + opening]
         for index, row in enumerate(rows):
@@ -259,25 +259,25 @@ class _Layout:
                 if has_content and len(lines[-1].rsplit("\n", 1)[-1]) + 1 + len(first_line) > self._style.width:
                     lines.append(step.removesuffix(" "))
                 lines[-1] += " " + attribute_text
-        ending = self._ending(tag)
+        ending = self._format_ending(tag)
         if not rows[0] and "\n" in tag.text[attributes[-1].end - tag.start :]:
             lines.append(margin + ending.strip())
         else:
             lines[-1] += ending
         return self._newline.join(lines).removeprefix(margin)
 
-    def _column(self, attribute: TokenAttribute) -> int:
+    def _compute_column(self, attribute: TokenAttribute) -> int:
         return attribute.start - self._text.rfind("\n", 0, attribute.start)
 
     def _format_tag_on_one_line(self, tag: Token) -> str:
         attribute_text = "".join(f" {_format_attribute(attribute)}" for attribute in tag.attributes())
-        return f"<{tag.name}{attribute_text}{self._ending(tag)}"
+        return f"<{tag.name}{attribute_text}{self._format_ending(tag)}"
 
-    def _ending(self, tag: Token) -> str:
+    def _format_ending(self, tag: Token) -> str:
         return self._empty_tag_end if tag.is_empty_element else ">"
 
     @staticmethod
-    def _rows(tag: Token, attributes: Sequence[TokenAttribute]) -> list[list[TokenAttribute]]:
+    def _group_by_line(tag: Token, attributes: Sequence[TokenAttribute]) -> list[list[TokenAttribute]]:
         """Return the attributes by line.
 
         The first row is on the line of the tag's name, and may be empty.
@@ -291,7 +291,7 @@ class _Layout:
             end = attribute.end
         return rows
 
-    def _margin(self, depth: int) -> str:
+    def _make_margin(self, depth: int) -> str:
         return " " * (self._style.indent * depth)
 
 
@@ -299,7 +299,7 @@ def _format_attribute(attribute: TokenAttribute) -> str:
     return f"{attribute.name}={attribute.quote}{attribute.value}{attribute.quote}"
 
 
-def _top_nodes(document: Document) -> list[Node]:
+def _list_top_nodes(document: Document) -> list[Node]:
     return [*document.prolog, document.root, *document.epilog]
 
 

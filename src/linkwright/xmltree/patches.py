@@ -1,4 +1,4 @@
-"""Minimal changes to an XML text: the ranges of elements in the text, and their replacement.
+"""Minimal changes to an XML text: ranges of elements, and their replacement.
 
 Everything outside the ranges, including formatting and comments, is unchanged.
 """
@@ -54,7 +54,7 @@ def apply(text: str, edits: Iterable[Replacement]) -> str:
     return "".join([*parts, text[position:]])
 
 
-def escaped(value: str) -> str:
+def escape(value: str) -> str:
     """Return a value escaped for use between double quotes."""
     return "".join(_ENTITIES.get(character, character) for character in value)
 
@@ -90,7 +90,7 @@ def find_start_tag(element: Element) -> StartTag | None:
     return StartTag(element.offset, name.end() + len(attribute_text.rstrip()), rest_of_tag.end(), is_whole)
 
 
-def element_range(element: Element) -> tuple[int, int] | None:
+def find_element_range(element: Element) -> tuple[int, int] | None:
     """Return the character offsets of an element's ``<`` and after its last ``>``.
 
     The result is None if the source does not contain the element.
@@ -116,7 +116,7 @@ def element_range(element: Element) -> tuple[int, int] | None:
     return element.offset, end
 
 
-def whole_lines(text: str, start: int, end: int) -> tuple[int, int]:
+def extend_to_whole_lines(text: str, start: int, end: int) -> tuple[int, int]:
     """Return a range extended to complete lines, unless the lines have other content."""
     line_start = text.rfind("\n", 0, start) + 1
     line_end = text.find("\n", end)
@@ -125,7 +125,7 @@ def whole_lines(text: str, start: int, end: int) -> tuple[int, int]:
     return (line_start, line_end) if is_alone else (start, end)
 
 
-def block(element: Element, indent: str = "", step: str = _INDENT, newline: str = "\n") -> str:
+def format_block(element: Element, indent: str = "", step: str = _INDENT, newline: str = "\n") -> str:
     """Return the text of an element for insertion into a file, without a final line ending.
 
     Args:
@@ -134,17 +134,17 @@ def block(element: Element, indent: str = "", step: str = _INDENT, newline: str 
         step: the additional indentation of the children.
         newline: the line ending.
     """
-    opening = element.tag + "".join(f' {name}="{escaped(value)}"' for name, value in element.attributes.items())
+    opening = element.tag + "".join(f' {name}="{escape(value)}"' for name, value in element.attributes.items())
     children = list(element.elements())
     if not children:
         text = element.text()
-        return f"<{opening}>{escaped(text)}</{element.tag}>" if text else f"<{opening}/>"
+        return f"<{opening}>{escape(text)}</{element.tag}>" if text else f"<{opening}/>"
     child_indent = indent + step
-    lines = [f"<{opening}>", *(child_indent + block(child, child_indent, step, newline) for child in children)]
+    lines = [f"<{opening}>", *(child_indent + format_block(child, child_indent, step, newline) for child in children)]
     return newline.join([*lines, f"{indent}</{element.tag}>"])
 
 
-def insertion(
+def make_insertion(
     owner: Element, new_elements: Sequence[Element], *, after: Element | None = None, first: bool = False
 ) -> Replacement | None:
     """Return the replacement that inserts elements into an element with matching indentation.
@@ -158,14 +158,14 @@ def insertion(
     Returns:
         The replacement, or None if the owner's source does not contain it.
     """
-    owner_range = element_range(owner)
+    owner_range = find_element_range(owner)
     tag = find_start_tag(owner)
     if owner_range is None or tag is None or owner.source is None:
         return None
     text, (start, end) = owner.source.text, owner_range
-    newline, owner_indent = line_ending(text), _line_indent(text, start)
+    newline, owner_indent = line_ending(text), _find_line_indent(text, start)
     child = next(owner.elements(), None)
-    child_indent = owner_indent + _INDENT if child is None else _line_indent(text, child.offset)
+    child_indent = owner_indent + _INDENT if child is None else _find_line_indent(text, child.offset)
     in_line = child is not None and "\n" not in text[start : child.offset]
     if in_line:
         child_indent = owner_indent + _INDENT
@@ -175,13 +175,15 @@ def insertion(
         else _INDENT
     )
     if tag.is_empty_element:
-        lines = newline.join(child_indent + block(element, child_indent, step, newline) for element in new_elements)
+        lines = newline.join(
+            child_indent + format_block(element, child_indent, step, newline) for element in new_elements
+        )
         return Replacement(tag.insertion_offset, end, f">{newline}{lines}{newline}{owner_indent}</{owner.tag}>")
-    after_range = element_range(after) if after is not None else None
+    after_range = find_element_range(after) if after is not None else None
     if in_line and not any(True for element in new_elements for _ in element.elements()):
         offset = after_range[1] if after_range else tag.end if first else text.rindex("</", start, end)
-        return Replacement(offset, offset, "".join(block(element) for element in new_elements))
-    lines = newline.join(child_indent + block(element, child_indent, step, newline) for element in new_elements)
+        return Replacement(offset, offset, "".join(format_block(element) for element in new_elements))
+    lines = newline.join(child_indent + format_block(element, child_indent, step, newline) for element in new_elements)
     if after_range is not None:
         return Replacement(after_range[1], after_range[1], f"{newline}{lines}")
     if first and child is not None:
@@ -195,7 +197,7 @@ def insertion(
     return Replacement(closing, closing, f"{newline}{lines}{newline}{owner_indent}")
 
 
-def _line_indent(text: str, offset: int) -> str:
+def _find_line_indent(text: str, offset: int) -> str:
     """Return the whitespace at the beginning of the line that contains an offset."""
     line = text[text.rfind("\n", 0, offset) + 1 : offset]
     return line[: len(line) - len(line.lstrip())]

@@ -27,7 +27,7 @@ def attribute_value_range(text: str, offset: int, name: str) -> tuple[int, int] 
     Returns:
         The start and end (exclusive), or None if the tag does not have the attribute.
     """
-    ranges = _attributes(text, offset).get(name)
+    ranges = _find_attributes(text, offset).get(name)
     return ranges and ranges[1]
 
 
@@ -36,11 +36,11 @@ def attribute_name_range(text: str, offset: int, name: str) -> tuple[int, int] |
 
     `offset` is the character offset of the start tag's ``<``.
     """
-    attribute = _attributes(text, offset).get(name)
+    attribute = _find_attributes(text, offset).get(name)
     return attribute and attribute[0]
 
 
-def start_tag_end(text: str, offset: int) -> int:
+def find_start_tag_end(text: str, offset: int) -> int:
     """Return the offset after the start tag whose ``<`` is at an offset of a well-formed text."""
     match = _START_TAG.match(text, offset)
     assert match is not None, "the text was parsed"
@@ -52,7 +52,7 @@ _read_last: tuple[str, int, _Ranges] = ("", -1, {})
 """The last tag that was read, because callers often need several attributes of one tag."""
 
 
-def _attributes(text: str, offset: int) -> _Ranges:
+def _find_attributes(text: str, offset: int) -> _Ranges:
     """Return the ranges of each attribute's name and value in a start tag, by name.
 
     `offset` is the offset of the start tag's ``<``.
@@ -62,16 +62,16 @@ def _attributes(text: str, offset: int) -> _Ranges:
     if last_text is text and last_offset == offset:
         return ranges
     ranges = {}
-    match_ = _TAG_NAME.match(text, offset)
-    while match_ is not None:
-        match_ = _ATTRIBUTE.match(text, match_.end())
-        if match_ is not None:
-            ranges.setdefault(match_[1], (match_.span(1), (match_.start(2) + 1, match_.end(2) - 1)))
+    match = _TAG_NAME.match(text, offset)
+    while match is not None:
+        match = _ATTRIBUTE.match(text, match.end())
+        if match is not None:
+            ranges.setdefault(match[1], (match.span(1), (match.start(2) + 1, match.end(2) - 1)))
     _read_last = (text, offset, ranges)
     return ranges
 
 
-def raw_offset(text: str, start: int, end: int, index: int) -> int:
+def find_raw_offset(text: str, start: int, end: int, index: int) -> int:
     """Return the offset in the source of the character at an index of a parsed value.
 
     The parsed value may be shorter than its source: an entity such as ``&lt;`` becomes one character, and a Windows

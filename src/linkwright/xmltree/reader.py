@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-GROWTH_LIMIT = 1_000_000
+MAX_ENTITY_GROWTH = 1_000_000
 """The maximum number of characters to which all entities of one document may expand."""
 
 _ENTITY_REFERENCE = r"&([^\s#;&<]+);"  # compiled on first use, because few files need it
@@ -66,16 +66,16 @@ class EntityGuard:
         expanded_length = self._lengths.get(name)
         if expanded_length is None:
             if len(enclosing_names) > 100:
-                return GROWTH_LIMIT + 1
+                return MAX_ENTITY_GROWTH + 1
             expanded_length = len(value) + sum(
                 self._expanded_length(nested_name, (*enclosing_names, name))
                 for nested_name in re.findall(_ENTITY_REFERENCE, value)
             )
-            expanded_length = self._lengths[name] = min(expanded_length, GROWTH_LIMIT + 1)
+            expanded_length = self._lengths[name] = min(expanded_length, MAX_ENTITY_GROWTH + 1)
         return expanded_length
 
 
-_BEYOND_ASCII = rb"[\x80-\xff]+"  # compiled on first use, because few files need it
+_NON_ASCII = rb"[\x80-\xff]+"  # compiled on first use, because few files need it
 _CDATA_START = len("<![CDATA[")
 
 
@@ -124,10 +124,10 @@ def read_bytes(path: str | Path) -> bytes:
         data = read_file(path, MAX_TEXT_BYTES)
     except FileNotFoundError:
         message = phrase("no such file: '{path}'", path=as_typed(path))
-        raise LinkwrightError(Diagnostic("XML101", message, hint=_missing_hint(path))) from None
+        raise LinkwrightError(Diagnostic("XML101", message, hint=_make_missing_hint(path))) from None
     except IsADirectoryError:
         message = phrase("'{path}' is a folder, not a file", path=path)
-        hint = _missing_hint(os.path.join(path, "_.xacro"))  # noqa: PTH118 - pathlib takes long to import
+        hint = _make_missing_hint(os.path.join(path, "_.xacro"))  # noqa: PTH118 - pathlib takes long to import
         raise LinkwrightError(Diagnostic("XML102", message, hint=hint)) from None
     except NoWriterError:
         pipe = phrase("it is a pipe without a writer")
@@ -154,7 +154,7 @@ def read_bytes(path: str | Path) -> bytes:
     return data
 
 
-def _missing_hint(path: str | Path) -> Phrase:
+def _make_missing_hint(path: str | Path) -> Phrase:
     from pathlib import Path
 
     return missing_file_hint(Path(path))
@@ -228,7 +228,7 @@ class _Reader:
             # text.
             text_offset = parser.CurrentByteIndex - len(data)
             if not (is_ascii and text.startswith(data, text_offset)):
-                text_offset = self._text_start(data)
+                text_offset = self._find_text_start(data)
             children.append(Text(data, source, text_offset))
 
         return characters
@@ -279,13 +279,13 @@ class _Reader:
             return
         used_prefixes = {name.partition(":")[0] for name in self._parser.intern if name and ":" in name}
         for root in self._top.elements():
-            declared_prefixes = {"xml", "xmlns", *_declared_prefixes(root)}
+            declared_prefixes = {"xml", "xmlns", *_list_declared_prefixes(root)}
             if used_prefixes <= declared_prefixes:
                 return  # the usual case
             pending = [(root, declared_prefixes)]
             while pending:
                 element, declared_prefixes = pending.pop()
-                declared_prefixes = declared_prefixes.union(_declared_prefixes(element))
+                declared_prefixes = declared_prefixes.union(_list_declared_prefixes(element))
                 for name in (element.tag, *element.attributes):
                     prefix, colon, _ = name.partition(":")
                     if colon and prefix not in declared_prefixes:
@@ -294,14 +294,14 @@ class _Reader:
                 pending.extend((child, declared_prefixes) for child in reversed(list(element.elements())))
 
     def _refuse_prefix(self, offset: int, name: str) -> NoReturn:
-        from linkwright.xmltree.faults import undeclared_prefix
+        from linkwright.xmltree.faults import undeclared_prefix_error
 
-        raise undeclared_prefix(self._source, offset, name)
+        raise undeclared_prefix_error(self._source, offset, name)
 
     def _refuse_entity(self, offset: int, message: Phrase) -> NoReturn:
-        from linkwright.xmltree.faults import forbidden_entity
+        from linkwright.xmltree.faults import forbidden_entity_error
 
-        raise forbidden_entity(self._source, offset, message)
+        raise forbidden_entity_error(self._source, offset, message)
 
     # character data
 
@@ -316,9 +316,9 @@ class _Reader:
         elif isinstance(last_child, Text) and not last_child.cdata:
             last_child.data += data
         else:
-            children.append(Text(data, self._source, self._text_start(data)))
+            children.append(Text(data, self._source, self._find_text_start(data)))
 
-    def _text_start(self, data: str) -> int:
+    def _find_text_start(self, data: str) -> int:
         # If the source of a text is longer than its parsed form, because of entities or Windows line endings, the text
         # begins after the previous tag.
         end = self._parser.CurrentByteIndex
@@ -366,10 +366,10 @@ class _Reader:
             subset = declaration[declaration.index("[") + 1 : declaration.rindex("]")]
             self._doctype += f" [{subset}]"
         self._doctype += ">"
-        if self._entities and self._entities.growth(self._source.text) > GROWTH_LIMIT:
+        if self._entities and self._entities.growth(self._source.text) > MAX_ENTITY_GROWTH:
             message = phrase(
                 "the entities of this document expand to more than {growth_limit:,} characters",
-                growth_limit=GROWTH_LIMIT,
+                growth_limit=MAX_ENTITY_GROWTH,
             )
             self._refuse_entity(self._source.text.find("<!ENTITY"), message)
 
@@ -399,7 +399,7 @@ class _Reader:
             self._refuse_entity(offset, phrase("the entity '&{name};' is not defined", name=name))
 
 
-def _declared_prefixes(element: Element) -> list[str]:
+def _list_declared_prefixes(element: Element) -> list[str]:
     return [name[6:] for name in element.attributes if name.startswith("xmlns:")]
 
 
@@ -411,7 +411,7 @@ def _to_character_offsets(document: Document, data: bytes) -> None:
     """Convert the byte offsets of all nodes to character offsets."""
     ends: list[int] = []
     surplus = [0]  # bytes minus characters, up to the end of each run of non-ASCII characters
-    for run in re.finditer(_BEYOND_ASCII, data):
+    for run in re.finditer(_NON_ASCII, data):
         ends.append(run.end())
         surplus.append(surplus[-1] + len(run[0]) - len(run[0].decode("utf-8", "replace")))
     nodes: list[Node] = [*document.prolog, document.root, *document.epilog]
@@ -430,7 +430,9 @@ class Overlay:
     """
 
     def __init__(self, texts: Mapping[str | os.PathLike[str], str] | None = None) -> None:
-        self._texts: dict[str | os.PathLike[str], str] = {_key(path): text for path, text in (texts or {}).items()}
+        self._texts: dict[str | os.PathLike[str], str] = {
+            _to_real_path(path): text for path, text in (texts or {}).items()
+        }
         self._documents: dict[str, Document] = {}
 
     @property
@@ -440,7 +442,7 @@ class Overlay:
 
     def text(self, path: str | os.PathLike[str]) -> str | None:
         """Return the replacement text of a file, or None if the file has no replacement."""
-        return self._texts.get(_key(path)) if self._texts else None
+        return self._texts.get(_to_real_path(path)) if self._texts else None
 
     def document(self, path: str) -> Document | None:
         """Return the document of a file's replacement text, or None if the file has no replacement.
@@ -467,7 +469,7 @@ class Overlay:
         return decode_with_encoding(read_bytes(path), path) if text is None else wrap_text(text, path)
 
 
-def _key(path: str | os.PathLike[str]) -> str:
+def _to_real_path(path: str | os.PathLike[str]) -> str:
     """Return the real path of a file, so that all paths to it have the same key.
 
     Packages are often installed as symbolic links.

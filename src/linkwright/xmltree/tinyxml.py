@@ -85,7 +85,7 @@ def _insert_blanks(text: str, offset: int) -> str:
     """
     if text[offset - 1 : offset] not in ("'", '"'):
         return text
-    for value in _values_without_blank_after(text):
+    for value in _find_values_without_blank_after(text):
         if value.start == value.end or text[value.end - 1] == ";":
             return text  # An empty value, or one that ends with an entity, has no character to overwrite.
         text = text[: value.end - 1] + text[value.end] + " " + text[value.end + 1 :]
@@ -101,7 +101,7 @@ def restore_characters(document: Document, text: str) -> None:
     `text` is the text before the repairs.
     """
     shortened_values: dict[int, list[_Value]] = {}
-    for value in _values_without_blank_after(text):
+    for value in _find_values_without_blank_after(text):
         shortened_values.setdefault(value.tag, []).append(value)
     nodes: list[Node] = [*document.prolog, document.root, *document.epilog]
     while nodes:
@@ -130,19 +130,19 @@ class _Value(NamedTuple):
 
 
 def _iterate_values(text: str) -> Iterator[_Value]:
-    return (value for value, _ in _values_and_blanks(text))
+    return (value for value, _ in _iterate_values_and_blanks(text))
 
 
-def _values_without_blank_after(text: str) -> Iterator[_Value]:
+def _find_values_without_blank_after(text: str) -> Iterator[_Value]:
     """Yield each value that is followed by another attribute without whitespace between them."""
     previous_value: _Value | None = None
-    for value, blanks in _values_and_blanks(text):
+    for value, blanks in _iterate_values_and_blanks(text):
         if previous_value is not None and previous_value.tag == value.tag and not blanks:
             yield previous_value
         previous_value = value
 
 
-def _values_and_blanks(text: str) -> Iterator[tuple[_Value, str]]:
+def _iterate_values_and_blanks(text: str) -> Iterator[tuple[_Value, str]]:
     markup = blank_outside_tags(text)
     position = 0
     while tag := _TAG_START.search(markup, position):
@@ -188,7 +188,7 @@ def parse_as_tinyxml(
     for tolerate in (_tolerate_text_before_root, _tolerate_second_declaration, _tolerate_dashes, _tolerate_ampersands):
         read_as, mistake = tolerate(source, read_as)
         if mistake:
-            warnings.append(forbidden(mistake.message, mistake.span, source, mistake.hint, readers))
+            warnings.append(make_forbidden_warning(mistake.message, mistake.span, source, mistake.hint, readers))
     document, parser_warnings = _parse_leniently(source, read_as, readers)
     if warnings or parser_warnings:
         restore_characters(document, text)
@@ -207,7 +207,7 @@ def _tolerate_text_before_root(source: SourceText, read_as: str) -> tuple[str, _
         return read_as, None
     span = source.span(text_match.start(1), text_match.start(1) + len(text_match[1].rstrip()))
     hint = phrase("an XML file may have only comments before its root element")
-    return _with_blank_group(read_as, text_match), _Mistake(phrase("there is text before the root element"), span, hint)
+    return _blank_out_group(read_as, text_match), _Mistake(phrase("there is text before the root element"), span, hint)
 
 
 def _tolerate_second_declaration(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
@@ -216,7 +216,7 @@ def _tolerate_second_declaration(source: SourceText, read_as: str) -> tuple[str,
         return read_as, None
     span = source.span(declaration.start(1), declaration.start(1) + len("<?xml"))
     message = phrase("a second XML declaration follows the first")
-    return _with_blank_group(read_as, declaration), _Mistake(message, span, phrase("remove it"))
+    return _blank_out_group(read_as, declaration), _Mistake(message, span, phrase("remove it"))
 
 
 def _tolerate_dashes(source: SourceText, read_as: str) -> tuple[str, _Mistake | None]:
@@ -248,7 +248,7 @@ def _tolerate_ampersands(source: SourceText, read_as: str) -> tuple[str, _Mistak
     )
 
 
-def _with_blank_group(text: str, match: re.Match[str]) -> str:
+def _blank_out_group(text: str, match: re.Match[str]) -> str:
     """Return the text with the first group of a match replaced by spaces."""
     return text[: match.start(1)] + blank_out(match[1]) + text[match.end(1) :]
 
@@ -261,7 +261,9 @@ def blank_out(text: str) -> str:
     return re.sub(r"\S", " ", text)
 
 
-def forbidden(message: Phrase, span: Span, source: SourceText, hint: Phrase, readers: Phrase) -> Diagnostic:
+def make_forbidden_warning(
+    message: Phrase, span: Span, source: SourceText, hint: Phrase, readers: Phrase
+) -> Diagnostic:
     """Return a warning about a construct that XML forbids and TinyXML2 accepts."""
     return Diagnostic("XML206", message, span, Severity.WARNING, (Note(readers),), hint, source)
 
@@ -274,9 +276,12 @@ def _parse_leniently(source: SourceText, read_as: str, readers: Phrase) -> tuple
         if first.code == _UNDECLARED_PREFIX_CODE:
             document = parse(source.text, source.name, blanks=False, read_as=read_as, any_prefix=True)
             return document, (first.with_changes(severity=Severity.WARNING),)
-        end = _end_of_root(first, read_as)
+        end = _find_end_of_root(first, read_as)
         if end is not None and _is_ignored_content(read_as[end:]):
-            warning, read_as = _ignored_content_warning(source, end, readers), read_as[:end] + blank_out(read_as[end:])
+            warning, read_as = (
+                _make_ignored_content_warning(source, end, readers),
+                read_as[:end] + blank_out(read_as[end:]),
+            )
         else:
             warning, read_as = (
                 first.with_changes(severity=Severity.WARNING, notes=(Note(readers),)),
@@ -309,7 +314,7 @@ def _repair_text(source: SourceText, error: LinkwrightError, text: str) -> str:
     raise error
 
 
-def _ignored_content_warning(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
+def _make_ignored_content_warning(source: SourceText, end: int, readers: Phrase) -> Diagnostic:
     """Return the warning about content after the root."""
     message = phrase("there is content after the end of the root element")
     hint = phrase("keep one root element: an XML file has exactly one")
@@ -318,7 +323,7 @@ def _ignored_content_warning(source: SourceText, end: int, readers: Phrase) -> D
     )
 
 
-def _end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
+def _find_end_of_root(diagnostic: Diagnostic, text: str) -> int | None:
     """Return the offset at which content after the root may begin, or None for other errors."""
     if diagnostic.span is None or diagnostic.source is None:
         return None

@@ -116,7 +116,7 @@ class Token(NamedTuple):
         """Return the attributes of a start tag in source order, or an empty list for other tokens."""
         if self.kind is not Kind.START:
             return []
-        return [*_attributes(self)]
+        return [*_find_attributes(self)]
 
 
 def tokens(text: str) -> Iterator[Token]:
@@ -141,7 +141,7 @@ def tokens(text: str) -> Iterator[Token]:
         position = markup_match.end()
 
 
-def _attributes(tag: Token) -> Iterator[TokenAttribute]:
+def _find_attributes(tag: Token) -> Iterator[TokenAttribute]:
     position = tag.name_start - tag.start + len(tag.name)
     for attribute_match in _ATTRIBUTE_PATTERN.finditer(tag.text, position):
         name, equals = attribute_match[1], attribute_match[2]

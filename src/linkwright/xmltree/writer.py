@@ -1,6 +1,6 @@
 """Serialize a tree to XML text.
 
-The format is the same as from ros/xacro 2.1 on Python up to 3.12: minidom's ``toprettyxml`` with an indentation of two
+The output matches that of ros/xacro 2.1 on Python up to 3.12: minidom's ``toprettyxml`` with an indentation of two
 spaces, attributes in alphabetical order, no texts of only whitespace, and elements that contain only text on one line.
 This writer produces the same format on every Python version.
 """
@@ -87,28 +87,28 @@ def _write_nodes(nodes: Iterable[Node], write_text: Callable[[str], None], inden
                 if node.cdata:
                     write_text(f"<![CDATA[{data.replace(']]>', ']]]]><![CDATA[>')}]]>")
                 elif data and not data.isspace():
-                    write_text(f"{indent}{_escaped_text(data)}\n")
+                    write_text(f"{indent}{_escape_text(data)}\n")
             elif isinstance(node, LazyCopy) and node.original is not None:
-                write_text(_text_of_original(node, indent))
+                write_text(_write_original(node, indent))
             elif isinstance(node, Element):
                 tag, children = node.tag, node.children
-                attributes = _attributes_text(node.attributes) if node.attributes else ""
+                attributes = _format_attributes(node.attributes) if node.attributes else ""
                 if not children:
                     write_text(f"{indent}<{tag}{attributes}/>\n")
                 elif len(children) == 1 and isinstance(only := children[0], Text) and not only.cdata:
-                    write_text(f"{indent}<{tag}{attributes}>{_escaped_text(only.data)}</{tag}>\n")
+                    write_text(f"{indent}<{tag}{attributes}>{_escape_text(only.data)}</{tag}>\n")
                 else:
                     write_text(f"{indent}<{tag}{attributes}>\n")
                     stack.append((remaining, f"{indent}</{tag}>\n"))
                     if len(stack) + base_depth > _MAX_DEPTH:
-                        raise _nesting_error(node)
+                        raise _make_nesting_error(node)
                     remaining = iter(children)
                     indent += _INDENT
                     break
             elif isinstance(node, Comment):
-                write_text(f"{indent}<!--{_comment_text(node)}-->\n")
+                write_text(f"{indent}<!--{_format_comment(node)}-->\n")
             else:
-                write_text(f"{indent}{_instruction_text(node)}\n")
+                write_text(f"{indent}{_format_instruction(node)}\n")
         else:
             if not stack:
                 return
@@ -117,7 +117,7 @@ def _write_nodes(nodes: Iterable[Node], write_text: Callable[[str], None], inden
             write_text(closing)
 
 
-def _text_of_original(copy: LazyCopy, indent: str) -> str:
+def _write_original(copy: LazyCopy, indent: str) -> str:
     """Return the text of a lazy copy: its original's text, with the copy's indentation."""
     cache, original = copy.plan, copy.original
     if isinstance(cache, CachedText) and cache.written is not None and cache.written[0] == indent:
@@ -133,20 +133,20 @@ def _text_of_original(copy: LazyCopy, indent: str) -> str:
     return text
 
 
-def _nesting_error(element: Element) -> LinkwrightError:
+def _make_nesting_error(element: Element) -> LinkwrightError:
     message = phrase("elements are nested more than {deepest:,} levels deep", deepest=_MAX_DEPTH)
     return LinkwrightError(Diagnostic("XML302", message, element.span(), source=element.source))
 
 
-def _attributes_text(attributes: dict[str, str]) -> str:
+def _format_attributes(attributes: dict[str, str]) -> str:
     names = sorted(attributes) if len(attributes) > 1 else attributes
     text = "".join([f' {name}="{attributes[name]}"' for name in names])
     if "&" in text or "<" in text or ">" in text or text.count('"') != 2 * len(attributes):
-        text = "".join([f' {name}="{_escaped_text(attributes[name])}"' for name in names])
+        text = "".join([f' {name}="{_escape_text(attributes[name])}"' for name in names])
     return text
 
 
-def _escaped_text(text: str) -> str:
+def _escape_text(text: str) -> str:
     if "&" in text:
         text = text.replace("&", "&amp;")
     if "<" in text:
@@ -158,7 +158,7 @@ def _escaped_text(text: str) -> str:
     return text
 
 
-def _comment_text(node: Comment) -> str:
+def _format_comment(node: Comment) -> str:
     if "--" in node.data:
         span = node.source.span(node.offset, node.offset + len("<!--")) if node.source else None
         message = phrase("a comment cannot contain '--'")
@@ -166,5 +166,5 @@ def _comment_text(node: Comment) -> str:
     return node.data
 
 
-def _instruction_text(node: ProcessingInstruction) -> str:
+def _format_instruction(node: ProcessingInstruction) -> str:
     return f"<?{node.target} {node.data}?>"

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.descriptions.editing.numbers import pi_fraction, shortest_text
+from linkwright.descriptions.editing.numbers import format_pi_fraction, shortest_text
 
 
 @pytest.mark.parametrize(
@@ -30,4 +30,4 @@ def test_number_text_keeps_value_within_tolerance(value: float) -> None:
     [(pi, "pi"), (-pi / 2, "-pi/2"), (2 * pi / 3, "2*pi/3"), (5 * pi / 12, "5*pi/12"), (0.1, None), (0.0, None)],
 )
 def test_fraction_of_pi_is_recognized(angle: float, text: str | None) -> None:
-    assert pi_fraction(angle) == text
+    assert format_pi_fraction(angle) == text

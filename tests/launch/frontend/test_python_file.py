@@ -12,7 +12,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.launch.frontend import python_file
 from linkwright.launch.frontend.launch_file import load_launch_file
 from linkwright.launch.frontend.python_file import load_python_launch_file
-from linkwright.packages.share_layout import share_of_sources
+from linkwright.packages.share_layout import find_share_of_sources
 
 Write = Callable[[str, str], Path]
 
@@ -233,7 +233,7 @@ class TestLinkedShareFolder:
         write("arm/start/syntax.launch.py", "def generate_launch_description(\n")
         write("arm/start/tag.launch.xml", "<launch><let name='a'/></launch>")
         write("arm/start/other.launch.py", "")
-        return share_of_sources("arm", tmp_path / "arm")
+        return find_share_of_sources("arm", tmp_path / "arm")
 
     @pytest.mark.parametrize("name", ["sound.launch.py", "syntax.launch.py", "tag.launch.xml"])
     def test_messages_name_source_file_in_workspace(self, share: Path, tmp_path: Path, name: str) -> None:

@@ -19,8 +19,8 @@ from linkwright.launch.errors.unavailable import is_unavailable
 from linkwright.launch.ros.executables import Origin, find_executable
 from linkwright.packages import PackageFinder, use_finder
 from linkwright.packages.programs.interpreters import needs_our_interpreter
-from linkwright.packages.programs.source_programs import EntryPoint, source_programs
-from linkwright.packages.programs.workspace_environment import workspace_environment
+from linkwright.packages.programs.source_programs import EntryPoint, find_source_programs
+from linkwright.packages.programs.workspace_environment import make_workspace_environment
 
 Write = Callable[[str, str], Path]
 SETUP = """
@@ -56,7 +56,7 @@ def arm(write: Write) -> Path:
 
 class TestSources:
     def test_entry_points_of_setup_py_are_read(self, arm: Path) -> None:
-        programs = source_programs(arm)
+        programs = find_source_programs(arm)
         assert programs.entry_points == {
             "wave": EntryPoint("arm.wave", "main"),
             "nod": EntryPoint("arm.nod", "Nodder.run"),
@@ -68,7 +68,7 @@ class TestSources:
             "p/setup.cfg", "[options.entry_points]\nconsole_scripts =\n  a = p.a:main\n  b = p.b:main\n"
         ).parent
         write("p/pyproject.toml", '[project]\nname = "p"\n[project.scripts]\nc = "p.c:main"\n')
-        assert source_programs(folder).names() == ["a", "b", "c"]
+        assert find_source_programs(folder).names() == ["a", "b", "c"]
 
     def test_computed_entry_points_are_found_by_running_setup_py(self, write: Write) -> None:
         text = (
@@ -78,11 +78,11 @@ class TestSources:
         )
         folder = write("p/setup.py", text).parent
         write("p/bin/old", "#!/usr/bin/env python3\n")
-        assert source_programs(folder).names() == ["old", "x", "y"]
+        assert find_source_programs(folder).names() == ["old", "x", "y"]
 
     def test_failing_setup_py_has_no_programs(self, write: Write) -> None:
         text = "from setuptools import setup\nraise SystemExit(1)\nsetup(entry_points={'console_scripts': LIST})\n"
-        assert source_programs(write("p/setup.py", text).parent).names() == []
+        assert find_source_programs(write("p/setup.py", text).parent).names() == []
 
     def test_cmake_programs_are_read(self, write: Write) -> None:
         folder = write(
@@ -95,7 +95,7 @@ class TestSources:
         ).parent
         write("p/scripts/look.py", "")
         write("p/scripts/see.py", "")
-        programs = source_programs(folder)
+        programs = find_source_programs(folder)
         assert programs.scripts == {"look.py": folder / "scripts/look.py", "seer": folder / "scripts/see.py"}
         assert programs.compiled == {"driver", "comp_node"}
 
@@ -186,12 +186,12 @@ class TestInstalled:
         modules = write("ws/install/arm/lib/python3.11/site-packages/arm.py", "").parent
         prefix = share.parents[1]
         finder = PackageFinder(start=prefix.parents[1], environment={})
-        environment = workspace_environment(finder, {"PYTHONPATH": "/own"})
+        environment = make_workspace_environment(finder, {"PYTHONPATH": "/own"})
         assert environment["AMENT_PREFIX_PATH"] == str(prefix)
         folders = environment["PYTHONPATH"].split(os.pathsep)
         assert folders[:3] == ["/own", str(modules), "/ws/build/arm"]
         assert environment["LINKWRIGHT_START"] == str(prefix.parents[1])
-        sourced = workspace_environment(finder, {"AMENT_PREFIX_PATH": str(prefix)})
+        sourced = make_workspace_environment(finder, {"AMENT_PREFIX_PATH": str(prefix)})
         assert str(modules) not in sourced.get("PYTHONPATH", "")
 
     def test_finder_starts_at_folder_of_launcher(self, arm: Path, monkeypatch: pytest.MonkeyPatch) -> None:

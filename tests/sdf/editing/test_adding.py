@@ -10,7 +10,7 @@ from linkwright.geometry.shapes import Box
 from linkwright.geometry.single import Pose
 from linkwright.geometry.solids import shape_properties
 from linkwright.sdf.editing import Change, EditError, add_include, add_light, add_shape, change, delete
-from linkwright.sdf.editing.shapes import solid_properties
+from linkwright.sdf.editing.shapes import compute_solid_properties
 from tests.sdf.editing.texts import PLAIN_WORLD, is_rejected_by_simulators, world_text, world_with
 
 POSE = (1.0, 2.0, 3.0, 0.0, 0.0, 0.5)
@@ -49,7 +49,7 @@ def test_added_ramp_has_mass_properties_of_wedge():
         shape_properties(Box((step, size[1], h))).moved(Pose((-1 + (index + 0.5) * step, 0.0, h / 2 - size[2] / 2)))
         for index, h in enumerate(heights.tolist())
     ]
-    combined, expected = combine(slices), solid_properties("ramp", size)
+    combined, expected = combine(slices), compute_solid_properties("ramp", size)
     assert combined.mass == pytest.approx(expected.mass)
     assert combined.center == pytest.approx(expected.center, abs=1e-5)
     assert combined.inertia == pytest.approx(expected.inertia, rel=1e-3, abs=1e-6)

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import Change, EditError, change
-from linkwright.sdf.resources import model_file
+from linkwright.sdf.resources import find_model_file
 from linkwright.simulation.page.modeling.edited_world import EditedWorld
 from tests.sdf.editing.texts import PLAIN_WORLD
 
@@ -111,7 +111,7 @@ def test_shipped_worlds_are_not_overwritten(tmp_path):
 
     shipped_path = Path(linkwright.__file__).parent / "w.world"
     assert EditedWorld(PLAIN_WORLD, shipped_path, NO_PACKAGES).file is None
-    path = model_file(Path(linkwright.__file__).parent / "sdf" / "models" / "sun")
+    path = find_model_file(Path(linkwright.__file__).parent / "sdf" / "models" / "sun")
     with pytest.raises(EditError, match="there is no world in"):
         EditedWorld.from_file(path, NO_PACKAGES)
 

@@ -12,7 +12,7 @@ from PIL import Image
 from linkwright.geometry.single import IDENTITY
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.cameras import Camera, Clip, Distortion, ImageFormat, Intrinsics
-from linkwright.sdf.optics import Optics, distort, optics_of, undistorted
+from linkwright.sdf.optics import Optics, distort, make_optics, undistort
 from linkwright.simulation.rendering import opengl
 from linkwright.simulation.rendering.factory import METHODS, make_renderer
 from linkwright.simulation.rendering.renderer import Channels
@@ -58,7 +58,7 @@ def test_depth_of_walls_is_exact(make_renderer_of_method):
     simulation = make_simulation(
         block("wall", "3.5 0 0 0 0 0", "1 20 20"), block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5")
     )
-    depth = make_renderer_of_method(simulation).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
+    depth = make_renderer_of_method(simulation).render(make_optics(CAMERA), IDENTITY, Channels.DEPTH).depth
     assert depth.shape == (120, 160)
     assert depth.dtype == np.float32
     assert depth[60, 60] == pytest.approx(1.75, abs=1e-3)
@@ -67,7 +67,7 @@ def test_depth_of_walls_is_exact(make_renderer_of_method):
 
 def test_depth_is_same_with_and_without_color(make_renderer_of_method):
     simulation = make_simulation(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", color="1 0 0 1"))
-    renderer, optics, pose = make_renderer_of_method(simulation), optics_of(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    renderer, optics, pose = make_renderer_of_method(simulation), make_optics(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     depth_and_color = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
     depth_only = renderer.render(optics, pose, Channels.DEPTH)
     repeated = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
@@ -78,7 +78,7 @@ def test_depth_is_same_with_and_without_color(make_renderer_of_method):
 
 def test_floor_extends_to_horizon(make_renderer_of_method):
     pose = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-    optics = optics_of(CAMERA)
+    optics = make_optics(CAMERA)
     depth = make_renderer_of_method(make_simulation(FLOOR)).render(optics, pose, Channels.DEPTH).depth
     rows = np.arange(65, 120)
     expected = optics.fy / (rows + 0.5 - optics.cy)
@@ -87,7 +87,7 @@ def test_floor_extends_to_horizon(make_renderer_of_method):
 
 
 def test_floor_depth_does_not_depend_on_light(make_renderer_of_method):
-    pose, optics = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
+    pose, optics = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), make_optics(CAMERA)
     lamp = '<light name="lamp" type="point"><pose>3 0 2 0 0 0</pose><diffuse>1 1 1 1</diffuse></light>'
     under_the_sun = make_renderer_of_method(make_simulation(FLOOR)).render(
         optics, pose, Channels.DEPTH | Channels.GEOMS
@@ -101,7 +101,7 @@ def test_floor_depth_does_not_depend_on_light(make_renderer_of_method):
 
 def test_floor_is_invisible_from_below(make_renderer_of_method):
     image = make_renderer_of_method(make_simulation(FLOOR)).render(
-        optics_of(CAMERA), (0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0), Channels.DEPTH
+        make_optics(CAMERA), (0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 1.0), Channels.DEPTH
     )
     assert np.isinf(image.depth).all()
 
@@ -109,7 +109,7 @@ def test_floor_is_invisible_from_below(make_renderer_of_method):
 @pytest.mark.parametrize("position", ["2 2.2 0", "2 -2.2 0", "2 0 1.7", "2 0 -1.7"])
 def test_partly_visible_object_is_rendered(make_renderer_of_method, position):
     simulation = make_simulation(block("thing", f"{position} 0 0 0", "0.9 0.9 0.9"))
-    geoms = make_renderer_of_method(simulation).render(optics_of(CAMERA), IDENTITY, Channels.GEOMS).geoms
+    geoms = make_renderer_of_method(simulation).render(make_optics(CAMERA), IDENTITY, Channels.GEOMS).geoms
     assert (geoms >= 0).any()
 
 
@@ -117,7 +117,7 @@ def test_objects_outside_clip_range_are_not_rendered(make_renderer_of_method):
     simulation = make_simulation(
         block("near", "0.3 0.1 0 0 0 0", "0.1 0.1 0.1"), block("far", "60 0 0 0 0 0", "1 90 90")
     )
-    optics = replace(optics_of(CAMERA), near=0.5)
+    optics = replace(make_optics(CAMERA), near=0.5)
     rendered = make_renderer_of_method(simulation).render(optics, IDENTITY, Channels.DEPTH | Channels.COLOR)
     assert np.isinf(rendered.depth).all()
     assert (rendered.color == round(0.7 * 255)).all()
@@ -129,7 +129,7 @@ def test_colors_match_objects(make_renderer_of_method):
         block("right", "2 -1 0 0 0 0", "0.1 1 1", color="0 1 0 1"),
     )
     renderer = make_renderer_of_method(simulation)
-    color = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color
+    color = renderer.render(make_optics(CAMERA), IDENTITY, Channels.COLOR).color
     red, green = color[60, 40].astype(int), color[60, 120].astype(int)
     assert red[0] > 50
     assert red[1] == red[2] == 0
@@ -152,7 +152,7 @@ def test_meshes_are_textured(make_renderer_of_method, tmp_path, kind, request):
     image.save(tmp_path / "halves.png")
     simulation = make_simulation(PANEL.format(folder=tmp_path, kind=kind, image="halves.png"))
     assert not simulation.scene.diagnostics
-    color = make_renderer_of_method(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color.astype(int)
+    color = make_renderer_of_method(simulation).render(make_optics(CAMERA), IDENTITY, Channels.COLOR).color.astype(int)
     left, right = color[60, 60], color[60, 100]
     assert left[1] == right[1] == 0
     if request.node.callspec.params["make_new"] in ("embree", "mujoco"):  # these renderers draw each shape in one color
@@ -199,7 +199,7 @@ def test_primitive_shapes_are_textured(make_renderer_of_method, tmp_path, shape,
     text = TEXTURED.format(shape=shape, image=tmp_path / "quarters.png")
     simulation = make_simulation(text)
     assert not simulation.scene.diagnostics
-    image = make_renderer_of_method(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
+    image = make_renderer_of_method(simulation).render(make_optics(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
     assert image.depth[60, 80] == pytest.approx(distance, abs=2e-3)
     if request.node.callspec.params["make_new"] in ("embree", "mujoco"):  # these renderers draw each shape in one color
         red, green, blue = image.color[60, 80].astype(int)
@@ -226,7 +226,7 @@ def test_positions_match_pinhole_model(make_renderer_of_method, point):
     x, y, z = point
     size = 0.2
     simulation = make_simulation(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
-    optics = optics_of(CAMERA)
+    optics = make_optics(CAMERA)
     geoms = make_renderer_of_method(simulation).render(optics, IDENTITY, Channels.GEOMS).geoms
     rows, columns = np.nonzero(geoms >= 0)
     assert len(rows) > 10
@@ -241,7 +241,7 @@ def test_positions_match_pinhole_model(make_renderer_of_method, point):
 def test_positions_match_lens_distortion_model(make_renderer_of_method):
     size, x, y, z = 0.2, 2.0, 1.2, 0.8
     simulation = make_simulation(block("thing", f"{x} {y} {z} 0 0 0", f"0.001 {size} {size}"))
-    optics = optics_of(Camera(horizontal_fov=pi / 2, image=ImageFormat(160, 120), distortion=LENS))
+    optics = make_optics(Camera(horizontal_fov=pi / 2, image=ImageFormat(160, 120), distortion=LENS))
     geoms = make_renderer_of_method(simulation).render(optics, IDENTITY, Channels.GEOMS).geoms
     rows, columns = np.nonzero(geoms >= 0)
     (pixel,) = optics.project(np.array([[-y, -z, x]]))
@@ -262,14 +262,14 @@ def test_shapes_have_correct_extent(make_renderer_of_method):
             '<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="visual">'
             f"<geometry>{shape}</geometry></visual></link></model>"
         )
-        depth = make_renderer_of_method(make_simulation(text)).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
+        depth = make_renderer_of_method(make_simulation(text)).render(make_optics(CAMERA), IDENTITY, Channels.DEPTH).depth
         assert 1.4 < depth[60, 80] < 2.0, shape
         assert np.isinf(depth[0, 0]), shape
 
 
 def test_spawned_and_moved_models_are_rendered(make_renderer_of_method):
     simulation = make_simulation(FLOOR)
-    renderer, optics = make_renderer_of_method(simulation), optics_of(CAMERA)
+    renderer, optics = make_renderer_of_method(simulation), make_optics(CAMERA)
     high = (0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 1.0)
     assert np.isinf(renderer.render(optics, high, Channels.DEPTH).depth[60, 80])
     geometry = "<geometry><box><size>1 1 1</size></box></geometry>"
@@ -284,14 +284,14 @@ def test_camera_does_not_see_its_own_housing(make_renderer_of_method):
     housing = "<geometry><box><size>0.06 0.06 0.06</size></box></geometry>"
     camera_housing = f'<model name="camera"><link name="link"><visual name="v">{housing}</visual></link></model>'
     simulation = make_simulation(block("wall", "3 0 0 0 0 0", "1 20 20"), camera_housing)
-    depth = make_renderer_of_method(simulation).render(optics_of(CAMERA), IDENTITY, Channels.DEPTH).depth
+    depth = make_renderer_of_method(simulation).render(make_optics(CAMERA), IDENTITY, Channels.DEPTH).depth
     assert np.abs(depth - 2.5).max() < 1e-3
 
 
 def test_renderers_produce_same_image(make_renderer_of_method):
     wall = block("wall", "4 0 1 0 0 0", "0.1 3 2", color="0 0 1 1")
     simulation = make_simulation(FLOOR, block("box", "2 0.4 0.3 0 0 0.5", "0.5 0.5 0.6"), wall)
-    pose, optics = (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0), optics_of(CAMERA)
+    pose, optics = (0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0), make_optics(CAMERA)
     exact = make_renderer(simulation, "mujoco").render(optics, pose, Channels.COLOR | Channels.GEOMS)
     image = make_renderer_of_method(simulation).render(optics, pose, Channels.COLOR | Channels.GEOMS)
     assert (exact.geoms != image.geoms).mean() < 0.01
@@ -320,10 +320,10 @@ def draw_with_opengl(request: pytest.FixtureRequest):
 
         renderer = make_renderer_or_skip(simulation, request.param)
         try:
-            renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOR)
+            renderer.render(make_optics(CAMERA), IDENTITY, Channels.COLOR)
             (query,) = GL.glGenQueries(1, np.zeros(1, np.uint32))
             GL.glBeginQuery(GL.GL_PRIMITIVES_GENERATED, query)
-            image = renderer.render(optics_of(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
+            image = renderer.render(make_optics(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
             GL.glEndQuery(GL.GL_PRIMITIVES_GENERATED)
             return image, int(GL.glGetQueryObjectuiv(query, GL.GL_QUERY_RESULT))
         finally:
@@ -355,20 +355,20 @@ def test_point_light_lights_nearby_objects(make_renderer_of_method):
     simulation = make_simulation(
         block("one", "2 1 0 0 0 0", "0.1 1 1"), block("other", "2 -1 0 0 0 0", "0.1 1 1"), lamp
     )
-    color = make_renderer_of_method(simulation).render(optics_of(CAMERA), IDENTITY, Channels.COLOR).color
+    color = make_renderer_of_method(simulation).render(make_optics(CAMERA), IDENTITY, Channels.COLOR).color
     assert color[60, 40, 0] > color[60, 120, 0] + 20
 
 
 def test_undistort_inverts_distort():
     points = np.linspace(-0.6, 0.6, 13), np.linspace(-0.4, 0.5, 13)
-    assert undistorted(LENS, *distort(LENS, *points)) == pytest.approx(np.array(points), abs=1e-9)
+    assert undistort(LENS, *distort(LENS, *points)) == pytest.approx(np.array(points), abs=1e-9)
 
 
 def test_intrinsics_replace_field_of_view():
-    optics = optics_of(Camera(image=ImageFormat(640, 480), intrinsics=Intrinsics(500.0, 520.0, 310.0, 250.0)))
+    optics = make_optics(Camera(image=ImageFormat(640, 480), intrinsics=Intrinsics(500.0, 520.0, 310.0, 250.0)))
     assert (optics.fx, optics.fy, optics.cx, optics.cy) == (500.0, 520.0, 310.0, 250.0)
     assert not optics.is_pinhole
-    assert optics_of(CAMERA) == Optics(160, 120, pytest.approx(80.0), pytest.approx(80.0), 80.0, 60.0, 0.05, 50.0)
+    assert make_optics(CAMERA) == Optics(160, 120, pytest.approx(80.0), pytest.approx(80.0), 80.0, 60.0, 0.05, 50.0)
 
 
 def floating_box(name: str, pose: str, size: float = 0.5) -> str:
@@ -381,7 +381,7 @@ def floating_box(name: str, pose: str, size: float = 0.5) -> str:
 
 def test_resting_and_moving_models_are_rendered_at_current_pose(make_renderer_of_method):
     simulation = make_simulation(floating_box("one", "2 0 0 0 0 0"), floating_box("two", "3 1 0 0 0 0"))
-    renderer, optics = make_renderer_of_method(simulation), optics_of(CAMERA)
+    renderer, optics = make_renderer_of_method(simulation), make_optics(CAMERA)
 
     def depths():
         """Return the depth images of the existing renderer and of a new renderer."""
@@ -408,7 +408,7 @@ def test_resting_housing_does_not_hide_camera_view(make_renderer_of_method):
     simulation = make_simulation(
         floating_box("housing", "0 0 0 0 0 0", 0.06), block("wall", "3.5 0 0 0 0 0", "1 20 20")
     )
-    renderer, optics = make_renderer_of_method(simulation), optics_of(CAMERA)
+    renderer, optics = make_renderer_of_method(simulation), make_optics(CAMERA)
     behind_housing = (-2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
     for _ in range(3):
         assert renderer.render(optics, IDENTITY, Channels.DEPTH).depth[60, 80] == pytest.approx(3.0, abs=1e-3)

@@ -13,7 +13,7 @@ from typing import Any
 from linkwright.cli.completion.graph_names import read_names
 from linkwright.cli.completion.scripts import FILES
 from linkwright.packages import PackageFinder, install_prefix, is_installed
-from linkwright.packages.launch_files import launch_files_below
+from linkwright.packages.launch_files import find_launch_files_below
 
 _LAUNCH_ARGUMENT = re.compile(
     r"""Declare(?:Boolean)?LaunchArgument\(\s*(?:name\s*=\s*)?["']([^"']+)["']"""
@@ -56,9 +56,9 @@ def _find_executables(request: Request) -> Iterable[str]:
     share = PackageFinder().find(package)
     if share is not None:
         if not is_installed(share):
-            from linkwright.packages.programs.source_programs import source_programs
+            from linkwright.packages.programs.source_programs import find_source_programs
 
-            programs = source_programs(share)
+            programs = find_source_programs(share)
             names |= {*programs.entry_points, *programs.scripts}
         folder = install_prefix(share) / "lib" / package
         names |= {path.name for path in folder.glob("*") if path.is_file() and path.suffix not in (".so", ".dylib")}
@@ -74,7 +74,7 @@ def _find_launch_files(request: Request) -> Iterable[str]:
     if path_or_package.is_file():
         return _find_declared_arguments(path_or_package, _LAUNCH_ARGUMENT)
     share = PackageFinder().find(request[1][0])
-    return [] if share is None else sorted(path.name for path in launch_files_below(share))
+    return [] if share is None else sorted(path.name for path in find_launch_files_below(share))
 
 
 def _find_launch_arguments(request: Request) -> Iterable[str]:
@@ -82,7 +82,7 @@ def _find_launch_arguments(request: Request) -> Iterable[str]:
     if Path(package).is_file():
         return _find_declared_arguments(Path(package), _LAUNCH_ARGUMENT)
     share = PackageFinder().find(package)
-    launch_file = next((path for path in launch_files_below(share) if path.name == file), None) if share else None
+    launch_file = next((path for path in find_launch_files_below(share) if path.name == file), None) if share else None
     return [] if launch_file is None else _find_declared_arguments(launch_file, _LAUNCH_ARGUMENT)
 
 

@@ -1,4 +1,4 @@
-"""The search for the values that the files of a workspace pass to a description's arguments.
+"""The search for the argument values that callers pass to a description.
 
 The values are found in launch files, tests and build files.
 """

@@ -17,8 +17,8 @@ from linkwright.packages.readers.xacro_calls.call import (
     CallingFile,
     Inclusion,
     XacroCall,
-    launch_choice,
-    launch_names,
+    find_launch_names,
+    name_launch_choice,
 )
 from linkwright.packages.readers.xacro_calls.texts import (
     MAX_VARIATIONS,
@@ -26,16 +26,16 @@ from linkwright.packages.readers.xacro_calls.texts import (
     Selection,
     Share,
     Text,
+    generate_selections,
+    generate_variations,
+    make_share_mark,
     resolve,
-    selections,
-    share_mark,
     split_mark,
-    variations,
 )
 
 _MAX_DEPTH = 4
 _MAX_LAUNCHES = 16
-_MARK = lazy_pattern("\0([^\0]*)\0")
+_PACKAGE_MARK = lazy_pattern("\0([^\0]*)\0")
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,7 @@ class ArgumentSets:
 
 @dataclass(eq=False)
 class _CalledDescription:
-    """A description, and the files that may expand it, each with the name of the file's package."""
+    """A description, and the files that may expand it, each with its package name."""
 
     path: Path
     finder: PackageFinder
@@ -144,38 +144,40 @@ class _CalledDescription:
             calls = [call for call in file.calls if self._may_match(call.path)]
             if not calls:
                 continue
-            launches = self._launches(package, file)
+            launches = self._find_launches(package, file)
             for call in calls:
                 for launch_values in launches:
-                    yield from self._call_sets(call, file, launch_values)
+                    yield from self._generate_sets(call, file, launch_values)
 
-    def _call_sets(self, call: XacroCall, file: CallingFile, launch_values: Mapping[str, str]) -> Iterator[ArgumentSet]:
+    def _generate_sets(
+        self, call: XacroCall, file: CallingFile, launch_values: Mapping[str, str]
+    ) -> Iterator[ArgumentSet]:
         first_set: ArgumentSet | None = None
-        for selection in selections(call.path, file.choices, launch_values):
+        for selection in generate_selections(call.path, file.choices, launch_values):
             path = resolve(call.path, file.choices, selection)
-            if path is None or not self._is_target(_without_quotes(path) if call.is_command else path, file):
+            if path is None or not self._is_target(_strip_quotes(path) if call.is_command else path, file):
                 continue
-            for variation, is_certain in variations(call.arguments.values(), file.choices, selection):
-                argument_set = self._argument_set(call, file, variation, is_certain=is_certain)
+            for variation, is_certain in generate_variations(call.arguments.values(), file.choices, selection):
+                argument_set = self._make_argument_set(call, file, variation, is_certain=is_certain)
                 first_set = first_set or argument_set
                 changed_choices = {name for name, row in variation.rows.items() if row != selection.rows.get(name, 0)}
                 yield replace(
                     argument_set,
-                    varied=_varied_arguments(call, argument_set, first_set),
+                    varied=_find_varied_arguments(call, argument_set, first_set),
                     is_mixed=any(selection.rows.values()) and bool(changed_choices),
-                    is_offered=bool(changed_choices) and changed_choices <= launch_names(file.choices).keys(),
+                    is_offered=bool(changed_choices) and changed_choices <= find_launch_names(file.choices).keys(),
                 )
         if first_set is None and _has_placeholder(call.path):
-            yield self._argument_set(call, file, Selection({}, launch_values), is_certain=False)
+            yield self._make_argument_set(call, file, Selection({}, launch_values), is_certain=False)
 
-    def _argument_set(
+    def _make_argument_set(
         self, call: XacroCall, file: CallingFile, selection: Selection, *, is_certain: bool
     ) -> ArgumentSet:
         values: dict[str, str] = {}
         unknown_names: list[str] = []
         for name, text in call.arguments.items():
             value = resolve(text, file.choices, selection)
-            value = None if value is None else self._with_folders(value)
+            value = None if value is None else self._replace_marks(value)
             if value is None:
                 unknown_names.append(name)
             elif not name:
@@ -184,7 +186,7 @@ class _CalledDescription:
                 )
                 values.update((word, text) for word, sign, text in assignments if sign)
             else:
-                values[name] = _without_quotes(value) if call.is_command else value
+                values[name] = _strip_quotes(value) if call.is_command else value
         return ArgumentSet(values, tuple(unknown_names), call.span, is_certain)
 
     # --- matching of paths ----------------------------------------------------------------------------------
@@ -201,7 +203,7 @@ class _CalledDescription:
     def _is_target(self, path_text: str, file: CallingFile) -> bool:
         """Return whether a path without unknown parts is the path of the description."""
         package, relative_path = split_mark(path_text)
-        if _MARK.search(relative_path):
+        if _PACKAGE_MARK.search(relative_path):
             return False  # A share folder in the middle of a path is not supported.
         if package is None:
             return self._is_same(Path(os.path.dirname(file.path), path_text)) or self._is_same(Path(path_text))  # noqa: PTH120
@@ -218,22 +220,22 @@ class _CalledDescription:
     def _is_same(self, path: Path) -> bool:
         return os.path.realpath(path) == os.path.realpath(self.path)
 
-    def _with_folders(self, value: str) -> str | None:
+    def _replace_marks(self, value: str) -> str | None:
         """Replace the marks of packages in a value by their share folders.
 
         The result is None if a package is not found.
         """
-        for package in _MARK.findall(value):
+        for package in _PACKAGE_MARK.findall(value):
             share = self.finder.find(package)
             if share is None:
                 return None
-            value = value.replace(share_mark(package), str(share))
+            value = value.replace(make_share_mark(package), str(share))
         return value
 
     # --- launch arguments -----------------------------------------------------------------------------------
 
-    def _launches(self, package: str | None, file: CallingFile, depth: int = 0) -> list[dict[str, str]]:
-        """Return the launch arguments with which a file is launched, directly or by including files.
+    def _find_launches(self, package: str | None, file: CallingFile, depth: int = 0) -> list[dict[str, str]]:
+        """Return the launch arguments of a file, for each way in which it is launched.
 
         Returns:
             For each way to launch the file, the values of the launch arguments, by the names of their choices.
@@ -246,10 +248,10 @@ class _CalledDescription:
         ):
             if package_in_path not in (None, package):
                 continue
-            for outer_values in self._launches(including_package, including_file, depth + 1):
+            for outer_values in self._find_launches(including_package, including_file, depth + 1):
                 selection = Selection({}, outer_values)
-                texts = {launch_choice(name): text for name, text in inclusion.arguments.items()}
-                inherited_texts = {name: (Placeholder(name),) for name in launch_names(including_file.choices)}
+                texts = {name_launch_choice(name): text for name, text in inclusion.arguments.items()}
+                inherited_texts = {name: (Placeholder(name),) for name in find_launch_names(including_file.choices)}
                 values = {
                     name: value
                     for name, text in {**inherited_texts, **texts}.items()
@@ -281,7 +283,7 @@ def _has_placeholder(path: Text) -> bool:
     )
 
 
-def _varied_arguments(call: XacroCall, argument_set: ArgumentSet, reference_set: ArgumentSet) -> tuple[str, ...]:
+def _find_varied_arguments(call: XacroCall, argument_set: ArgumentSet, reference_set: ArgumentSet) -> tuple[str, ...]:
     """Return the names of the arguments that differ between two sets.
 
     If some of these arguments are plain choices, the result is limited to them. Texts composed of choices, such as
@@ -291,7 +293,7 @@ def _varied_arguments(call: XacroCall, argument_set: ArgumentSet, reference_set:
     return tuple(name for name in names if len(call.arguments.get(name, ())) == 1) or names
 
 
-def _without_quotes(value: str) -> str:
+def _strip_quotes(value: str) -> str:
     """Return a command-line value without its quotes."""
     return "".join(_split_words(value)) if set(value) & {'"', "'"} else value
 

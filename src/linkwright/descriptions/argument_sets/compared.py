@@ -13,11 +13,11 @@ _ARGUMENT = r"\$\(arg\s+([\w.-]+)\s*\)"
 _OPERAND = rf"""(?:['"]?{_ARGUMENT}['"]?|\barg\(\s*['"]([\w.-]+)['"]\s*\)|\b([A-Za-z_]\w*))"""
 _TEXT = lazy_pattern(r"""'([^'$]+)'|"([^"$]+)\"""")
 _COMPARISON = lazy_pattern(rf"""{_OPERAND}\s*(?:==\s*((?:'[^'$]+')|(?:"[^"$]+"))|in\s*[\[({{]([^\])}}]*))""")
-_CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
+_CONDITION_TAGS = frozenset({"xacro:if", "xacro:unless"})
 
 
 def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
-    """Return an uncertain argument set for each value that a condition compares with an argument.
+    """Return an uncertain argument set for each value to which a condition compares one.
 
     An argument is also recognized through a property that contains it, as in
     ``<xacro:property name="side" value="$(arg side)"/>``. Macro parameters are not followed.
@@ -26,12 +26,12 @@ def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
         documents: the unexpanded files of a description.
     """
     elements = [element for document in documents for element in document.root.walk()]
-    names = dict(_argument_names(elements))
+    names = dict(_find_argument_names(elements))
     compared_sets: dict[tuple[str, str], ArgumentSet] = {}
     for element in elements:
-        if element.tag not in _CONDITIONS:
+        if element.tag not in _CONDITION_TAGS:
             continue
-        for operand, value in _comparisons(element.attributes.get("value", "")):
+        for operand, value in _find_comparisons(element.attributes.get("value", "")):
             if operand in names:
                 argument_set = ArgumentSet(
                     {names[operand]: value}, (), element.attribute_span("value"), is_certain=False
@@ -52,7 +52,7 @@ def empty_defaults(documents: Iterable[Document]) -> tuple[str, ...]:
     )
 
 
-def _argument_names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
+def _find_argument_names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
     """Yield the name of each argument, and of each property that contains an argument.
 
     Each name is paired with the name of the argument.
@@ -67,7 +67,7 @@ def _argument_names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:
                 yield name, match[1]
 
 
-def _comparisons(condition: str) -> Iterator[tuple[str, str]]:
+def _find_comparisons(condition: str) -> Iterator[tuple[str, str]]:
     """Yield each operand of ``==`` and ``in``, paired with each text that it is compared with."""
     for *operands, single_text, text_list in _COMPARISON.findall(condition):
         operand = next(filter(None, operands))

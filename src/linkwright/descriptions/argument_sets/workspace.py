@@ -70,13 +70,13 @@ class CallingFiles:
         With `depending`, these packages depend on the package `name`; otherwise, they do not depend on it.
         """
         for other_name, other_folder in self._known_packages(folder, folders).items():
-            if other_name != name and (name in self._manifest(other_folder)) is depending:
+            if other_name != name and (name in self._read_manifest(other_folder)) is depending:
                 yield from ((other_name, file) for file in self.of(other_folder))
 
     def of(self, folder: Path) -> tuple[CallingFile, ...]:
         """Return the calling files in and below a folder, except in nested packages."""
         if folder not in self._read:
-            parsed_files = (_read(path, folder) for path in _candidate_files(folder))
+            parsed_files = (_read_calls(path, folder) for path in _find_candidate_files(folder))
             self._read[folder] = tuple(
                 calling_file
                 for calling_file in parsed_files
@@ -98,13 +98,13 @@ class CallingFiles:
             self._packages[source_folder] = SourceScan(source_folder).packages()
         return self._packages[source_folder]
 
-    def _manifest(self, folder: Path) -> str:
+    def _read_manifest(self, folder: Path) -> str:
         if folder not in self._manifests:
-            self._manifests[folder] = _text(folder / MANIFEST) or ""
+            self._manifests[folder] = _read_text(folder / MANIFEST) or ""
         return self._manifests[folder]
 
 
-def _candidate_files(folder: Path) -> Iterator[Path]:
+def _find_candidate_files(folder: Path) -> Iterator[Path]:
     count = 0
     for top, folders, names in os.walk(folder):
         directory = Path(top)
@@ -121,8 +121,8 @@ def _candidate_files(folder: Path) -> Iterator[Path]:
                 yield directory / name
 
 
-def _read(path: Path, package: Path) -> CallingFile | None:
-    text = _text(path)
+def _read_calls(path: Path, package: Path) -> CallingFile | None:
+    text = _read_text(path)
     if text is None or not any(word in text for word in _CALL_MARKERS):
         return None
     source = SourceText(str(path), text)
@@ -139,7 +139,7 @@ def _read(path: Path, package: Path) -> CallingFile | None:
     return read_yaml(source) if path.name.endswith(_YAML_SUFFIXES) else read_xml(source)
 
 
-def _text(path: Path) -> str | None:
+def _read_text(path: Path) -> str | None:
     try:
         if not path.is_file() or path.stat().st_size > _MAX_BYTES:
             return None

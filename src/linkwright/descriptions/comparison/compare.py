@@ -20,7 +20,7 @@ from linkwright.descriptions.comparison.facts import (
     visual_blocks,
 )
 from linkwright.descriptions.comparison.file_contents import content_hash, has_same_bytes
-from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, renamed_hardware
+from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, find_renamed_hardware
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.descriptions.comparison.renames import RenameSearch
 from linkwright.diagnostics import LinkwrightError
@@ -32,9 +32,9 @@ from linkwright.xmltree import Element
 
 _Pair = tuple[Element | None, Element | None]
 """The elements in the old and in the new description, each None if there is none."""
-_FAR = 1e-3
+_MIN_DISPLACEMENT = 1e-3
 """The distance above which two origins certainly differ, in m or as a fraction of the distance from the parent."""
-_MESH, _SCALE = "mesh ", " scale"
+_MESH_PREFIX, _SCALE_SUFFIX = "mesh ", " scale"
 """The words around the address of a mesh in the text of a geometry."""
 _Part = TypeVar("_Part", Link, Joint)
 
@@ -85,8 +85,8 @@ class Side:
         texts: dict[str, str] = {}
 
         def contents(text: str) -> str:
-            uri = text.removeprefix(_MESH).removesuffix(_SCALE)
-            if not text.startswith(_MESH):
+            uri = text.removeprefix(_MESH_PREFIX).removesuffix(_SCALE_SUFFIX)
+            if not text.startswith(_MESH_PREFIX):
                 return self.normalize(text)
             if text not in texts:
                 file = self.mesh(uri)
@@ -120,7 +120,7 @@ class _Comparer:
         RenameSearch(old, new, links, joints, *normalizers, self._have_same_inertial).run()
         self.matches = Matches(links, joints)
         differences = [
-            *self._robot(),
+            *self._compare_robot(),
             *self._link_differences(),
             *self._joint_differences(),
             *self._extension_differences(),
@@ -134,7 +134,7 @@ class _Comparer:
 
     @cached_property
     def _by_contents(self) -> _Comparer:
-        """A comparison of descriptions by the contents of their mesh files, not by the names of the files."""
+        """A comparison by the contents of mesh files instead of their names."""
         return _Comparer(self.old.by_contents(), self.new.by_contents())
 
     def _is_same_link(self, old: Link, new: Link) -> bool:
@@ -145,7 +145,9 @@ class _Comparer:
         return bool(old_blocks and new_blocks) and all(map(self._are_equal_blocks, old_blocks, new_blocks))
 
     def _is_same_joint(self, old: Joint, new: Joint) -> bool:
-        if old.type != new.type or dist(old.origin.xyz, new.origin.xyz) > _FAR * (1.0 + hypot(*old.origin.xyz)):
+        if old.type != new.type or dist(old.origin.xyz, new.origin.xyz) > _MIN_DISPLACEMENT * (
+            1.0 + hypot(*old.origin.xyz)
+        ):
             return False  # Skip the facts of both joints, because a link with many joints has many pairs.
         return all(
             difference.property in ("parent", "child", "mimic joint")
@@ -154,7 +156,7 @@ class _Comparer:
 
     # --- subjects -----------------------------------------------------------------------------------------------
 
-    def _robot(self) -> Iterator[Difference]:
+    def _compare_robot(self) -> Iterator[Difference]:
         old, new = self.old.robot, self.new.robot
         if old.name != new.name:
             locations = location_of(old.element, "name"), location_of(new.element, "name")
@@ -166,7 +168,7 @@ class _Comparer:
             return comparer._link_property_differences(old, new)
 
         old, new = self.old.robot.links, self.new.robot.links
-        yield from _named_differences("link", old, new, self.matches.links, inside)
+        yield from _compare_named("link", old, new, self.matches.links, inside)
 
     def _joint_differences(self) -> Iterator[Difference]:
         def inside(old: Joint, new: Joint) -> Iterator[Difference]:
@@ -177,12 +179,12 @@ class _Comparer:
             )
 
         old, new = self.old.robot.joints, self.new.robot.joints
-        yield from _named_differences("joint", old, new, self.matches.joints, inside)
+        yield from _compare_named("joint", old, new, self.matches.joints, inside)
 
     def _extension_differences(self) -> Iterator[Difference]:
         comparison = ElementComparison(self.old.normalize, self.new.normalize)
         old, new = list(self.old.robot.extensions), list(self.new.robot.extensions)
-        for old_element, new_element in list(renamed_hardware(old, new)):
+        for old_element, new_element in list(find_renamed_hardware(old, new)):
             old.remove(old_element)
             new.remove(new_element)
             old_name, name = (f"{ROS2_CONTROL} {element.attributes['name']}" for element in (old_element, new_element))
@@ -228,7 +230,7 @@ class _Comparer:
             )
             old_block = None if old_index is None else old[old_index]
             new_block = None if new_index is None else new[new_index]
-            yield from self._block("link", link, name, old_block, new_block, elements)
+            yield from self._compare_block("link", link, name, old_block, new_block, elements)
 
     def _mesh_differences(self, old: Link, new: Link) -> Iterator[Difference]:
         """Yield the differences of mesh files that have the same URI but different contents."""
@@ -236,11 +238,11 @@ class _Comparer:
             ("visual", old.visuals, new.visuals),
             ("collision", old.collisions, new.collisions),
         ):
-            old_meshes, new_meshes = _mesh_elements(old_shapes), _mesh_elements(new_shapes)
+            old_meshes, new_meshes = _find_mesh_elements(old_shapes), _find_mesh_elements(new_shapes)
             for name in (uri for uri in new_meshes if uri in old_meshes):
                 old_file, new_file = self.old.mesh(name), self.new.mesh(name)
                 if old_file and new_file and not has_same_bytes(old_file, new_file):
-                    values = _content_difference(old_file, new_file)
+                    values = _compare_contents(old_file, new_file)
                     locations = location_of(old_meshes[name]), location_of(new_meshes[name])
                     yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *locations)
 
@@ -251,9 +253,9 @@ class _Comparer:
     ) -> Iterator[Difference]:
         old_blocks, new_blocks = {block.name: block for block in old}, {block.name: block for block in new}
         for block in dict.fromkeys([*new_blocks, *old_blocks]):
-            yield from self._block(subject, name, block, old_blocks.get(block), new_blocks.get(block), elements)
+            yield from self._compare_block(subject, name, block, old_blocks.get(block), new_blocks.get(block), elements)
 
-    def _block(
+    def _compare_block(
         self, subject: Subject, name: str, block: str, old: Block | None, new: Block | None, elements: _Pair
     ) -> Iterator[Difference]:
         if old is None or new is None:
@@ -270,10 +272,10 @@ class _Comparer:
             old_fact, new_fact = old.facts.get(fact), new.facts.get(fact)
             if old_fact and new_fact and old_fact.equals(new_fact, self.old.normalize, self.new.normalize):
                 continue
-            yield _change(subject, name, f"{block} {fact}".strip(), (old_fact, old), (new_fact, new))
+            yield _make_change(subject, name, f"{block} {fact}".strip(), (old_fact, old), (new_fact, new))
 
 
-def _named_differences(
+def _compare_named(
     subject: Subject,
     old: Mapping[str, _Part],
     new: Mapping[str, _Part],
@@ -296,7 +298,7 @@ def _named_differences(
             yield Difference(subject, name, "removed", old_place=location_of(item.element))
 
 
-def _change(
+def _make_change(
     subject: Subject, name: str, fact: str, old: tuple[Fact | None, Block], new: tuple[Fact | None, Block]
 ) -> Difference:
     def place(pair: tuple[Fact | None, Block]) -> DifferenceLocation | None:
@@ -315,7 +317,7 @@ def _change(
     )
 
 
-def _mesh_elements(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None]:
+def _find_mesh_elements(shapes: Sequence[Visual | Collision]) -> dict[str, Element | None]:
     """Return the ``<mesh>`` elements of shapes, by the URI of the mesh."""
     return {
         shape.geometry.filename: nearest(shape.element, "geometry", "mesh")
@@ -324,7 +326,7 @@ def _mesh_elements(shapes: Sequence[Visual | Collision]) -> dict[str, Element | 
     }
 
 
-def _content_difference(old: Path, new: Path) -> tuple[str, str, str]:
+def _compare_contents(old: Path, new: Path) -> tuple[str, str, str]:
     """Return the old value, the new value and the unit of the difference between two files.
 
     The values are the sizes or, if these are equal, the beginnings of the hashes.

@@ -1,4 +1,7 @@
-"""The comparison of XML elements by content: attributes, texts and children, matched by tag and name."""
+"""The comparison of XML elements by content.
+
+Attributes, texts and children are compared. Elements are matched by tag and name.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +11,12 @@ from itertools import zip_longest
 
 from linkwright.descriptions.comparison.difference import Difference, Kind, location_of
 from linkwright.descriptions.comparison.gazebo_blocks import GAZEBO, joined_block
-from linkwright.descriptions.comparison.numbers import comparable_text
+from linkwright.descriptions.comparison.numbers import normalize_numbers
 from linkwright.descriptions.comparison.renamed_elements import renamed_elements
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.xmltree import Element
 
-_NO_NUMBERS = frozenset({"name", "reference", "filename", "version"})
+_ATTRIBUTES_WITHOUT_NUMBERS = frozenset({"name", "reference", "filename", "version"})
 _Rest = dict[str, list[tuple[str, Element]]]
 """Elements with their keys, by tag and name."""
 
@@ -62,8 +65,8 @@ class ElementComparison:
                 )
             else:
                 texts = (
-                    None if old_element is None else _one_line(old_element),
-                    None if new_element is None else _one_line(new_element),
+                    None if old_element is None else _to_one_line(old_element),
+                    None if new_element is None else _to_one_line(new_element),
                 )
                 locations = location_of(old_element or enclosing[1]), location_of(new_element or enclosing[2])
                 element = old_element or new_element
@@ -79,14 +82,14 @@ class ElementComparison:
         contents = [[self._content(element, side) for element in elements] for side, elements in enumerate((old, new))]
         common = Counter(contents[0]) & Counter(contents[1])
         old_rest, new_rest = (
-            _without_common(_elements_by_key(elements), keys, common)
+            _remove_common(_index_by_key(elements), keys, common)
             for elements, keys in zip((old, new), contents, strict=True)
         )
         yield from self._take_renamed(old, new, old_rest, new_rest)
         for base in dict.fromkeys([*new_rest, *old_rest]):
             old_items, new_items = old_rest.get(base, []), new_rest.get(base, [])
             if old_items and new_items and new_items[0][1].tag == GAZEBO:
-                old_items, new_items = _joined(base, old_items), _joined(base, new_items)
+                old_items, new_items = _join_gazebo_elements(base, old_items), _join_gazebo_elements(base, new_items)
             for old_item, new_item in zip_longest(old_items, new_items):
                 key, _ = new_item or old_item
                 yield key, old_item and old_item[1], new_item and new_item[1]
@@ -113,10 +116,10 @@ class ElementComparison:
         """Return the comparable content of an element of the old (0) or the new (1) version."""
         normalize = (self.normalize_old, self.normalize_new)[side]
         attributes = frozenset(
-            (name, _comparable(name, normalize(value))) for name, value in element.attributes.items()
+            (name, _to_comparable(name, normalize(value))) for name, value in element.attributes.items()
         )
         children = tuple(self._content(child, side) for child in element.elements())
-        return element.tag, attributes, comparable_text(normalize(element.text())), children
+        return element.tag, attributes, normalize_numbers(normalize(element.text())), children
 
     def element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
         """Yield the differences between two elements that belong together.
@@ -144,22 +147,22 @@ class ElementComparison:
     def _same_text(self, old: str | None, new: str | None, attribute: str = "") -> bool:
         if old is None or new is None:
             return old is new
-        return _comparable(attribute, self.normalize_old(old)) == _comparable(attribute, self.normalize_new(new))
+        return _to_comparable(attribute, self.normalize_old(old)) == _to_comparable(attribute, self.normalize_new(new))
 
 
-def _comparable(attribute: str, text: str) -> str:
+def _to_comparable(attribute: str, text: str) -> str:
     """Return the comparable form of a text; names and versions are not read as numbers."""
-    return " ".join(text.split()) if attribute in _NO_NUMBERS else comparable_text(text)
+    return " ".join(text.split()) if attribute in _ATTRIBUTES_WITHOUT_NUMBERS else normalize_numbers(text)
 
 
-def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
+def _index_by_key(elements: Sequence[Element]) -> dict[str, Element]:
     """Return elements in document order, by tag and name or reference.
 
     The keys of elements with the same tag and name are numbered.
     """
     keyed_elements: dict[str, Element] = {}
     for element in elements:
-        name = _name_of(element)
+        name = _find_name(element)
         key = f"{element.tag} {name}" if name else element.tag
         number = 2
         unique_key = key
@@ -170,7 +173,7 @@ def _elements_by_key(elements: Sequence[Element]) -> dict[str, Element]:
     return keyed_elements
 
 
-def _without_common(elements: Mapping[str, Element], contents: Sequence[Hashable], common: Counter[Hashable]) -> _Rest:
+def _remove_common(elements: Mapping[str, Element], contents: Sequence[Hashable], common: Counter[Hashable]) -> _Rest:
     """Return the elements that have no counterpart, with their keys, by tag and name.
 
     Args:
@@ -184,16 +187,16 @@ def _without_common(elements: Mapping[str, Element], contents: Sequence[Hashable
         if remaining[content]:
             remaining[content] -= 1
         else:
-            unmatched.setdefault(f"{element.tag} {_name_of(element) or ''}", []).append((key, element))
+            unmatched.setdefault(f"{element.tag} {_find_name(element) or ''}", []).append((key, element))
     return unmatched
 
 
-def _joined(base: str, items: Sequence[tuple[str, Element]]) -> list[tuple[str, Element]]:
+def _join_gazebo_elements(base: str, items: Sequence[tuple[str, Element]]) -> list[tuple[str, Element]]:
     """Return the ``<gazebo>`` elements of a link as one, with the key of a lone one."""
     return [(base.strip(), joined_block([element for _, element in items]))]
 
 
-def _name_of(element: Element) -> str | None:
+def _find_name(element: Element) -> str | None:
     """Return the name that identifies an element among its siblings, or None if it has none.
 
     The included models of SDF have their names, or else their addresses, in children.
@@ -205,7 +208,7 @@ def _name_of(element: Element) -> str | None:
     return name or None
 
 
-def _one_line(element: Element) -> str:
+def _to_one_line(element: Element) -> str:
     """Return an element's attributes, text and child tags as one line."""
     words = [f"{name}={value}" for name, value in element.attributes.items()]
     words += element.text().split()

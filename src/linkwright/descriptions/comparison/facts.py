@@ -55,9 +55,9 @@ class Fact:
         if normalize(self.words) != normalize_other(other.words) or len(self.numbers) != len(other.numbers):
             return False
         if self.rotation:
-            return _angle(self.rotation, other.rotation) <= ROTATION_TOLERANCE
+            return _compute_angle(self.rotation, other.rotation) <= ROTATION_TOLERANCE
         if self.is_direction:
-            return _distance(_unit_vector(self.numbers), _unit_vector(other.numbers)) <= ROTATION_TOLERANCE
+            return _compute_distance(_unit_vector(self.numbers), _unit_vector(other.numbers)) <= ROTATION_TOLERANCE
         return all(map(self._is_close, self.numbers, other.numbers))
 
     def _is_close(self, value: float, other_value: float) -> bool:
@@ -74,7 +74,7 @@ class Fact:
 
 @dataclass(slots=True)
 class Block:
-    """Properties that are added or removed together, such as the properties in an ``<inertial>``.
+    """Properties that are added or removed together, such as those in an ``<inertial>``.
 
     Attributes:
         name: the tag; empty for the properties that every joint has.
@@ -132,17 +132,17 @@ def nearest(element: Element | None, *tags: str) -> Element | None:
 
 def link_blocks(link: Link) -> list[Block]:
     """Return the properties of a link, except the properties of its shapes."""
-    return [] if link.inertial is None else [_inertial_block(link.inertial)]
+    return [] if link.inertial is None else [_make_inertial_block(link.inertial)]
 
 
 def visual_blocks(link: Link) -> list[Block]:
     """Return the properties of each ``<visual>`` of a link."""
-    return [_visual_block(visual) for visual in link.visuals]
+    return [_make_visual_block(visual) for visual in link.visuals]
 
 
 def collision_blocks(link: Link) -> list[Block]:
     """Return the properties of each ``<collision>`` of a link."""
-    return [_shape_block("collision", collision) for collision in link.collisions]
+    return [_make_shape_block("collision", collision) for collision in link.collisions]
 
 
 def joint_blocks(joint: Joint) -> list[Block]:
@@ -185,7 +185,7 @@ def joint_blocks(joint: Joint) -> list[Block]:
     return blocks
 
 
-def _inertial_block(inertial: Inertial) -> Block:
+def _make_inertial_block(inertial: Inertial) -> Block:
     block = Block("inertial", inertial.element)
     block.number("mass", inertial.mass, "kg", nearest(inertial.element, "mass"), "value")
     block.origin(inertial.origin, inertial.element)
@@ -195,8 +195,8 @@ def _inertial_block(inertial: Inertial) -> Block:
     return block
 
 
-def _visual_block(visual: Visual) -> Block:
-    block = _shape_block("visual", visual)
+def _make_visual_block(visual: Visual) -> Block:
+    block = _make_shape_block("visual", visual)
     element, material = nearest(visual.element, "material"), visual.material
     block.words("material", visual.material_name, element, "name")
     if material is not None and material.rgba is not None:
@@ -208,14 +208,14 @@ def _visual_block(visual: Visual) -> Block:
     return block
 
 
-def _shape_block(tag: str, shape: Visual | Collision) -> Block:
+def _make_shape_block(tag: str, shape: Visual | Collision) -> Block:
     block = Block(tag, shape.element, label=shape.name)
     block.origin(shape.origin, shape.element)
-    block.facts["geometry"] = _geometry_fact(shape.geometry, shape.element)
+    block.facts["geometry"] = _make_geometry_fact(shape.geometry, shape.element)
     return block
 
 
-def _geometry_fact(geometry: Geometry, shape_element: Element | None) -> Fact:
+def _make_geometry_fact(geometry: Geometry, shape_element: Element | None) -> Fact:
     kind = type(geometry).__name__.lower()
     element = nearest(shape_element, "geometry", kind)
     if isinstance(geometry, Mesh):
@@ -257,10 +257,11 @@ def match_blocks(
     ]
 
 
-def _angle(rotation: Sequence[float], other_rotation: Sequence[float]) -> float:
+def _compute_angle(rotation: Sequence[float], other_rotation: Sequence[float]) -> float:
     """Return the angle between two rotations in radians, accurate even for small angles."""
     return 2.0 * min(
-        _distance(rotation, other_rotation), _distance(rotation, [-component for component in other_rotation])
+        _compute_distance(rotation, other_rotation),
+        _compute_distance(rotation, [-component for component in other_rotation]),
     )
 
 
@@ -269,5 +270,5 @@ def _unit_vector(vector: Sequence[float]) -> tuple[float, ...]:
     return tuple(value / length for value in vector) if length > 0.0 else tuple(vector)
 
 
-def _distance(vector: Iterable[float], other_vector: Iterable[float]) -> float:
+def _compute_distance(vector: Iterable[float], other_vector: Iterable[float]) -> float:
     return sqrt(sum((a - b) ** 2 for a, b in zip(vector, other_vector, strict=True)))

@@ -9,7 +9,10 @@ from linkwright.files.git_repository import compute_file_hash, read_lfs_hash
 
 
 def has_same_bytes(old: Path, new: Path) -> bool:
-    """Return whether two files have the same contents. A pointer of Git LFS is equal to its file."""
+    """Return whether two files have the same contents.
+
+    A Git LFS pointer is equal to its file.
+    """
     try:
         if old.samefile(new) or filecmp.cmp(old, new, shallow=False):
             return True

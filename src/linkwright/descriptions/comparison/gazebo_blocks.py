@@ -10,7 +10,10 @@ GAZEBO = "gazebo"
 
 
 def joined_block(blocks: Sequence[Element]) -> Element:
-    """Return one element with the attributes and the children of several, at the place of the first one."""
+    """Return one element with the attributes and the children of several.
+
+    It has the source position of the first one.
+    """
     first, *others = blocks
     if not others:
         return first

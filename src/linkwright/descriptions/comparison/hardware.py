@@ -1,4 +1,4 @@
-"""The ``<ros2_control>`` elements of two descriptions: their renames, and the interfaces that they offer."""
+"""The ``<ros2_control>`` elements of two descriptions: renames and interfaces."""
 
 from __future__ import annotations
 
@@ -7,25 +7,30 @@ from collections.abc import Iterable, Iterator, Sequence
 from linkwright.xmltree import Element
 
 ROS2_CONTROL = "ros2_control"
-_MIN_COMMON = 0.5
+_MIN_SIMILARITY = 0.5
 """The minimum share of equal interfaces for which hardware with another name counts as renamed."""
 
 
-def renamed_hardware(old: Sequence[Element], new: Sequence[Element]) -> Iterator[tuple[Element, Element]]:
-    """Yield the pairs of ``<ros2_control>`` elements with different names that share at least half their interfaces."""
-    old_names, new_names = ({_name_of(element) for element in _select_hardware(elements)} for elements in (old, new))
-    unmatched = [element for element in _select_hardware(new) if _name_of(element) not in old_names]
+def find_renamed_hardware(old: Sequence[Element], new: Sequence[Element]) -> Iterator[tuple[Element, Element]]:
+    """Yield the pairs of renamed ``<ros2_control>`` elements.
+
+    The two share at least half of their interfaces.
+    """
+    old_names, new_names = ({_get_name(element) for element in _select_hardware(elements)} for elements in (old, new))
+    unmatched = [element for element in _select_hardware(new) if _get_name(element) not in old_names]
     for element in _select_hardware(old):
-        if _name_of(element) in new_names:
+        if _get_name(element) in new_names:
             continue
-        best = max(unmatched, key=lambda other: _similarity(element, other), default=None)
-        if best is not None and _similarity(element, best) >= _MIN_COMMON:
+        best = max(unmatched, key=lambda other: _compute_similarity(element, other), default=None)
+        if best is not None and _compute_similarity(element, best) >= _MIN_SIMILARITY:
             unmatched.remove(best)
             yield element, best
 
 
 def interfaces_of(elements: Iterable[Element]) -> set[tuple[str, str]]:
-    """Return the interfaces of hardware as pairs: the name of the joint, sensor or GPIO, and the interface name.
+    """Return the interfaces of hardware as pairs.
+
+    A pair consists of the name of the joint, sensor or GPIO, and the interface name.
 
     A state interface has the name ``state NAME``, because controllers claim commands and states separately.
     """
@@ -45,11 +50,11 @@ def _select_hardware(elements: Iterable[Element]) -> list[Element]:
     return [element for element in elements if element.tag == ROS2_CONTROL]
 
 
-def _name_of(element: Element) -> str:
+def _get_name(element: Element) -> str:
     return element.attributes.get("name", "")
 
 
-def _similarity(old: Element, new: Element) -> float:
+def _compute_similarity(old: Element, new: Element) -> float:
     """Return the share of interfaces that two elements have in common."""
     old_interfaces, new_interfaces = interfaces_of([old]), interfaces_of([new])
     total = len(old_interfaces | new_interfaces)

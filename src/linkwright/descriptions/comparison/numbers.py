@@ -9,12 +9,15 @@ from linkwright.loading.deferred import lazy_pattern
 _NUMBER = lazy_pattern(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
-def comparable_text(text: str) -> str:
-    """Return a text with single spaces and normalized numbers: ``1.0`` becomes ``1``, and ``-0`` becomes ``0``."""
-    return " ".join(map(_comparable_word, text.split()))
+def normalize_numbers(text: str) -> str:
+    """Return a text with single spaces and normalized numbers.
+
+    For example, ``1.0`` becomes ``1``, and ``-0`` becomes ``0``.
+    """
+    return " ".join(map(_normalize_word, text.split()))
 
 
-def _comparable_word(word: str) -> str:
+def _normalize_word(word: str) -> str:
     if not _NUMBER.fullmatch(word):
         return word
     number = float(word)

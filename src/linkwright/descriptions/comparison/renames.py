@@ -30,7 +30,7 @@ _MAX_CANDIDATES = 40
 """The maximum number of links that share a fact, such as a mesh. A fact of more links is ignored."""
 _MAX_PASSES = 20
 _WORD = lazy_pattern(r"[a-z]+|\d+")
-_CAMEL = lazy_pattern(r"(?<=[a-z0-9])(?=[A-Z])")
+_CAMEL_CASE_BOUNDARY = lazy_pattern(r"(?<=[a-z0-9])(?=[A-Z])")
 _GENERAL_WORDS = frozenset({"frame", "joint", "link"})
 _SIDES = frozenset({"left", "right", "front", "rear", "back", "upper", "lower", "top", "bottom", "inner", "outer"})
 _CORNERS = frozenset({"fl", "fr", "rl", "rr", "bl", "br", "lf", "rf", "lr", "lh", "rh"})
@@ -42,11 +42,11 @@ class _Side:
     """The unmatched links of one robot, with their neighbors and properties.
 
     Attributes:
-        robot: the robot.
+        robot: the old or the new robot.
         names: the names of the links without a match.
         parents: the parent joint of each link.
         children: the child joints of each link.
-        shapes: the shapes of each link without a match; see `_shape_key`.
+        shapes: the shapes of each link without a match; see `_make_shape_key`.
     """
 
     robot: Robot
@@ -58,7 +58,7 @@ class _Side:
     @classmethod
     def of(cls, robot: Robot, matched: Mapping[str, str], normalize: Callable[[str], str]) -> _Side:
         names = [name for name in robot.links if name not in matched and name != WORLD]
-        shapes = {name: _shape_key(robot.links[name], normalize) for name in names}
+        shapes = {name: _make_shape_key(robot.links[name], normalize) for name in names}
         return cls(robot, dict.fromkeys(names), parent_joints(robot), children_of(robot), shapes)
 
     def own_keys(self, name: str) -> Iterator[Key]:
@@ -67,7 +67,7 @@ class _Side:
         shapes: tuple[Visual | Collision, ...] = (*link.visuals, *link.collisions)
         if any(isinstance(shape.geometry, Mesh) for shape in shapes):
             yield "mesh", self.shapes[name]
-        words = tuple(_words(name))
+        words = tuple(_split_words(name))
         if words:
             yield "words", words
 
@@ -103,7 +103,7 @@ class RenameSearch:
     def run(self) -> None:
         """Match links until no more matches are found, and then the joints between matched links."""
         for _ in range(_MAX_PASSES):
-            pairs = list(self._unambiguous_pairs()) if self._old.names and self._new.names else []
+            pairs = list(self._find_unambiguous_pairs()) if self._old.names and self._new.names else []
             for old_name, new_name in pairs:
                 self._links[old_name] = new_name
                 del self._old.names[old_name], self._new.names[new_name]
@@ -126,9 +126,9 @@ class RenameSearch:
 
     # --- pairs of links -----------------------------------------------------------------------------------------
 
-    def _unambiguous_pairs(self) -> Iterator[tuple[str, str]]:
+    def _find_unambiguous_pairs(self) -> Iterator[tuple[str, str]]:
         """Yield the pairs with a higher sum than any other pair with one of the two links."""
-        sums = {pair: self._sum(*pair) for pair in self._candidates()}
+        sums = {pair: self._sum_weights(*pair) for pair in self._find_candidates()}
         by_link: dict[tuple[bool, str], list[int]] = defaultdict(list)
         for (old_name, new_name), value in sums.items():
             by_link[True, old_name].append(value)
@@ -138,10 +138,10 @@ class RenameSearch:
             if value >= _MIN_WEIGHT and all(max(values) == value and values.count(value) == 1 for values in others):
                 yield old_name, new_name
 
-    def _candidates(self) -> Mapping[tuple[str, str], None]:
+    def _find_candidates(self) -> Mapping[tuple[str, str], None]:
         """Return the pairs of links that share a fact of high weight."""
-        old_names = _by_key(self._old.names, self._old_keys)
-        new_names = _by_key(self._new.names, self._new_keys)
+        old_names = _index_by_key(self._old.names, self._old_keys)
+        new_names = _index_by_key(self._new.names, self._new_keys)
         return {
             (old_name, new_name): None
             for key, names in old_names.items()
@@ -170,7 +170,7 @@ class RenameSearch:
         if children:
             yield "children", children
 
-    def _sum(self, old_name: str, new_name: str) -> int:
+    def _sum_weights(self, old_name: str, new_name: str) -> int:
         """Return the sum of the weights of the facts for a rename, or 0 if a fact excludes it."""
         common = set(self._old_keys(old_name)) & set(self._new_keys(new_name))
         kinds = {kind for kind, _ in common}
@@ -194,7 +194,7 @@ class RenameSearch:
         )
 
 
-def _by_key(names: Iterable[str], keys_of: Callable[[str], Iterator[Key]]) -> dict[Key, list[str]]:
+def _index_by_key(names: Iterable[str], keys_of: Callable[[str], Iterator[Key]]) -> dict[Key, list[str]]:
     """Return the link names by their keys."""
     names_by_key: dict[Key, list[str]] = defaultdict(list)
     for name in names:
@@ -203,8 +203,11 @@ def _by_key(names: Iterable[str], keys_of: Callable[[str], Iterator[Key]]) -> di
     return names_by_key
 
 
-def _shape_key(link: Link, normalize: Callable[[str], str]) -> Hashable:
-    """Return a key that is equal for links with the same shapes, regardless of their poses and colors."""
+def _make_shape_key(link: Link, normalize: Callable[[str], str]) -> Hashable:
+    """Return a key that is equal for links with the same shapes.
+
+    Poses and colors are ignored.
+    """
     blocks: list[Block] = [*visual_blocks(link), *collision_blocks(link)]
     facts = ((block.name, block.facts["geometry"]) for block in blocks)
     return tuple(
@@ -213,15 +216,18 @@ def _shape_key(link: Link, normalize: Callable[[str], str]) -> Hashable:
 
 
 def _are_different_sides(old_name: str, new_name: str) -> bool:
-    """Return whether two names differ in their numbers or side words, so that they denote two similar parts."""
+    """Return whether two names differ in their numbers or side words.
+
+    Such names denote two similar parts.
+    """
     old_sides, new_sides = (
-        sorted(word for word in _words(name) if word in _SIDES | _CORNERS or word.isdigit() or len(word) == 1)
+        sorted(word for word in _split_words(name) if word in _SIDES | _CORNERS or word.isdigit() or len(word) == 1)
         for name in (old_name, new_name)
     )
     return bool(old_sides and new_sides) and old_sides != new_sides
 
 
-def _words(name: str) -> list[str]:
+def _split_words(name: str) -> list[str]:
     """Return the words and numbers of a name in lower case, sorted, without general words."""
-    parts = (part for word in _CAMEL.sub("_", name).lower().split("_") for part in _WORD.findall(word))
+    parts = (part for word in _CAMEL_CASE_BOUNDARY.sub("_", name).lower().split("_") for part in _WORD.findall(word))
     return sorted(part for part in parts if part not in _GENERAL_WORDS)

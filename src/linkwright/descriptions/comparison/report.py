@@ -27,7 +27,7 @@ def as_text(comparison: Comparison, label: Label) -> str:
     lines = []
     for difference in differences:
         locations = [
-            _location_text(location, label)
+            _format_location(location, label)
             for location in (difference.old_place, difference.new_place)
             if location is not None
         ]
@@ -69,35 +69,35 @@ def as_data(comparison: Comparison, label: Label) -> list[dict[str, Any]]:
             "old": difference.old,
             "new": difference.new,
             "unit": difference.unit,
-            "old_place": _location_data(difference.old_place, label),
-            "new_place": _location_data(difference.new_place, label),
+            "old_place": _convert_location(difference.old_place, label),
+            "new_place": _convert_location(difference.new_place, label),
         }
         for difference in comparison.differences
     ]
 
 
-def _location_data(location: DifferenceLocation | None, label: Label) -> dict[str, Any] | None:
+def _convert_location(location: DifferenceLocation | None, label: Label) -> dict[str, Any] | None:
     if location is None:
         return None
-    return {**_span_data(location.span, label), "calls": [_span_data(call, label) for call in location.calls]}
+    return {**_convert_span(location.span, label), "calls": [_convert_span(call, label) for call in location.calls]}
 
 
-def _span_data(span: Span, label: Label) -> dict[str, Any]:
+def _convert_span(span: Span, label: Label) -> dict[str, Any]:
     return {"file": label(span.file), "line": span.line, "column": span.column}
 
 
-def _location_text(location: DifferenceLocation, label: Label) -> str:
+def _format_location(location: DifferenceLocation, label: Label) -> str:
     """Return a location as text, with the innermost call or include that produced the element.
 
     Outer calls are only in the data for programs.
     """
-    position = _position_text(location.span, label)
+    position = _format_position(location.span, label)
     if not location.calls:
         return position
     return localized(
-        phrase("{location} called at {call}", location=position, call=_position_text(location.calls[0], label))
+        phrase("{location} called at {call}", location=position, call=_format_position(location.calls[0], label))
     )
 
 
-def _position_text(span: Span, label: Label) -> str:
+def _format_position(span: Span, label: Label) -> str:
     return f"{label(span.file)}:{span.line}:{span.column}"

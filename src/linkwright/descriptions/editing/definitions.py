@@ -15,10 +15,10 @@ from linkwright.xacro.faults import Fault, Frame, frames
 from linkwright.xacro.macros import parse_parameters
 from linkwright.xacro.tracing.references import references
 from linkwright.xmltree import Document, Element, Overlay
-from linkwright.xmltree.patches import escaped, find_start_tag
+from linkwright.xmltree.patches import escape, find_start_tag
 from linkwright.xmltree.positions import attribute_value_range
 
-_VALUES = {"xacro:property": ("value", "default"), "xacro:arg": ("default",)}
+_VALUE_ATTRIBUTES = {"xacro:property": ("value", "default"), "xacro:arg": ("default",)}
 _MAX_YAML_CHARACTERS = 1_000_000
 
 
@@ -50,7 +50,7 @@ class Definitions:
             innermost: the macro call in which the text is evaluated.
         """
         for reference in references(text):
-            keys = _constant_keys(reference.path)
+            keys = _find_constant_keys(reference.path)
             for frame in frames(innermost):
                 text_range = attribute(frame.site, reference.name) or self._default(frame, reference.name)
                 if text_range is not None:
@@ -72,7 +72,7 @@ class Definitions:
             for frame in frames(innermost):
                 default = self._default(frame, reference.name)
                 if default is not None and attribute(frame.site, reference.name) is None:
-                    candidate = _argument_candidate(frame.site, reference.name, words(default), index)
+                    candidate = _make_argument_candidate(frame.site, reference.name, words(default), index)
                     if candidate is not None:
                         yield candidate
 
@@ -82,7 +82,7 @@ class Definitions:
             return
         if element.tag == "xacro:macro":
             self._macros[name] = element
-        for key in _VALUES.get(element.tag, ()):
+        for key in _VALUE_ATTRIBUTES.get(element.tag, ()):
             text_range = attribute(element, key)
             if text_range is not None:
                 self._ranges_by_name.setdefault(name, []).append(text_range)
@@ -113,7 +113,7 @@ class Definitions:
     def _values(self) -> list[tuple[tuple[str, ...], TextRange]]:
         """Return the locations of all scalars in the YAML files, each with its keys from the root."""
         if self._scalars is None:
-            self._scalars = [item for path in self._other_files for item in _file_scalars(path, self._overlay)]
+            self._scalars = [item for path in self._other_files for item in _read_scalars(path, self._overlay)]
         return self._scalars
 
 
@@ -125,7 +125,7 @@ def attribute(element: Element, name: str) -> TextRange | None:
     return None if value_range is None else TextRange(element.source, *value_range)
 
 
-def _argument_candidate(site: Element, name: str, default: list[TextRange], index: int | None) -> Candidate | None:
+def _make_argument_candidate(site: Element, name: str, default: list[TextRange], index: int | None) -> Candidate | None:
     tag = find_start_tag(site)
     value_index = 0 if len(default) == 1 else index
     if tag is None or site.source is None or value_index is None or value_index >= len(default):
@@ -137,14 +137,14 @@ def _argument_candidate(site: Element, name: str, default: list[TextRange], inde
     def write(number: float, tolerance: float) -> str:
         texts = [text_range.text for text_range in default]
         texts[value_index] = current.write(number, tolerance)
-        return f' {name}="{escaped(" ".join(texts))}"'
+        return f' {name}="{escape(" ".join(texts))}"'
 
     return Candidate(
         TextRange(site.source, tag.insertion_offset, tag.insertion_offset), current.value, write, current.is_choice
     )
 
 
-def _constant_keys(path: str) -> tuple[str, ...]:
+def _find_constant_keys(path: str) -> tuple[str, ...]:
     """Return the constant keys in an expression.
 
     For ``config['wheel'].radius`` these are ``("wheel", "radius")``.
@@ -165,7 +165,7 @@ def _constant_keys(path: str) -> tuple[str, ...]:
     return tuple(reversed(keys))
 
 
-def _file_scalars(path: Path, overlay: Overlay) -> Iterator[tuple[tuple[str, ...], TextRange]]:
+def _read_scalars(path: Path, overlay: Overlay) -> Iterator[tuple[tuple[str, ...], TextRange]]:
     try:
         text = overlay.read(str(path)).text
         if len(text) > _MAX_YAML_CHARACTERS:
@@ -173,10 +173,10 @@ def _file_scalars(path: Path, overlay: Overlay) -> Iterator[tuple[tuple[str, ...
         root = yaml.compose(text, Loader=yaml.SafeLoader)
     except (LinkwrightError, yaml.YAMLError, RecursionError):
         return
-    yield from _walk(root, (), SourceText(str(path), text), 0)
+    yield from _walk_scalars(root, (), SourceText(str(path), text), 0)
 
 
-def _walk(
+def _walk_scalars(
     node: Any, keys: tuple[str, ...], source: SourceText, depth: int
 ) -> Iterator[tuple[tuple[str, ...], TextRange]]:
     if isinstance(node, yaml.ScalarNode):
@@ -187,7 +187,7 @@ def _walk(
     elif depth < 50 and isinstance(node, yaml.MappingNode):
         for key, value in node.value:
             if isinstance(key, yaml.ScalarNode):
-                yield from _walk(value, (*keys, key.value), source, depth + 1)
+                yield from _walk_scalars(value, (*keys, key.value), source, depth + 1)
     elif depth < 50 and isinstance(node, yaml.SequenceNode):
         for index, value in enumerate(node.value):
-            yield from _walk(value, (*keys, str(index)), source, depth + 1)
+            yield from _walk_scalars(value, (*keys, str(index)), source, depth + 1)

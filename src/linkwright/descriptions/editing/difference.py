@@ -37,7 +37,7 @@ class Target:
         return None if owner is None else owner.first(self.tag)
 
 
-def path_to(root: Element, element: Element) -> tuple[int, ...] | None:
+def find_path(root: Element, element: Element) -> tuple[int, ...] | None:
     """Return the path of an element in a document, or None if the document does not contain it."""
     pending: list[tuple[Element, tuple[int, ...]]] = [(root, ())]
     while pending:
@@ -68,7 +68,7 @@ def other_differences(old_root: Element, new_root: Element, target: Target) -> I
             pair = _take_first(old_children, target.tag), _take_first(new_children, target.tag)
             if _is_changed(*pair, target.attribute):
                 yield trail
-        if old.tag != new.tag or old.attributes != new.attributes or _text(old) != _text(new):
+        if old.tag != new.tag or old.attributes != new.attributes or _get_text(old) != _get_text(new):
             yield trail
             continue
         for index, (old_child, new_child) in enumerate(zip_longest(old_children, new_children)):
@@ -80,7 +80,7 @@ def other_differences(old_root: Element, new_root: Element, target: Target) -> I
                     old_child,
                     new_child,
                     (*trail, old_child),
-                    (*path, _sibling_index(old, old_child, index, path == target.path)),
+                    (*path, _find_sibling_index(old, old_child, index, path == target.path)),
                 )
             )
 
@@ -100,7 +100,7 @@ def describe_path(trail: tuple[Element, ...]) -> str:
     return name_text if inner_tag is None else phrase("{owner} ({part})", owner=name_text, part=term(inner_tag))
 
 
-def _sibling_index(old: Element, child: Element, index: int, is_owner: bool) -> int:
+def _find_sibling_index(old: Element, child: Element, index: int, is_owner: bool) -> int:
     """Return the index of a child among its siblings.
 
     In the owner, `index` does not include the removed element, so the index is found by a search for the child.
@@ -124,5 +124,5 @@ def _is_changed(old: Element | None, new: Element | None, attribute: str) -> boo
     return new_attributes != old_attributes or any(new.elements()) != any(old.elements() if old is not None else ())
 
 
-def _text(element: Element) -> str:
+def _get_text(element: Element) -> str:
     return " ".join(element.text().split())

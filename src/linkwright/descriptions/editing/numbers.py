@@ -40,7 +40,7 @@ def parse_numbers(text: str, count: int) -> list[float] | None:
     return values if len(values) == count and all(map(isfinite, values)) else None
 
 
-def pi_fraction(angle: float) -> str | None:
+def format_pi_fraction(angle: float) -> str | None:
     """Return an angle as an expression such as ``-pi/2`` or ``3*pi/4``.
 
     The result is None if the angle is not such a fraction of pi.
@@ -57,7 +57,7 @@ def pi_fraction(angle: float) -> str | None:
     return None
 
 
-def degrees_text(angle: float) -> str | None:
-    """Return an angle as a text in degrees, for ``radians()``, or None if the text is not short."""
+def format_degrees(angle: float) -> str | None:
+    """Return an angle as a short text in degrees, for ``radians()``, or None."""
     text = shortest_text(degrees(angle), _EXACT_DEGREES)
     return text if len(text.lstrip("-").replace(".", "")) <= 5 else None

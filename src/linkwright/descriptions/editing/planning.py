@@ -12,7 +12,7 @@ from itertools import islice
 from math import isfinite
 
 from linkwright.descriptions.editing.definitions import attribute
-from linkwright.descriptions.editing.difference import Target, describe_path, other_differences, path_to
+from linkwright.descriptions.editing.difference import Target, describe_path, find_path, other_differences
 from linkwright.descriptions.editing.errors import EditRefusedError
 from linkwright.descriptions.editing.numbers import EXACT, are_close, parse_numbers, shortest_text
 from linkwright.descriptions.editing.proposals import proposals
@@ -26,7 +26,7 @@ from linkwright.geometry.single import quaternion_from_rpy
 from linkwright.loading.lean_dataclasses import NamedTuple, dataclass
 from linkwright.xacro.faults import Frame
 from linkwright.xmltree import Document, Element, Overlay, parse
-from linkwright.xmltree.patches import find_start_tag, insertion
+from linkwright.xmltree.patches import find_start_tag, make_insertion
 
 Allowed = Callable[[str], "Diagnostic | None"]
 """A function that returns the reason why a file must not be written, given its real path, or None."""
@@ -91,7 +91,7 @@ class _Planner:
         self._current = self._first = Snapshot.of(description)
         robot = description.robot
         owner = None if robot is None else request.owner(robot)
-        path = None if owner is None else path_to(self._current.root, owner)
+        path = None if owner is None else find_path(self._current.root, owner)
         if owner is None or path is None or description.name.startswith("<"):
             message = phrase("'{name}' has no {part} to edit", part=request.part, name=request.name)
             raise EditRefusedError(
@@ -218,7 +218,7 @@ class _Planner:
             if candidate.is_choice and not any(are_close(abs(slope), plain_slope) for plain_slope in _PLAIN_SLOPES):
                 attempts.append(Attempt(candidate.text_range, is_choice=True))
                 return None
-            side_effects = self._side_effects(trial, target, index, values)
+            side_effects = self._find_side_effects(trial, target, index, values)
             if side_effects and not self._request.together:
                 attempts.append(
                     Attempt(candidate.text_range, side_effects=side_effects, may_be_choice=candidate.is_choice)
@@ -252,7 +252,7 @@ class _Planner:
         if trial is None or values is None:
             return None
         requested = [new_numbers.get(i, value) for i, value in enumerate(self._values(target.attribute))]
-        is_exact = all(map(are_close, values, requested)) and not self._differences(trial, target)
+        is_exact = all(map(are_close, values, requested)) and not self._list_differences(trial, target)
         return trial if is_exact else None
 
     def _try_text(self, text_range: TextRange, text: str) -> Snapshot | None:
@@ -261,15 +261,15 @@ class _Planner:
         except LinkwrightError:
             return None
 
-    def _side_effects(self, trial: Snapshot, target: Target, index: int, values: list[float]) -> tuple[str, ...]:
+    def _find_side_effects(self, trial: Snapshot, target: Target, index: int, values: list[float]) -> tuple[str, ...]:
         """Return the names of the other parts that a trial edit changes."""
-        changed_parts = self._differences(trial, target)
+        changed_parts = self._list_differences(trial, target)
         current_numbers = self._values(target.attribute)
         if any(values[i] != current_numbers[i] for i in range(len(values)) if i != index):
             changed_parts.append(phrase("another number of the same attribute"))
         return tuple(dict.fromkeys(changed_parts))
 
-    def _differences(self, trial: Snapshot, target: Target) -> list[str]:
+    def _list_differences(self, trial: Snapshot, target: Target) -> list[str]:
         return [describe_path(trail) for trail in other_differences(self._current.root, trial.root, target)]
 
     # missing attributes
@@ -277,13 +277,13 @@ class _Planner:
     def _add(self, target: Target, requested: list[float]) -> None:
         """Plan the addition of a missing attribute or element."""
         element = target.element(self._current.root)
-        text_range, text = self._insertion(target, element, " ".join(map(shortest_text, requested)))
+        text_range, text = self._make_insertion(target, element, " ".join(map(shortest_text, requested)))
         refusal_reason = self._allowed(os.path.realpath(text_range.source.name))
         if refusal_reason is not None:
             raise EditRefusedError(refusal_reason)
         trial = self._try_text(text_range, text)
         values = None if trial is None else self._numbers_in(trial, target)
-        side_effects = () if trial is None else tuple(dict.fromkeys(self._differences(trial, target)))
+        side_effects = () if trial is None else tuple(dict.fromkeys(self._list_differences(trial, target)))
         if side_effects and self._request.together:
             self._also_changed.update(dict.fromkeys(side_effects))
             side_effects = ()
@@ -298,7 +298,7 @@ class _Planner:
             )
         self._current = trial
 
-    def _insertion(self, target: Target, element: Element | None, text: str) -> tuple[TextRange, str]:
+    def _make_insertion(self, target: Target, element: Element | None, text: str) -> tuple[TextRange, str]:
         if element is not None:
             source_element = self._source_element(element)
             tag = find_start_tag(source_element)
@@ -306,7 +306,7 @@ class _Planner:
                 return TextRange(
                     source_element.source, tag.insertion_offset, tag.insertion_offset
                 ), f' {target.attribute}="{text}"'
-            raise EditRefusedError(_not_written_finding(element))
+            raise EditRefusedError(_make_not_written_finding(element))
         owner = target.owner(self._current.root)
         assert owner is not None, "it was found before"
         source_element = self._source_element(owner)
@@ -316,19 +316,19 @@ class _Planner:
             previous = next(
                 (element for tag in ("child", "parent", "origin") for element in source_element.elements(tag)), None
             )
-        edit = insertion(source_element, [new_element], after=previous, first=previous is None)
+        edit = make_insertion(source_element, [new_element], after=previous, first=previous is None)
         if edit is None or source_element.source is None:
-            raise EditRefusedError(_not_written_finding(owner))
+            raise EditRefusedError(_make_not_written_finding(owner))
         return TextRange(source_element.source, edit.start, edit.end), edit.text
 
     def _source_element(self, element: Element) -> Element:
         """Return the unexpanded element in the file for an element of the expansion."""
         if element.source is None:
-            raise EditRefusedError(_not_written_finding(element))
+            raise EditRefusedError(_make_not_written_finding(element))
         document: Document = parse(element.source.text, element.source.name)
         source_element = next((child for child in document.root.walk() if child.offset == element.offset), None)
         if source_element is None:
-            raise EditRefusedError(_not_written_finding(element))
+            raise EditRefusedError(_make_not_written_finding(element))
         return source_element
 
     # current values
@@ -362,12 +362,12 @@ class _Planner:
             else None
         )
         if origin is None or origin.span is None or element.source is None or origin.span.file != element.source.name:
-            raise EditRefusedError(_not_written_finding(element))
+            raise EditRefusedError(_make_not_written_finding(element))
         source, span = element.source, origin.span
         return TextRange(source, source.offset(span.line, span.column), source.offset(span.end_line, span.end_column))
 
 
-def _not_written_finding(element: Element) -> Diagnostic:
+def _make_not_written_finding(element: Element) -> Diagnostic:
     message = phrase("<{tag}> cannot be edited, because no source file contains it as an element", tag=element.tag)
     hint = phrase("edit the xacro code that generates it")
     return Diagnostic("EDIT103", message, element.span(), hint=hint, source=element.source)

@@ -40,7 +40,7 @@ def proposals(
         present: the current numbers of the attribute.
         is_angle: whether the numbers are angles.
     """
-    determining_words = list(_determining_words(text_range, index, frame, definitions))
+    determining_words = list(_find_determining_words(text_range, index, frame, definitions))
     for word in determining_words:
         yield from _numbers_in(word, present[index])
     for word in determining_words:
@@ -53,10 +53,10 @@ def proposals(
     if len(attribute_words) == len(present):
         yield replacement_candidate(attribute_words[index], present[index])
     elif len(attribute_words) == 1:
-        yield _whole_candidate(text_range, index, present)
+        yield _make_whole_candidate(text_range, index, present)
 
 
-def _determining_words(
+def _find_determining_words(
     text_range: TextRange, index: int, frame: Frame | None, definitions: Definitions
 ) -> Iterator[TextRange]:
     """Yield the ranges of the words that determine a number.
@@ -91,7 +91,7 @@ def _numbers_in(word: TextRange, value: float) -> Iterator[Candidate]:
     yield from candidates
 
 
-def _whole_candidate(text_range: TextRange, index: int, present: Sequence[float]) -> Candidate:
+def _make_whole_candidate(text_range: TextRange, index: int, present: Sequence[float]) -> Candidate:
     """Return a candidate that replaces a single expression with all numbers of the attribute."""
 
     def write(number: float, tolerance: float) -> str:

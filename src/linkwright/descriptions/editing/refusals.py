@@ -47,7 +47,7 @@ def refusal(text_range: TextRange, index: int | None, attempts: Sequence[Attempt
         for attempt in attempts
         if attempt.text_range != text_range and (attempt.side_effects or attempt.is_choice)
     }
-    notes = tuple(map(_attempt_note, attempts_by_span.values()))[:_MAX_NAMES]
+    notes = tuple(map(_make_attempt_note, attempts_by_span.values()))[:_MAX_NAMES]
     best_attempt = min(
         (attempt for attempt in attempts if attempt.side_effects),
         key=lambda attempt: (len(attempt.side_effects), attempt.may_be_choice),
@@ -55,7 +55,7 @@ def refusal(text_range: TextRange, index: int | None, attempts: Sequence[Attempt
     )
     forbidden = next((attempt.forbidden for attempt in attempts if attempt.forbidden is not None), None)
     if best_attempt is not None:
-        names_text = _joined_names(best_attempt.side_effects)
+        names_text = _join_names(best_attempt.side_effects)
         hint = phrase(
             "add a parameter or property for this part to the macro or expression here, or change the "
             "text for all of these parts"
@@ -74,7 +74,7 @@ def refusal(text_range: TextRange, index: int | None, attempts: Sequence[Attempt
     return Diagnostic("EDIT105", message, text_range.span, notes=notes, hint=hint, source=text_range.source)
 
 
-def _attempt_note(attempt: Attempt) -> Note:
+def _make_attempt_note(attempt: Attempt) -> Note:
     text = " ".join(attempt.text_range.text.split())
     if attempt.is_choice:
         return Note(
@@ -82,12 +82,12 @@ def _attempt_note(attempt: Attempt) -> Note:
             attempt.text_range.span,
         )
     return Note(
-        phrase("'{text}' also determines {parts}", text=text, parts=_joined_names(attempt.side_effects)),
+        phrase("'{text}' also determines {parts}", text=text, parts=_join_names(attempt.side_effects)),
         attempt.text_range.span,
     )
 
 
-def _joined_names(names: Sequence[str]) -> object:
+def _join_names(names: Sequence[str]) -> object:
     shown_names = list(names[:_MAX_NAMES])
     if len(names) > len(shown_names):
         shown_names.append(str(phrase("{count} more", count=len(names) - len(shown_names))))

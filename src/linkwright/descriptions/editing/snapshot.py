@@ -106,7 +106,7 @@ def read_again(description: Description, unsaved: Mapping[str | os.PathLike[str]
     """Return a description read again from its files, with the same arguments and packages.
 
     Args:
-        description: the description.
+        description: the description to read.
         unsaved: texts that replace the contents of files, by real path.
 
     Raises:

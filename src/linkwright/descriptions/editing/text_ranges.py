@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Iterator
 
-from linkwright.descriptions.editing.numbers import degrees_text, pi_fraction, shortest_text
+from linkwright.descriptions.editing.numbers import format_degrees, format_pi_fraction, shortest_text
 from linkwright.diagnostics import SourceText, Span
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
@@ -95,7 +95,7 @@ def is_constant(word: TextRange) -> bool:
     """
     match = _ONE_EXPRESSION.match(word.text)
     tree = _parse(match[1].strip()) if match is not None and match[1] else None
-    return tree is not None and _used_names(tree) <= _ANGLE_NAMES
+    return tree is not None and _find_used_names(tree) <= _ANGLE_NAMES
 
 
 def replacement_candidate(word: TextRange, value: float) -> Candidate:
@@ -106,10 +106,10 @@ def replacement_candidate(word: TextRange, value: float) -> Candidate:
 
     def write(number: float, tolerance: float) -> str:
         if "pi" in word.text or "radians" in word.text:
-            fraction = pi_fraction(number)
+            fraction = format_pi_fraction(number)
             if fraction is not None:
                 return f"${{{fraction}}}"
-            angle = degrees_text(number)
+            angle = format_degrees(number)
             if angle is not None and angle != "0":
                 return f"${{radians({angle})}}"
         return shortest_text(number, tolerance)
@@ -133,7 +133,7 @@ def addition_candidate(word: TextRange, *, is_angle: bool) -> Candidate | None:
 
     def write(number: float, tolerance: float) -> str:
         magnitude = shortest_text(abs(number), tolerance)
-        angle = degrees_text(abs(number)) if is_angle else None
+        angle = format_degrees(abs(number)) if is_angle else None
         if angle is not None and len(angle) + len("radians()") < len(magnitude):
             magnitude = f"radians({angle})"
         return word.text if magnitude == "0" else f"${{{base} {'-' if number < 0 else '+'} {magnitude}}}"
@@ -148,14 +148,14 @@ def _parse(body: str) -> ast.expr | None:
         return None
 
 
-def _used_names(tree: ast.AST) -> set[str]:
+def _find_used_names(tree: ast.AST) -> set[str]:
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
 
 
 def _find_terms(node: ast.expr, expression_range: TextRange) -> Iterator[Candidate]:
-    value = _literal_value(node)
+    value = _evaluate_literal(node)
     if value is not None:
-        yield _number_candidate(expression_range, node, value)
+        yield _make_number_candidate(expression_range, node, value)
     elif isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub)):
         signed_candidate = _find_signed_term(node, expression_range)
         yield from _find_terms(node.right, expression_range) if signed_candidate is None else (signed_candidate,)
@@ -175,9 +175,9 @@ def _find_terms(node: ast.expr, expression_range: TextRange) -> Iterator[Candida
 def _converts_degrees(node: ast.expr) -> bool:
     """Return whether an expression converts an angle from degrees, such as ``30*pi/180``."""
     return (
-        _used_names(node) <= _ANGLE_NAMES
-        and "pi" in _used_names(node)
-        and any(_literal_value(child) == 180 for child in ast.walk(node))
+        _find_used_names(node) <= _ANGLE_NAMES
+        and "pi" in _find_used_names(node)
+        and any(_evaluate_literal(child) == 180 for child in ast.walk(node))
     )
 
 
@@ -186,7 +186,7 @@ def _find_signed_term(node: ast.BinOp, expression_range: TextRange) -> Candidate
 
     The result is None if the last term is not a number, or is in brackets.
     """
-    value = _literal_value(node.right)
+    value = _evaluate_literal(node.right)
     if value is None:
         return None
     end, text = node.right.end_col_offset or 0, expression_range.text
@@ -203,16 +203,16 @@ def _find_signed_term(node: ast.BinOp, expression_range: TextRange) -> Candidate
     return Candidate(term, value if sign == "+" else -value, write)
 
 
-def _literal_value(node: ast.AST) -> float | None:
+def _evaluate_literal(node: ast.AST) -> float | None:
     """Return the value of a literal number with its sign, or None for any other node."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
-        value = _literal_value(node.operand)
+        value = _evaluate_literal(node.operand)
         return None if value is None else -value
     if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
         return float(node.value)
     return None
 
 
-def _number_candidate(expression_range: TextRange, node: ast.expr, value: float) -> Candidate:
+def _make_number_candidate(expression_range: TextRange, node: ast.expr, value: float) -> Candidate:
     text_range = expression_range.subrange(node.col_offset, node.end_col_offset or node.col_offset)
     return Candidate(text_range, value, shortest_text, value in (1.0, -1.0))

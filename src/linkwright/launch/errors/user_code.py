@@ -259,13 +259,17 @@ def _find_public_names(owner: object) -> list[str]:
 
 def _import_hint(error: ImportError) -> Phrase | None:
     from linkwright.messages.presentation import interface_names
-    from linkwright.packages.programs.missing_modules import missing_name, other_module_hint, provider_hint
+    from linkwright.packages.programs.missing_modules import (
+        find_missing_name,
+        make_other_module_hint,
+        make_provider_hint,
+    )
 
-    missing_attribute = missing_name(error)
+    missing_attribute = find_missing_name(error)
     if missing_attribute:
         name, module = missing_attribute
         return (
-            other_module_hint(error)
+            make_other_module_hint(error)
             or did_you_mean(name, _find_public_names(sys.modules.get(module)))
             or import_hint(name)
         )
@@ -285,7 +289,7 @@ def _import_hint(error: ImportError) -> Phrase | None:
     suggestion = did_you_mean(missing_module, known_packages)
     if suggestion or not missing_module:
         return suggestion
-    return provider_hint(missing_module)
+    return make_provider_hint(missing_module)
 
 
 def _other_kind_hint(package: str) -> Phrase | None:
@@ -329,12 +333,12 @@ def _missing_argument_hint(error: TypeError, source: SourceText | None, span: Sp
         return None
     call = source.text[source.offset(span.line, span.column) : source.offset(span.end_line, span.end_column)]
     keyword_names = re.findall(r"\b(\w+)\s*=(?!=)", call)
-    for missing_name in re.findall(r"'(\w+)'", match.group(1)):
-        similar_names = nearest(missing_name, (name for name in keyword_names if name != missing_name))
+    for find_missing_name in re.findall(r"'(\w+)'", match.group(1)):
+        similar_names = nearest(find_missing_name, (name for name in keyword_names if name != find_missing_name))
         if similar_names:
             return phrase(
                 "argument '{missing}' is missing; the call passes {similar}",
-                missing=missing_name,
+                missing=find_missing_name,
                 similar=quoted_names(similar_names, " or "),
             )
     return None

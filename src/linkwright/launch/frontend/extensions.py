@@ -18,13 +18,13 @@ from typing import Any
 from linkwright.loading.extensions import extensions
 from linkwright.packages import PackageFinder, current_finder, install_prefix, is_installed
 from linkwright.packages.programs.python_modules import find_module
-from linkwright.packages.programs.workspace_environment import python_folders
+from linkwright.packages.programs.workspace_environment import find_python_folders
 from linkwright.packages.readers.entry_points import (
     read_metadata_group,
     read_pyproject_group,
     read_setup_cfg_group,
     read_setup_py_group,
-    text_of,
+    read_text,
 )
 
 ACTION_GROUP = "launch.frontend.launch_extension"
@@ -94,16 +94,16 @@ def _import_module(module: str, finder: PackageFinder, share: Path) -> None:
 def _find_extension_modules(package: str, share: Path) -> Iterator[str]:
     """Yield the names of the modules with launch extensions in the entry points of a package."""
     if is_installed(share):
-        for folder in python_folders(install_prefix(share), package):
+        for folder in find_python_folders(install_prefix(share), package):
             for path in folder.glob("*-info/entry_points.txt"):
-                yield from _parse_module_names(read_metadata_group(text_of(path), ACTION_GROUP))
+                yield from _parse_module_names(read_metadata_group(read_text(path), ACTION_GROUP))
         return
     for name, read_group in (
         ("setup.py", read_setup_py_group),
         ("setup.cfg", read_setup_cfg_group),
         ("pyproject.toml", read_pyproject_group),
     ):
-        text = text_of(share / name)
+        text = read_text(share / name)
         if ACTION_GROUP in text:
             yield from _parse_module_names(read_group(text, ACTION_GROUP))
 

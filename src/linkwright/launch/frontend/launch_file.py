@@ -15,7 +15,7 @@ from linkwright.launch.errors.locations import error_at
 from linkwright.launch.errors.user_code import too_deep_error
 from linkwright.launch.frontend.python_file import load_python_launch_file, load_python_module, read_launch_file
 from linkwright.launch.model.description import LaunchDescription
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 
 _MARKUP_LANGUAGES = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
 
@@ -60,7 +60,7 @@ def load_markup_launch_file(path: Path, text: str | None = None) -> LaunchDescri
     from linkwright.launch.frontend.parser import Parser
 
     file = io.StringIO(read_launch_file(path).text if text is None else text)
-    file.name = source_of(str(path))
+    file.name = find_source(str(path))
     try:
         entity, parser = Parser.load(file)
         return parser.parse_description(entity)

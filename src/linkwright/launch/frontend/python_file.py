@@ -27,7 +27,7 @@ from linkwright.launch.errors.locations import MarkupLocation, SourceLocation, e
 from linkwright.launch.errors.user_code import explain
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.launch_files import is_launch_file_name
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 
 _FUNCTION_NAME = "generate_launch_description"
 _MODULE_NAME = "python_launch_file"
@@ -129,7 +129,7 @@ def read_launch_file(path: Path) -> SourceText:
     Raises:
         LinkwrightError: LAUNCH101, there is no such file; LAUNCH102, the file cannot be read.
     """
-    name = source_of(str(path))
+    name = find_source(str(path))
     shown_path = display_path(name)
     try:
         return SourceText(name, read_text(path, "utf-8-sig"))

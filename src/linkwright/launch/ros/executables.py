@@ -69,7 +69,7 @@ class Executable:
     @property
     def command(self) -> list[str]:
         """The command that runs the program, as a list of arguments."""
-        from linkwright.packages.programs.interpreters import interpreter_words, needs_our_interpreter
+        from linkwright.packages.programs.interpreters import needs_our_interpreter, read_interpreter_words
 
         if opens_page(self.package, self.name):
             return python_command(["-m", "linkwright", "run", self.package, self.name])
@@ -79,7 +79,7 @@ class Executable:
             return python_command([str(self.path)])
         if os.access(self.path, os.X_OK):
             return [str(self.path)]
-        interpreter_command = interpreter_words(self.path)  # scripts in sources need not be executable
+        interpreter_command = read_interpreter_words(self.path)  # scripts in sources need not be executable
         return [*interpreter_command, str(self.path)] if interpreter_command else python_command([str(self.path)])
 
     def __str__(self) -> str:
@@ -127,9 +127,9 @@ def find_executables(finder: PackageFinder, package: str) -> dict[str, Executabl
         return own_executables
     executables: dict[str, Executable] = {}
     if not is_installed(share):
-        from linkwright.packages.programs.source_programs import source_programs
+        from linkwright.packages.programs.source_programs import find_source_programs
 
-        programs = source_programs(share)
+        programs = find_source_programs(share)
         executables = {
             name: Executable(package, name, Origin.SOURCE, entry_point=entry_point)
             for name, entry_point in programs.entry_points.items()
@@ -187,18 +187,20 @@ def _find_installed_executables(package: str, share: Path) -> Iterable[Executabl
 
 
 def _create_script(finder: PackageFinder, executable: Executable) -> Path:
-    from linkwright.packages.programs.entry_scripts import script_for
-    from linkwright.packages.programs.source_programs import python_root
+    from linkwright.packages.programs.entry_scripts import make_script
+    from linkwright.packages.programs.source_programs import find_python_root
 
     entry_point = executable.entry_point
     share = finder.share(executable.package)
-    root = python_root(share, executable.package) or share
+    root = find_python_root(share, executable.package) or share
     assert entry_point is not None
     _check_module(executable, entry_point, root)
-    other_roots = (python_root(folder, name) for name, folder in finder.packages().items() if not is_installed(folder))
+    other_roots = (
+        find_python_root(folder, name) for name, folder in finder.packages().items() if not is_installed(folder)
+    )
     roots = dict.fromkeys([root, *(candidate for candidate in other_roots if candidate is not None)])
     try:
-        return script_for(executable.package, executable.name, entry_point, list(roots))
+        return make_script(executable.package, executable.name, entry_point, list(roots))
     except OSError as error:
         message = phrase(
             "cannot create a file for executable '{name}': {strerror}",
@@ -215,10 +217,10 @@ def _check_module(executable: Executable, entry_point: EntryPoint, root: Path) -
     Raises:
         LinkwrightError: LAUNCH131, there is no such module.
     """
-    from linkwright.packages.programs.source_programs import module_file
+    from linkwright.packages.programs.source_programs import find_module_file
 
     top_package = entry_point.module.partition(".")[0]
-    if module_file(root, entry_point.module) is not None or not (root / top_package).is_dir():
+    if find_module_file(root, entry_point.module) is not None or not (root / top_package).is_dir():
         return
     folder = root.joinpath(*entry_point.module.split(".")[:-1])
     modules = [path.stem for path in folder.glob("*.py")] if folder.is_dir() else []
@@ -292,9 +294,9 @@ def _missing_executable_error(
 
 
 def _missing_in_sources_error(package: str, name: str, share: Path) -> LinkwrightError:
-    from linkwright.packages.programs.source_programs import source_programs
+    from linkwright.packages.programs.source_programs import find_source_programs
 
-    programs = source_programs(share)
+    programs = find_source_programs(share)
     if name in programs.compiled:
         message = phrase(
             "executable '{name}' of package '{package}' is a compiled program that was not built",

@@ -41,7 +41,7 @@ from linkwright.launch.ros.parsing import parse_node
 from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
 from linkwright.launch.ros.skipped_nodes import record_skipped_node, without_skipped_nodes
 from linkwright.launch.ros.substitutions import ExecutableInPackage
-from linkwright.packages.programs.workspace_environment import workspace_environment
+from linkwright.packages.programs.workspace_environment import make_workspace_environment
 
 if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Entity, Parser
@@ -420,7 +420,7 @@ class Node(ExecuteProcess):
         return replace(plan, name=Path(_evaluate_text(context, self.__node_executable)).name)
 
     def _evaluate_environment(self, context: LaunchContext) -> dict[str, str]:
-        return workspace_environment(context.session.finder, super()._evaluate_environment(context))
+        return make_workspace_environment(context.session.finder, super()._evaluate_environment(context))
 
 
 class _DeferredArgument(Substitution):

@@ -32,7 +32,7 @@ from linkwright.launch.model.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
-from linkwright.packages.share_layout import source_of
+from linkwright.packages.share_layout import find_source
 
 if TYPE_CHECKING:
     from linkwright.graph.parameters.parameter import ParameterRules
@@ -163,7 +163,7 @@ class ParameterFile(Located):
 
 
 def _read_source(path: Path, location: SourceLocation | None) -> SourceText:
-    name = source_of(str(path))
+    name = find_source(str(path))
     shown_path = display_path(name)
     try:
         return SourceText(name, read_text(path))

@@ -130,7 +130,7 @@ class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Paramete
 def _find_executable_path(package: str, executable: str) -> Path:
     program = find_executable(current_finder(), package, executable)
     if program.path is None:
-        from linkwright.packages.programs.entry_scripts import script_for_own_node
+        from linkwright.packages.programs.entry_scripts import make_script_for_own_node
 
-        return script_for_own_node(package, executable)
+        return make_script_for_own_node(package, executable)
     return program.path

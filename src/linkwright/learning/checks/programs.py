@@ -42,16 +42,16 @@ def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
     """
     from linkwright import standins
     from linkwright.learning.checks.installed_files import expect_valid_setup
-    from linkwright.packages.programs.source_programs import module_file, python_root, source_programs
+    from linkwright.packages.programs.source_programs import find_module_file, find_python_root, find_source_programs
 
     expect_valid_setup(folder)
     _expect_complete_entries(folder / "setup.py")
-    entries = source_programs(folder).entry_points
+    entries = find_source_programs(folder).entry_points
     if name not in entries:
         raise NotYet(_explain_missing_executable(name, entries))
     entry = entries[name]
-    root = python_root(folder, package)
-    path = None if root is None else module_file(root, entry.module)
+    root = find_python_root(folder, package)
+    path = None if root is None else find_module_file(root, entry.module)
     if root is None or path is None:
         raise NotYet(_explain_missing_module(name, entry, folder, package))
     _expect_function(path, entry.function)

@@ -16,7 +16,7 @@ from linkwright.descriptions import examine
 from linkwright.descriptions.conversion import as_sdf
 from linkwright.diagnostics import LinkwrightError
 from linkwright.packages import PackageFinder
-from linkwright.packages.finder import shipped_packages
+from linkwright.packages.finder import find_shipped_packages
 from linkwright.sdf.writer import save
 
 if TYPE_CHECKING:
@@ -74,4 +74,4 @@ def include_robot(robot: OtherRobot, exercise_folder: Path, folder: Path) -> str
 
 
 def _create_finder(exercise_folder: Path) -> PackageFinder:
-    return PackageFinder(start=[exercise_folder], extra=shipped_packages())
+    return PackageFinder(start=[exercise_folder], extra=find_shipped_packages())

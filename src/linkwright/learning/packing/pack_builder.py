@@ -23,7 +23,7 @@ from linkwright.learning.packing.pip_runs import build_wheel, download_wheels, i
 from linkwright.learning.packing.targets import Target
 from linkwright.learning.packing.wheel_metadata import read_metadata
 from linkwright.model_files import ModelEntry, install, is_installed, models_folder, verify
-from linkwright.sdf.resources import fuel_caches
+from linkwright.sdf.resources import list_fuel_caches
 
 _BYTES_PER_MB = 1_000_000
 
@@ -137,7 +137,7 @@ class _PackBuilder:
 
 def find_world_folders() -> list[tuple[str, Path]]:
     """Return the folders of models downloaded by gz and Gazebo classic, by name in a pack."""
-    folders = [("fuel", folder) for folder in fuel_caches(os.environ)]
+    folders = [("fuel", folder) for folder in list_fuel_caches(os.environ)]
     return [(name, path) for name, path in (*folders, ("gazebo", Path.home() / ".gazebo" / "models")) if path.is_dir()]
 
 

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import linkwright
-from linkwright.packages.finder import shipped_folder
+from linkwright.packages.finder import find_shipped_folder
 
 _SYSTEM_FOLDERS = (
     "/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/libx32", "/nix/store", "/gnu/store",
@@ -41,7 +41,7 @@ def list_readable_paths() -> list[str]:
     """Return the existing paths that every run may read."""
     installation = [sys.prefix, sys.exec_prefix, sys.base_prefix, sys.base_exec_prefix]
     packages = [str(path) for folder in linkwright.__path__ for path in (Path(folder).parent, Path(folder))]
-    shipped = [str(folder) for folder in [shipped_folder()] if folder is not None]
+    shipped = [str(folder) for folder in [find_shipped_folder()] if folder is not None]
     interpreter = [sys.executable, os.path.realpath(sys.executable)]
     settings = [f"/etc/{name}" for name in _SETTINGS_NAMES]
     paths = dict.fromkeys(

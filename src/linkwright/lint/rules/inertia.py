@@ -16,7 +16,7 @@ from linkwright.xmltree import Element
 
 
 def find_child_or_inertial(inertial: Inertial, tag: str) -> Element | None:
-    """Return a child of an ``<inertial>``, or the ``<inertial>`` itself if the child is missing.
+    """Return a child of an ``<inertial>``, or this element itself if the child is missing.
 
     The result is None if the inertial does not come from an element.
     """

@@ -101,7 +101,7 @@ class AxisNotUnit(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every moving joint whose axis length differs from 1 by more than rounding explains."""
+        """Report every moving joint whose axis is longer or shorter than rounding explains."""
         for joint, _, axis in iterate_joint_children(subject, "axis"):
             direction = parse_numbers(axis, "xyz")
             if joint.type not in _MOVING_TYPES or len(direction) != 3 or not any(direction):

@@ -365,7 +365,7 @@ class MimicDrivenByControl(Rule):
 
 
 def _find_position_range(joint: Joint) -> tuple[float, float] | None:
-    """Return the range of positions of a joint in rad or m, or None if it is missing or invalid."""
+    """Return the position range of a joint in rad or m, or None if it is missing or invalid."""
     if joint.type not in ("revolute", "prismatic") or joint.limit is None:
         return None
     lower, upper = joint.limit.lower, joint.limit.upper

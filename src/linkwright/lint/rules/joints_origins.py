@@ -147,7 +147,7 @@ class AngleRounded(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        """Report every angle that is a simple fraction of pi, rounded to two to five decimal places."""
+        """Report every simple fraction of pi that is rounded to two to five decimal places."""
         for owner, origin in _iterate_origins(subject):
             texts = origin.attributes.get("rpy", "").split()
             if len(parse_numbers(origin, "rpy")) != 3 or len(texts) != 3:

@@ -117,20 +117,22 @@ class LaunchFunctionMissing(LaunchRule):
             return
         if Path(file.source.name).with_name("__init__.py").is_file():
             return
-        from linkwright.packages.readers.launch_files import FUNCTION
+        from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 
         functions = re.findall(r"^def\s+(\w+)", file.source.text, re.MULTILINE)
-        similar_name = next(iter(nearest(FUNCTION, functions, 1)), None)
+        similar_name = next(iter(nearest(LAUNCH_FUNCTION, functions, 1)), None)
         hint = (
             phrase("the name of the function '{similar_name}' looks misspelled", similar_name=similar_name)
             if similar_name
-            else phrase("define {function}(), which returns a LaunchDescription", function=FUNCTION)
+            else phrase("define {function}(), which returns a LaunchDescription", function=LAUNCH_FUNCTION)
         )
         span = file.source.span(0)
         if similar_name:
             offset = file.source.text.index(similar_name)
             span = file.source.span(offset, offset + len(similar_name))
-        message = phrase("the launch file '{path}' does not define {function}()", path=file.path, function=FUNCTION)
+        message = phrase(
+            "the launch file '{path}' does not define {function}()", path=file.path, function=LAUNCH_FUNCTION
+        )
         # Without a similarly named function, the file may be a module that other launch files import.
         severity = Severity.ERROR if similar_name else Severity.WARNING
         if not _COMMENT.sub("", file.source.text).strip():

@@ -14,7 +14,7 @@ from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.rules.package_python import is_ament_python
 from linkwright.lint.subject import Subject
 from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.packages.share_layout import substituted_executables
+from linkwright.packages.share_layout import find_substituted_executables
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
@@ -248,7 +248,7 @@ def _list_executables(name: str) -> frozenset[str] | None:
     """Return the executables of a well-known package, or None if not all are known."""
     if name not in PROVIDED_PACKAGES:
         return EXTERNAL_EXECUTABLES.get(name)
-    return substituted_executables()[name]
+    return find_substituted_executables()[name]
 
 
 def _list_own_executables(package: PackageContext) -> frozenset[str] | None:

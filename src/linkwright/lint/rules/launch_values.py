@@ -65,7 +65,7 @@ class CommandWithoutBlank(LaunchRule):
     severity = Severity.ERROR
 
     def check_launch(self, file: LaunchFile) -> Iterator[Diagnostic]:
-        """Yield a finding for each ``Command`` without a space between the program and its argument."""
+        """Yield a finding for each ``Command`` without a space after the program."""
         python_file = file.python_file
         if python_file is None:
             return
@@ -326,7 +326,7 @@ def _is_command(call: ast.Call) -> bool:
 def _find_invalid_yaml_description(
     file: LaunchFile, package: PackageContext, subject: Subject
 ) -> tuple[str, str] | None:
-    """Return the path of the first description that is not valid YAML, with the reason, or None.
+    """Return the path of the first description that is not YAML with the reason, or None.
 
     The launch file names the descriptions.
     """

@@ -349,7 +349,7 @@ def _same_camera(stem: str, parent: str) -> bool:
 
 
 def _has_only_right_angles(rotation_matrix: Matrix) -> bool:
-    """Return whether a rotation consists of right angles only, so that it is probably a mistake.
+    """Return whether a rotation has only right angles, and is therefore probably a mistake.
 
     A camera that looks in another direction has other angles.
     """

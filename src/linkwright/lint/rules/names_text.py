@@ -16,7 +16,7 @@ _REPEATED_SUFFIX = lazy_pattern(r"(?:^|.*[_-])(link|joint|frame)[_-]\1$", re.IGN
 
 
 def iterate_named_elements(subject: Subject) -> Iterator[tuple[str, str, Element]]:
-    """Yield the kind, name and element of every link and joint that has a name, in source order."""
+    """Yield the kind, name and element of every named link and joint, in source order."""
     for kind in ("link", "joint"):
         for element in subject.elements(kind):
             name = element.attributes.get("name", "")

@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, phrase
 from linkwright.lint.rules.package_manifest import ManifestRule, PackageRule
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.packages.naming import check_package_name, is_accepted_name, is_email, rep_144_warning
+from linkwright.packages.naming import check_package_name, is_accepted_name, is_email, make_rep_144_warning
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
@@ -129,7 +129,7 @@ class PackageName(ManifestRule):
             return  # LW802 reports a missing name
         for finding in check_package_name(name):
             if is_accepted_name(name):
-                warning = finding if iskeyword(name) else rep_144_warning(name)
+                warning = finding if iskeyword(name) else make_rep_144_warning(name)
                 yield self.report(warning.message, element, hint=warning.hint, severity=Severity.INFO)
             else:
                 yield self.report(finding.message, element, hint=finding.hint, severity=Severity.ERROR)

@@ -1,4 +1,4 @@
-"""Rules about files that ``setup.py`` or ``CMakeLists.txt`` does not install or cannot find.
+"""Rules about files that a build file does not install or cannot find.
 
 The rules about missing files do not apply if the set of installed files is unknown. It is unknown if it depends on a
 value that only CMake can compute, or on a command of another package.
@@ -219,7 +219,7 @@ class FileNotInstalled(PackageRule):
     name = "file-not-installed"
 
     def check_package(self, package: PackageContext) -> Iterator[Diagnostic]:
-        """Yield a finding for each description or launch file that the pattern for its folder omits."""
+        """Yield a finding for each description or launch file that a pattern omits."""
         setup = package.setup
         if setup is None or package.cmake is not None or not setup.is_complete:
             return
@@ -356,7 +356,7 @@ def _covers(directory: str, folder: str) -> bool:
 
 
 def make_checkout_hint(package: PackageContext, path: str) -> Phrase | None:
-    """Return a hint to check out the Git submodule that contains a path of the package, or None."""
+    """Return a hint to check out the Git submodule that contains a path, or None."""
     submodule = find_submodule(package.folder / path)
     if submodule is None:
         return None

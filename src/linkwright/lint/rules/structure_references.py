@@ -12,7 +12,7 @@ from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree import Element
-from linkwright.xmltree.patches import element_range
+from linkwright.xmltree.patches import find_element_range
 
 _NUMBER = lazy_pattern(r"\d+")
 _IMPORTANT_ELEMENTS = frozenset({"sensor", "plugin", "preserveFixedJoint", "disableFixedJointLumping"})
@@ -301,7 +301,7 @@ class ControlPluginMissing(Rule):
 
 def _read_source_text(element: Element) -> str:
     """Return the text of an element in its file, including the parts that xacro left out."""
-    element_span = element_range(element)
+    element_span = find_element_range(element)
     return "" if element.source is None or element_span is None else element.source.text[slice(*element_span)]
 
 

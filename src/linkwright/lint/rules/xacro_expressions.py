@@ -10,7 +10,7 @@ from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xmltree import Element
-from linkwright.xmltree.positions import attribute_value_range, raw_offset
+from linkwright.xmltree.positions import attribute_value_range, find_raw_offset
 
 if TYPE_CHECKING:
     from linkwright.lint.xacro_facts import FileFacts, XacroFacts
@@ -66,7 +66,7 @@ class DeprecatedFunction(XacroRule):
         if source is not None:
             value_range = attribute_value_range(source.text, element.offset, attribute)
             if value_range is not None:
-                start = raw_offset(source.text, *value_range, offset)
+                start = find_raw_offset(source.text, *value_range, offset)
                 if source.text.startswith(name, start):
                     fix = Fix((Edit(source.name, start, start, full_name.removesuffix(name)),))
         message = phrase("calling '{name}' by its bare name is deprecated", name=name)

@@ -381,7 +381,7 @@ def _make_hint(name: str, used_names: frozenset[str], form: str = "${...}") -> P
 
 
 def _find_included_paths(facts: XacroFacts) -> dict[int, Path]:
-    """Return the path of the file that each include reads, by the `id` of the include's element.
+    """Return the path of the file that each include reads, by the `id` of its element.
 
     Includes with a namespace, and includes whose file is not unique, are left out.
     """

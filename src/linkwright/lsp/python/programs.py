@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from linkwright.packages import PackageFinder
-from linkwright.packages.programs.workspace_environment import workspace_environment
+from linkwright.packages.programs.workspace_environment import make_workspace_environment
 from linkwright.standins import modules, process
 
 _PYTHON_PATH = "PYTHONPATH"
@@ -60,7 +60,7 @@ def program_environment(folders: Sequence[Path], workspace_stubs: Path) -> dict[
         folders: the folders of the workspace.
         workspace_stubs: the folder with the type stubs of the messages of the workspace.
     """
-    environment = process.create_environment(workspace_environment(PackageFinder(start=list(folders)), os.environ))
+    environment = process.create_environment(make_workspace_environment(PackageFinder(start=list(folders)), os.environ))
     entries = [entry for entry in environment[_PYTHON_PATH].split(os.pathsep) if entry != process.standin_path()]
     interpreter = process.python_command(())[0]
     is_own = interpreter == sys.executable

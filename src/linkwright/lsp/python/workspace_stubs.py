@@ -12,7 +12,7 @@ from linkwright.messages.definitions.library import Library
 from linkwright.messages.stub_files import package_stubs
 from linkwright.packages import PackageFinder
 from linkwright.packages.active import use_finder
-from linkwright.packages.interface_files import interface_files
+from linkwright.packages.interface_files import find_interface_files
 
 
 class WorkspaceStubs:
@@ -56,7 +56,7 @@ class WorkspaceStubs:
         stubs: dict[str, str] = {}
         with use_finder(finder):
             for package, share in finder.packages().items():
-                names = [f"{package}/{kind}/{name}" for kind in KINDS for name in interface_files(share, kind)]
+                names = [f"{package}/{kind}/{name}" for kind in KINDS for name in find_interface_files(share, kind)]
                 if names and package not in catalog.packages():
                     stubs |= package_stubs(package, names, library)
         return stubs

@@ -42,7 +42,7 @@ from linkwright.messages.definitions.parser import KnownMessages, parse_interfac
 from linkwright.messages.errors import DefinitionError, InterfaceNotFoundError
 from linkwright.packages import PackageFinder
 from linkwright.packages.active import active_finder
-from linkwright.packages.interface_files import interface_file, interface_files
+from linkwright.packages.interface_files import find_interface_file, find_interface_files
 
 _FINDER_LIFETIME_S = 1.0
 """The time in seconds for which a finder that has read the workspace is used again."""
@@ -132,7 +132,7 @@ class Library:
             if name.startswith(kind + "/")
         }
         for owner, share in self._workspace_packages(package):
-            type_names.update(f"{owner}/{kind}/{name}" for name in interface_files(share, kind))
+            type_names.update(f"{owner}/{kind}/{name}" for name in find_interface_files(share, kind))
         if kind == "msg":
             type_names.update(
                 name for name in tuple(self._embedded_sources) if package in (None, name.partition("/")[0])
@@ -188,7 +188,7 @@ class Library:
     def _workspace_source(self, base: str) -> SourceText | None:
         package, kind, name = base.split("/")
         share = self._finder().find(package)
-        path = interface_file(share, kind, name) if share is not None else None
+        path = find_interface_file(share, kind, name) if share is not None else None
         return None if path is None else read_source(path)
 
     def has_message(self, type_name: str) -> bool:
@@ -197,7 +197,7 @@ class Library:
         if rest in catalog.texts(package) or type_name in self._embedded_sources:
             return True
         share = self._finder().find(package)
-        return share is not None and interface_file(share, *rest.split("/")) is not None
+        return share is not None and find_interface_file(share, *rest.split("/")) is not None
 
     def hint_for(self, type_name: str) -> Phrase | None:
         """Return a hint with names that resemble a missing message's name, or None."""

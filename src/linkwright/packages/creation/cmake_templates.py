@@ -9,7 +9,7 @@ from linkwright.loading.lean_typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from linkwright.packages.creation.request import PackageRequest
 
-_WARNINGS = """
+_WARNING_OPTIONS = """
 if(CMAKE_COMPILER_IS_GNUCXX OR CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   add_compile_options(-Wall -Wextra -Wpedantic)
 endif()
@@ -20,7 +20,7 @@ _NO_DEPENDENCIES = """\
 # find_package(<dependency> REQUIRED)
 """
 
-_LINTERS = """
+_LINTER_TESTS = """
 if(BUILD_TESTING)
   find_package(ament_lint_auto REQUIRED)
   # Remove this line once every source file names its copyright holder and license.
@@ -36,25 +36,25 @@ def ament_cmake_lists(request: PackageRequest) -> str:
     """Return the ``CMakeLists.txt`` of an ament_cmake package."""
     library, node = request.library_name, request.node
     tools = ["ament_cmake", "ament_cmake_ros"] if library else ["ament_cmake"]
-    parts = [_header(request), _find_packages([*tools, *request.dependencies])]
+    parts = [_format_header(request), _format_find_packages([*tools, *request.dependencies])]
     if not request.dependencies:
         parts.append(_NO_DEPENDENCIES)
     if library:
         parts += [
-            _library_target(request, f"add_library({library} src/{library}.cpp)", "include/${PROJECT_NAME}"),
-            _ament_dependencies(library, request.dependencies),
-            _export_definition(request),
+            _format_library_target(request, f"add_library({library} src/{library}.cpp)", "include/${PROJECT_NAME}"),
+            _format_ament_dependencies(library, request.dependencies),
+            _format_export_definition(request),
             "\ninstall(\n  DIRECTORY include/\n  DESTINATION include/${PROJECT_NAME}\n)\n",
-            _install_library(library, "export_${PROJECT_NAME}"),
+            _format_library_installation(library, "export_${PROJECT_NAME}"),
         ]
     if node:
-        parts.append(_executable_target(request, "include/${PROJECT_NAME}"))
+        parts.append(_format_executable_target(request, "include/${PROJECT_NAME}"))
         if library:
             parts.append(f"target_link_libraries({node} {library})\n")
         else:
-            parts.append(_ament_dependencies(node, request.dependencies))
+            parts.append(_format_ament_dependencies(node, request.dependencies))
         parts.append(f"\ninstall(TARGETS {node}\n  DESTINATION lib/${{PROJECT_NAME}})\n")
-    parts.append(_LINTERS)
+    parts.append(_LINTER_TESTS)
     if library:
         parts += [
             '\nament_export_include_directories(\n  "include/${PROJECT_NAME}"\n)\n',
@@ -68,27 +68,27 @@ def ament_cmake_lists(request: PackageRequest) -> str:
 def plain_cmake_lists(request: PackageRequest) -> str:
     """Return the ``CMakeLists.txt`` of a package that does not use ament."""
     library, node = request.library_name, request.node
-    parts = [_header(request, version=True)]
-    parts.append(_find_packages(request.dependencies) if request.dependencies else f"\n{_NO_DEPENDENCIES}")
+    parts = [_format_header(request, version=True)]
+    parts.append(_format_find_packages(request.dependencies) if request.dependencies else f"\n{_NO_DEPENDENCIES}")
     if library:
         parts += [
-            _library_target(request, f"add_library({library} SHARED src/{library}.cpp)", "include"),
-            _plain_dependencies(library, request.dependencies),
-            _export_definition(request),
+            _format_library_target(request, f"add_library({library} SHARED src/{library}.cpp)", "include"),
+            _format_plain_dependencies(library, request.dependencies),
+            _format_export_definition(request),
             "\ninstall(\n  DIRECTORY include/\n  DESTINATION include\n)\n",
-            _install_library(library, f"export_{request.name}"),
+            _format_library_installation(library, f"export_{request.name}"),
         ]
     if node:
-        parts.append(_executable_target(request, "include"))
+        parts.append(_format_executable_target(request, "include"))
         if library:
             parts.append(f"target_link_libraries({node} PUBLIC {library})\n")
         else:
-            parts.append(_plain_dependencies(node, request.dependencies))
+            parts.append(_format_plain_dependencies(node, request.dependencies))
         parts.append(
             f"\ninstall(\n  TARGETS {node}\n  EXPORT export_{request.name}\n  DESTINATION lib/${{PROJECT_NAME}}\n)\n"
         )
     if library or node:
-        parts.append(_package_config(request))
+        parts.append(_format_package_config(request))
     return "".join(parts)
 
 
@@ -105,7 +105,7 @@ def config(request: PackageRequest) -> str:
     if request.node:
         lines.append(f"#   {request.name}_EXECUTABLE: the target of the program")
         settings.append(f"set({request.name}_EXECUTABLE {request.name}::{request.node})")
-    lines += ["", *_find_dependencies(request.dependencies)]
+    lines += ["", *_format_find_dependencies(request.dependencies)]
     lines.append(f'include("${{CMAKE_CURRENT_LIST_DIR}}/export_{request.name}.cmake")')
     return "\n".join([*lines, "", *settings]) + "\n"
 
@@ -142,7 +142,7 @@ int main()
 def library_hpp(request: PackageRequest) -> str:
     """Return the header of the library."""
     guard = f"{request.name}__{request.library_name}_HPP_".upper()
-    name = _class_name(request)
+    name = _make_class_name(request)
     return f"""\
 #ifndef {guard}
 #define {guard}
@@ -168,7 +168,7 @@ public:
 
 def library_cpp(request: PackageRequest) -> str:
     """Return the source of the library."""
-    name = _class_name(request)
+    name = _make_class_name(request)
     return f"""\
 #include "{request.name}/{request.library_name}.hpp"
 
@@ -214,29 +214,29 @@ def visibility_control(request: PackageRequest) -> str:
 """
 
 
-def _header(request: PackageRequest, *, version: bool = False) -> str:
+def _format_header(request: PackageRequest, *, version: bool = False) -> str:
     project = f"{request.name} VERSION 0.0.0" if version else request.name
-    return f"cmake_minimum_required(VERSION 3.8)\nproject({project})\n{_WARNINGS}"
+    return f"cmake_minimum_required(VERSION 3.8)\nproject({project})\n{_WARNING_OPTIONS}"
 
 
-def _find_packages(names: Sequence[str]) -> str:
+def _format_find_packages(names: Sequence[str]) -> str:
     return "\n# find dependencies\n" + "".join(f"find_package({name} REQUIRED)\n" for name in names)
 
 
-def _library_target(request: PackageRequest, declaration: str, installed_headers: str) -> str:
+def _format_library_target(request: PackageRequest, declaration: str, installed_headers: str) -> str:
     library = request.library_name
     return f"""
 {declaration}
 add_library({request.name}::{library} ALIAS {library})
-{_target_settings(str(library), installed_headers)}"""
+{_format_target_settings(str(library), installed_headers)}"""
 
 
-def _executable_target(request: PackageRequest, installed_headers: str) -> str:
+def _format_executable_target(request: PackageRequest, installed_headers: str) -> str:
     node = request.node
-    return f"\nadd_executable({node} src/{node}.cpp)\n{_target_settings(str(node), installed_headers)}"
+    return f"\nadd_executable({node} src/{node}.cpp)\n{_format_target_settings(str(node), installed_headers)}"
 
 
-def _target_settings(target: str, installed_headers: str) -> str:
+def _format_target_settings(target: str, installed_headers: str) -> str:
     return f"""\
 target_compile_features({target} PUBLIC c_std_99 cxx_std_17)
 target_include_directories({target} PUBLIC
@@ -246,14 +246,14 @@ target_include_directories({target} PUBLIC
 """
 
 
-def _ament_dependencies(target: str, names: Sequence[str]) -> str:
+def _format_ament_dependencies(target: str, names: Sequence[str]) -> str:
     if not names:
         return ""
     dependency_lines = "".join(f'  "{name}"\n' for name in names)
     return f"ament_target_dependencies(\n  {target}\n{dependency_lines})\n"
 
 
-def _plain_dependencies(target: str, names: Sequence[str]) -> str:
+def _format_plain_dependencies(target: str, names: Sequence[str]) -> str:
     if not names:
         return ""
     folders = "".join(f"  ${{{name}_INCLUDE_DIRS}}\n" for name in names)
@@ -263,14 +263,14 @@ def _plain_dependencies(target: str, names: Sequence[str]) -> str:
     )
 
 
-def _export_definition(request: PackageRequest) -> str:
+def _format_export_definition(request: PackageRequest) -> str:
     return f"""
 # On Windows: export the library's symbols while it is built, import them while it is used.
 target_compile_definitions({request.library_name} PRIVATE "{request.name.upper()}_BUILDING_LIBRARY")
 """
 
 
-def _install_library(library: str, export: str) -> str:
+def _format_library_installation(library: str, export: str) -> str:
     return f"""\
 install(
   TARGETS {library}
@@ -282,7 +282,7 @@ install(
 """
 
 
-def _package_config(request: PackageRequest) -> str:
+def _format_package_config(request: PackageRequest) -> str:
     name = request.name
     return f"""
 # what find_package({name}) of another project reads
@@ -303,11 +303,11 @@ install(
 """
 
 
-def _find_dependencies(names: Sequence[str]) -> list[str]:
+def _format_find_dependencies(names: Sequence[str]) -> list[str]:
     if not names:
         return []
     return ["include(CMakeFindDependencyMacro)", *(f"find_dependency({name})" for name in names), ""]
 
 
-def _class_name(request: PackageRequest) -> str:
+def _make_class_name(request: PackageRequest) -> str:
     return "".join(word.title() for word in str(request.library_name).split("_"))

@@ -24,7 +24,7 @@ from linkwright.diagnostics import (
 from linkwright.files.whole_files import write_whole_file
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.packages.creation import cmake_templates, package_templates
-from linkwright.packages.creation.licenses import known_licenses, license_text
+from linkwright.packages.creation.licenses import license_text, list_known_licenses
 from linkwright.packages.creation.request import DEFAULT_LICENSE, PackageRequest
 from linkwright.packages.naming import check_dependency, check_email, check_member_name, check_package_name
 
@@ -76,7 +76,7 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
     findings = check_request(request)
     if has_errors(findings):
         raise LinkwrightError(*findings)
-    for line in summary(request):
+    for line in summarize(request):
         report(line)
     package_folder = request.destination / request.name
     is_created = False
@@ -84,7 +84,7 @@ def create_package(request: PackageRequest, report: Callable[[str], None]) -> li
         package_folder.mkdir(parents=True)
         is_created = True
         report(f"creating folder {format_path(package_folder)}")
-        for step in steps(request):
+        for step in plan_steps(request):
             _execute_step(step, package_folder, report)
     except OSError as error:
         if is_created:
@@ -136,7 +136,7 @@ def check_request(request: PackageRequest) -> list[Diagnostic]:
 
 
 def _check_license(identifier: str) -> list[Diagnostic]:
-    identifiers = known_licenses()
+    identifiers = list_known_licenses()
     if identifier in identifiers:
         return []
     if identifier == DEFAULT_LICENSE:
@@ -153,13 +153,13 @@ def _check_license(identifier: str) -> list[Diagnostic]:
     return [Diagnostic("PKG210", message, severity=Severity.WARNING, hint=hint)]
 
 
-def summary(request: PackageRequest) -> Iterator[str]:
+def summarize(request: PackageRequest) -> Iterator[str]:
     """Yield the lines that describe the new package before it is created."""
     yield "going to create a new package"
     yield f"package name: {request.name}"
     yield f"destination directory: {request.destination.resolve()}"
     yield f"package format: {request.package_format}"
-    yield f"version: {package_templates.VERSION}"
+    yield f"version: {package_templates.INITIAL_VERSION}"
     yield f"description: {request.description}"
     yield f"maintainer: {[str(request.maintainer)]}"
     yield f"licenses: {[request.license]}"
@@ -171,13 +171,13 @@ def summary(request: PackageRequest) -> Iterator[str]:
         yield f"library_name: {request.library_name}"
 
 
-def steps(request: PackageRequest) -> Iterator[Step]:
+def plan_steps(request: PackageRequest) -> Iterator[Step]:
     """Yield the files and folders to create in a package, in the order of ``ros2 pkg create``."""
     yield File(Path("package.xml"), package_templates.manifest(request))
     if request.build_type == "ament_python":
-        yield from _python_steps(request)
+        yield from _plan_python_steps(request)
     else:
-        yield from _cmake_steps(request)
+        yield from _plan_cmake_steps(request)
     text = license_text(request.license, year=request.year, holder=request.maintainer.name)
     if text is not None:
         yield File(Path("LICENSE"), text, is_reported=False)
@@ -191,7 +191,7 @@ def format_path(path: Path) -> str:
     return str(path) if path.is_absolute() or path.parts[:1] == ("..",) else f"./{path}"
 
 
-def _python_steps(request: PackageRequest) -> Iterator[Step]:
+def _plan_python_steps(request: PackageRequest) -> Iterator[Step]:
     module = Path(request.name)
     yield ReportLine("creating source folder")
     yield Folder(module)
@@ -210,7 +210,7 @@ def _python_steps(request: PackageRequest) -> Iterator[Step]:
         yield File(module / request.library_name / "__init__.py", "")
 
 
-def _cmake_steps(request: PackageRequest) -> Iterator[Step]:
+def _plan_cmake_steps(request: PackageRequest) -> Iterator[Step]:
     source, include = Path("src"), Path("include") / request.name
     yield ReportLine("creating source and include folder")
     yield Folder(source)

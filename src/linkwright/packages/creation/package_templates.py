@@ -9,7 +9,7 @@ from linkwright.loading.lean_typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from linkwright.packages.creation.request import PackageRequest
 
-VERSION = "0.0.0"
+INITIAL_VERSION = "0.0.0"
 LINTERS = ("copyright", "flake8", "pep257")
 
 _SCHEMA = "http://download.ros.org/schema/package_format{format}.xsd"
@@ -59,16 +59,16 @@ def manifest(request: PackageRequest) -> str:
         f'<?xml-model href="{schema}" schematypens="http://www.w3.org/2001/XMLSchema"?>',
         f'<package format="{request.package_format}">',
         f"  <name>{request.name}</name>",
-        f"  <version>{VERSION}</version>",
-        f"  <description>{_text(request.description)}</description>",
-        f'  <maintainer email="{escape(maintainer.email)}">{_text(maintainer.name)}</maintainer>',
-        f"  <license>{_text(request.license)}</license>",
+        f"  <version>{INITIAL_VERSION}</version>",
+        f"  <description>{_escape(request.description)}</description>",
+        f'  <maintainer email="{escape(maintainer.email)}">{_escape(maintainer.name)}</maintainer>',
+        f"  <license>{_escape(request.license)}</license>",
         "",
     ]
     for tag, names in (
-        ("buildtool_depend", _build_tools(request)),
+        ("buildtool_depend", _list_build_tools(request)),
         ("depend", request.dependencies),
-        ("test_depend", _test_dependencies(request)),
+        ("test_depend", _list_test_dependencies(request)),
     ):
         if names:
             lines += [*(f"  <{tag}>{name}</{tag}>" for name in names), ""]
@@ -91,7 +91,7 @@ package_name = {request.name!r}
 
 setup(
     name=package_name,
-    version={VERSION!r},
+    version={INITIAL_VERSION!r},
     packages=find_packages(exclude=['test']),
     data_files=[
         ('share/ament_index/resource_index/packages',
@@ -136,18 +136,18 @@ if __name__ == '__main__':
 """
 
 
-def _text(value: str) -> str:
+def _escape(value: str) -> str:
     return escape(value, quote=False)
 
 
-def _build_tools(request: PackageRequest) -> tuple[str, ...]:
+def _list_build_tools(request: PackageRequest) -> tuple[str, ...]:
     if request.build_type != "ament_cmake":
         return ()
     # ament_cmake_ros builds libraries as shared libraries unless the user overrides this.
     return ("ament_cmake_ros",) if request.library_name else ("ament_cmake",)
 
 
-def _test_dependencies(request: PackageRequest) -> tuple[str, ...]:
+def _list_test_dependencies(request: PackageRequest) -> tuple[str, ...]:
     if request.build_type == "ament_cmake":
         return ("ament_lint_auto", "ament_lint_common")
     if request.build_type == "ament_python":

@@ -19,7 +19,7 @@ _MAX_INTERPRETER_LINE = 120
 """The maximum length of the interpreter line in characters. Operating systems truncate longer lines."""
 
 
-def script_for(package: str, name: str, entry: EntryPoint, roots: Sequence[Path]) -> Path:
+def make_script(package: str, name: str, entry: EntryPoint, roots: Sequence[Path]) -> Path:
     """Return the script file that runs an entry point.
 
     The file is written if it does not exist or its content has changed.
@@ -33,17 +33,17 @@ def script_for(package: str, name: str, entry: EntryPoint, roots: Sequence[Path]
     Raises:
         OSError: the file cannot be written.
     """
-    return _write_script(package, name, str(roots[0]), _entry_point_code(entry, roots))
+    return _write_script(package, name, str(roots[0]), _format_entry_point(entry, roots))
 
 
-def script_for_own_node(package: str, name: str) -> Path:
+def make_script_for_own_node(package: str, name: str) -> Path:
     """Return the script file that runs one of Linkwright's own nodes.
 
     Raises:
         OSError: the file cannot be written.
     """
     lines = [
-        *_interpreter_lines(),
+        *_format_interpreter_lines(),
         "import sys",
         "",
         "from linkwright.process.interruption import end_on_interrupt",
@@ -68,11 +68,11 @@ def _write_script(package: str, name: str, origin: str, text: str) -> Path:
     return path
 
 
-def _entry_point_code(entry: EntryPoint, roots: Sequence[Path]) -> str:
+def _format_entry_point(entry: EntryPoint, roots: Sequence[Path]) -> str:
     function, _, attributes = entry.function.partition(".")
     return "\n".join(
         [
-            *_interpreter_lines(),
+            *_format_interpreter_lines(),
             "import sys",
             "",
             f"sys.path[:1] = {[str(root) for root in roots]!r}",
@@ -85,7 +85,7 @@ def _entry_point_code(entry: EntryPoint, roots: Sequence[Path]) -> str:
     )
 
 
-def _interpreter_lines() -> list[str]:
+def _format_interpreter_lines() -> list[str]:
     (interpreter,) = python_command([])
     line = f"#!{interpreter}"
     if " " not in interpreter and len(line) < _MAX_INTERPRETER_LINE:

@@ -23,13 +23,13 @@ def needs_our_interpreter(path: Path) -> bool:
 
     Linkwright's stand-ins for ROS modules need compiled libraries, which exist only for the version of this process.
     """
-    interpreter = _python_interpreter(path)
+    interpreter = _find_python_interpreter(path)
     if interpreter is None or _has_ros_for_python():
         return False
-    return _python_version(interpreter) not in (None, sys.version_info[:2])
+    return _find_python_version(interpreter) not in (None, sys.version_info[:2])
 
 
-def interpreter_words(path: Path) -> list[str]:
+def read_interpreter_words(path: Path) -> list[str]:
     """Return the interpreter and its arguments in a script's first line, or an empty list."""
     try:
         with path.open("rb") as file:
@@ -39,9 +39,9 @@ def interpreter_words(path: Path) -> list[str]:
     return shlex.split(first[2:].decode(errors="replace")) if first.startswith(b"#!") else []
 
 
-def _python_interpreter(path: Path) -> str | None:
+def _find_python_interpreter(path: Path) -> str | None:
     """Return the Python interpreter that a script's first line names, or None."""
-    words = interpreter_words(path)
+    words = read_interpreter_words(path)
     if words and Path(words[0]).name == "env":
         words = [word for word in words[1:] if not word.startswith("-")]
     if not words or not Path(words[0]).name.startswith("python"):
@@ -50,7 +50,7 @@ def _python_interpreter(path: Path) -> str | None:
 
 
 @cache
-def _python_version(interpreter: str) -> tuple[int, ...] | None:
+def _find_python_version(interpreter: str) -> tuple[int, ...] | None:
     version_in_name = _VERSION.search(Path(os.path.realpath(interpreter)).name)
     if version_in_name:
         return int(version_in_name[1]), int(version_in_name[2])

@@ -80,7 +80,7 @@ _ROS_SUFFIXES = (
 _CANNOT_IMPORT = re.compile(r"cannot import name '([^']+)' from '([^']+)'")
 
 
-def missing_name(error: ImportError) -> tuple[str, str] | None:
+def find_missing_name(error: ImportError) -> tuple[str, str] | None:
     """Return the name that cannot be imported and its module.
 
     The result is None if the module itself is missing.
@@ -89,12 +89,12 @@ def missing_name(error: ImportError) -> tuple[str, str] | None:
     return None if match is None else (match[1], match[2])
 
 
-def other_module_hint(error: ImportError) -> Phrase | None:
+def make_other_module_hint(error: ImportError) -> Phrase | None:
     """Return a hint on other modules that define a missing name, or None.
 
     Only Linkwright's stand-ins provide this information.
     """
-    missing = missing_name(error)
+    missing = find_missing_name(error)
     if missing is None:
         return None
     name, module = missing
@@ -103,15 +103,15 @@ def other_module_hint(error: ImportError) -> Phrase | None:
     return phrase("import it from {modules}", modules=quoted_names(modules, " or ")) if modules else None
 
 
-def provider_hint(module: str) -> Phrase:
+def make_provider_hint(module: str) -> Phrase:
     """Return a hint for installing a module that cannot be imported."""
-    return known_provider_hint(module) or phrase(
+    return make_known_provider_hint(module) or phrase(
         "install the Python package that provides '{module}', or add its ROS package to the workspace",
         module=module,
     )
 
 
-def known_provider_hint(module: str) -> Phrase | None:
+def make_known_provider_hint(module: str) -> Phrase | None:
     """Return the hint of `provider_hint` for a known module, or None for an unknown module."""
     top_module = module.partition(".")[0]
     project = _ROS_PACKAGES.get(top_module)

@@ -12,8 +12,8 @@ from itertools import chain
 from pathlib import Path
 
 from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
-from linkwright.packages.programs.source_programs import NON_PROGRAM_MODULES, python_root
-from linkwright.packages.programs.workspace_environment import python_folders
+from linkwright.packages.programs.source_programs import NON_PROGRAM_MODULES, find_python_root
+from linkwright.packages.programs.workspace_environment import find_python_folders
 
 
 def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | None:
@@ -29,22 +29,24 @@ def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | No
         return None
     package_folder = finder.find(name)
     if package_folder is not None:
-        spec = _find_module(name, _folders(package_folder, name))
+        spec = _find_module(name, _list_module_folders(package_folder, name))
         if spec is None and any((package_folder / name).glob("*.py")):
             spec = PathFinder.find_spec(name, [str(package_folder)])  # the package's module folder has no __init__.py
         if spec is not None:
             return spec
     asking = enclosing_package(near)
     packages = chain(() if asking is None else (asking,), finder.packages().items())
-    return _find_module(name, (folder for package, share in packages for folder in _folders(share, package)))
+    return _find_module(
+        name, (folder for package, share in packages for folder in _list_module_folders(share, package))
+    )
 
 
-def _folders(share: Path, package: str) -> Iterator[Path]:
+def _list_module_folders(share: Path, package: str) -> Iterator[Path]:
     """Yield the folders from which a package's modules are imported."""
     if is_installed(share):
-        yield from python_folders(install_prefix(share), package)
+        yield from find_python_folders(install_prefix(share), package)
         return
-    root = python_root(share, package)
+    root = find_python_root(share, package)
     if root is not None:
         yield root
 

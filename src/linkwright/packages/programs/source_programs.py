@@ -19,10 +19,10 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.entry_points import (
-    option_lines,
+    read_option_lines,
     read_pyproject_group,
     read_setup_cfg_group,
-    text_of,
+    read_text,
 )
 from linkwright.packages.readers.installed import ENTRY_POINT_LINE, PROGRAM_GROUP, EntryPoint
 
@@ -69,7 +69,7 @@ class SourcePrograms:
         return sorted({*self.entry_points, *self.scripts, *self.compiled})
 
 
-def source_programs(folder: Path, *, runs_setup: bool = True) -> SourcePrograms:
+def find_source_programs(folder: Path, *, runs_setup: bool = True) -> SourcePrograms:
     """Return the programs of a source package.
 
     Args:
@@ -84,18 +84,18 @@ def source_programs(folder: Path, *, runs_setup: bool = True) -> SourcePrograms:
     return programs
 
 
-def python_root(folder: Path, package: str) -> Path | None:
+def find_python_root(folder: Path, package: str) -> Path | None:
     """Return the folder from which a source package's Python modules are imported, or None."""
     for candidate in (folder, folder / "src"):
         if (candidate / package / "__init__.py").is_file():
             return candidate
-    if _PYTHON_PACKAGE.search(text_of(folder / "CMakeLists.txt")):
+    if _PYTHON_PACKAGE.search(read_text(folder / "CMakeLists.txt")):
         return folder
     is_python = (folder / "setup.py").is_file() or (folder / "setup.cfg").is_file()
-    return folder if is_python and any(_modules(folder)) else None
+    return folder if is_python and any(_iterate_modules(folder)) else None
 
 
-def module_file(root: Path, module: str) -> Path | None:
+def find_module_file(root: Path, module: str) -> Path | None:
     """Return the file of a module below a folder, or None if there is no such module."""
     path = root.joinpath(*module.split("."))
     for candidate in (path.with_name(path.name + ".py"), path / "__init__.py"):
@@ -104,7 +104,7 @@ def module_file(root: Path, module: str) -> Path | None:
     return None
 
 
-def _modules(folder: Path) -> Iterator[Path]:
+def _iterate_modules(folder: Path) -> Iterator[Path]:
     """Yield the importable modules and packages in a folder, except build and test modules."""
     for path in (*folder.glob("*.py"), *(path.parent for path in folder.glob("*/__init__.py"))):
         if path.stem not in NON_PROGRAM_MODULES:
@@ -113,13 +113,13 @@ def _modules(folder: Path) -> Iterator[Path]:
 
 def _read_configurations(programs: SourcePrograms) -> None:
     """Add the programs in ``pyproject.toml`` and ``setup.cfg``."""
-    cfg = text_of(programs.folder / "setup.cfg")
+    cfg = read_text(programs.folder / "setup.cfg")
     for line in (
-        *read_pyproject_group(text_of(programs.folder / "pyproject.toml"), PROGRAM_GROUP),
+        *read_pyproject_group(read_text(programs.folder / "pyproject.toml"), PROGRAM_GROUP),
         *read_setup_cfg_group(cfg, PROGRAM_GROUP),
     ):
         _add_entry(programs, line)
-    for line in option_lines(cfg, "options", "scripts"):
+    for line in read_option_lines(cfg, "options", "scripts"):
         _add_script(programs, line.strip())
 
 
@@ -127,7 +127,7 @@ def _read_setup_py(programs: SourcePrograms, *, runs_setup: bool) -> None:
     from linkwright.packages.readers.setup_py import read_setup
 
     path = programs.folder / "setup.py"
-    text = text_of(path)
+    text = read_text(path)
     if not text:
         return
     facts = read_setup(SourceText(str(path), text))
@@ -164,7 +164,7 @@ def _run_setup_py(folder: Path) -> tuple[list[str], list[str]]:
 
 def _read_cmake(programs: SourcePrograms) -> None:
     path = programs.folder / "CMakeLists.txt"
-    text = text_of(path)
+    text = read_text(path)
     if not text:
         return
     from linkwright.packages.readers.cmake import read_cmake

@@ -8,13 +8,13 @@ from pathlib import Path
 
 from linkwright.packages import PackageFinder, install_prefix, is_installed, is_substitute
 from linkwright.packages.finder import START_VARIABLE
-from linkwright.packages.programs.source_programs import python_root
+from linkwright.packages.programs.source_programs import find_python_root
 
 _PREFIX_VARIABLE = "AMENT_PREFIX_PATH"
 _PYTHON_VARIABLE = "PYTHONPATH"
 
 
-def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dict[str, str]:
+def make_workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dict[str, str]:
     """Return an environment as if all workspaces were built and sourced.
 
     Args:
@@ -31,18 +31,18 @@ def workspace_environment(finder: PackageFinder, base: Mapping[str, str]) -> dic
             continue  # only programs with Linkwright's finder can use this package
         prefix = install_prefix(share)
         if not is_installed(share):
-            root = python_root(share, name)
+            root = find_python_root(share, name)
             if root is not None:
                 folders[str(root)] = None
         elif str(prefix) not in existing_prefixes:
             prefixes[str(prefix)] = None
-            folders.update((str(folder), None) for folder in python_folders(prefix, name))
+            folders.update((str(folder), None) for folder in find_python_folders(prefix, name))
     _append(environment, _PREFIX_VARIABLE, prefixes)
     _append(environment, _PYTHON_VARIABLE, folders)
     return environment
 
 
-def python_folders(prefix: Path, package: str) -> Iterator[Path]:
+def find_python_folders(prefix: Path, package: str) -> Iterator[Path]:
     """Yield the folders that contain an installed package's Python modules.
 
     With ``--symlink-install``, the environment hooks of the package name some of these folders.

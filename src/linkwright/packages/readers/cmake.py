@@ -20,7 +20,7 @@ from linkwright.packages.readers.cmake_language import (
     Argument,
     CMakeProgram,
     Command,
-    within_package,
+    to_package_path,
 )
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.packages.readers.installed import InstalledFile
@@ -38,7 +38,7 @@ _COMPILED_TARGET_COMMANDS = frozenset(
         *("rclcpp_components_register_node", "pybind11_add_module", "python3_add_library"),
     }
 )
-_INTERFACE_EXTENSIONS = (".msg", ".srv", ".action", ".idl")
+_INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
 _FOLDERS_BY_TYPE = {
     "BIN": "bin",
     "SBIN": "sbin",
@@ -318,14 +318,14 @@ def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> N
     elif name in ("add_executable", "ament_auto_add_executable") and words and not is_open(words[0]):
         file.targets.add(words[0])
     elif name == "rclcpp_components_register_node":
-        executable = _argument_after(words, "EXECUTABLE")
+        executable = _find_argument_after(words, "EXECUTABLE")
         if executable is not None and not is_open(executable):
             file.targets.add(executable)
     elif name == "configure_file" and len(words) > 1 and not is_open(words[0]):
-        source = within_package(words[0], command.folder)
-        file._generated[_build_path(words[1], program)] = InstalledFile(source, "", dict(program.variables))
+        source = to_package_path(words[0], command.folder)
+        file._generated[_resolve_build_path(words[1], program)] = InstalledFile(source, "", dict(program.variables))
     elif name == "file" and len(words) > 1 and words[0] in ("WRITE", "APPEND"):
-        path = _build_path(words[1], program)
+        path = _resolve_build_path(words[1], program)
         previous = file._generated.get(path) if words[0] == "APPEND" else None
         content = (previous.content or "" if previous else "") + "".join(words[2:])
         file._generated[path] = InstalledFile(_FILE_NAME, "", None, content)
@@ -333,12 +333,12 @@ def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> N
         _read_install(file, command)
     elif name == "rosidl_generate_interfaces":
         file.interfaces += [
-            within_package(word, command.folder) for word in words if word.endswith(_INTERFACE_EXTENSIONS)
+            to_package_path(word, command.folder) for word in words if word.endswith(_INTERFACE_SUFFIXES)
         ]
     elif name == "ament_python_install_package" and words:
-        file.modules.append(within_package(_argument_after(words, "PACKAGE_DIR") or words[0], command.folder))
+        file.modules.append(to_package_path(_find_argument_after(words, "PACKAGE_DIR") or words[0], command.folder))
     elif name == "ament_python_install_module" and words:
-        file.modules.append(within_package(words[0], command.folder))
+        file.modules.append(to_package_path(words[0], command.folder))
     elif name == "ament_environment_hooks":
         _read_hooks(file, command, program)
     elif name in ("ament_index_register_resource", "pluginlib_export_plugin_description_file") and words:
@@ -352,7 +352,7 @@ def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> N
             _add_rule(file, CopyRule("DIRECTORY", arguments[words.index("INSTALL_TO_SHARE") + 1 :], share), command)
 
 
-def _build_path(word: str, program: CMakeProgram) -> str:
+def _resolve_build_path(word: str, program: CMakeProgram) -> str:
     return word if word.startswith(BUILD) else f"{program.variables['CMAKE_CURRENT_BINARY_DIR']}/{word}"
 
 
@@ -361,7 +361,7 @@ def _read_hooks(file: CMakeFile, command: Command, program: CMakeProgram) -> Non
     for word in command.words:
         if is_open(word):
             continue
-        hook = within_package(word, command.folder)
+        hook = to_package_path(word, command.folder)
         name = PurePosixPath(hook).name
         target = f"share/{file.project.text if file.project else ''}/environment/{name.removesuffix('.in')}"
         file.hooks.append(target)
@@ -375,10 +375,13 @@ def _read_resource(file: CMakeFile, command: Command) -> None:
     """Record an entry of the resource index, and the plugin description that it refers to."""
     words, project = command.words, file.project.text if file.project else ""
     if command.name == "ament_index_register_resource":
-        name, content = _argument_after(words, "PACKAGE_NAME") or project, _argument_after(words, "CONTENT") or ""
+        name, content = (
+            _find_argument_after(words, "PACKAGE_NAME") or project,
+            _find_argument_after(words, "CONTENT") or "",
+        )
         file._add_generated_file(_FILE_NAME, f"{_INDEX_FOLDER}/{words[0]}/{name}", content=content)
     elif len(words) > 1 and not is_open(words[1]):
-        path = PurePosixPath(within_package(words[1], command.folder))
+        path = PurePosixPath(to_package_path(words[1], command.folder))
         share = f"share/{project}"
         file._add_generated_file(
             _FILE_NAME, f"{_INDEX_FOLDER}/{words[0]}__pluginlib__plugin/{project}", content=f"{share}/{path.name}\n"
@@ -392,17 +395,17 @@ def _read_install(file: CMakeFile, command: Command) -> None:
     kind = words[0]
     items = tuple(takewhile(lambda argument: argument.text not in _KEYWORDS, arguments[1:]))
     if kind in ("FILES", "PROGRAMS", "DIRECTORY"):
-        destination = _argument_after(words, "DESTINATION") or _FOLDERS_BY_TYPE.get(
-            _argument_after(words, "TYPE") or ""
+        destination = _find_argument_after(words, "DESTINATION") or _FOLDERS_BY_TYPE.get(
+            _find_argument_after(words, "TYPE") or ""
         )
         if destination is None or is_open(destination):
             file.unknown.append(f"'install({' '.join(words)})' cannot be read without CMake")
             destination = None
         else:
             destination = destination.removeprefix(f"{PREFIX}/")
-        new_name = _argument_after(words, "RENAME")
+        new_name = _find_argument_after(words, "RENAME")
         is_optional = command.is_conditional or "OPTIONAL" in words
-        patterns, only_matching = tuple(_path_patterns(words)), "FILES_MATCHING" in words
+        patterns, only_matching = tuple(_parse_path_patterns(words)), "FILES_MATCHING" in words
         rule = CopyRule(kind, items, destination, new_name, patterns, only_matching, is_optional)
         _add_rule(file, rule, command)
     elif kind == "TARGETS":
@@ -414,7 +417,7 @@ def _read_install(file: CMakeFile, command: Command) -> None:
 def _add_rule(file: CMakeFile, rule: CopyRule, command: Command) -> None:
     """Add an install rule without the items that only CMake can evaluate."""
     known_items = tuple(
-        Argument(within_package(item.text, command.folder), item.start, item.end, item.source)
+        Argument(to_package_path(item.text, command.folder), item.start, item.end, item.source)
         for item in rule.items
         if not is_open(item.text)
     )
@@ -424,13 +427,13 @@ def _add_rule(file: CMakeFile, rule: CopyRule, command: Command) -> None:
         file.copies.append(replace(rule, items=known_items))
 
 
-def _argument_after(words: Sequence[str], keyword: str) -> str | None:
+def _find_argument_after(words: Sequence[str], keyword: str) -> str | None:
     """Return the argument after a keyword, or None if there is none."""
     index = words.index(keyword) + 1 if keyword in words else len(words)
     return words[index] if index < len(words) else None
 
 
-def _path_patterns(words: Sequence[str]) -> Iterator[PathPattern]:
+def _parse_path_patterns(words: Sequence[str]) -> Iterator[PathPattern]:
     for index, word in enumerate(words[:-1]):
         if word in ("PATTERN", "REGEX"):
             is_excluded = words[index + 2 : index + 3] == ["EXCLUDE"]

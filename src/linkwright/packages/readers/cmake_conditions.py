@@ -10,7 +10,7 @@ from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.packages.readers.cmake_syntax import is_open
 
 _NUMBER = lazy_pattern(r"[+-]?\d+(\.\d*)?")
-YES = frozenset({"1", "ON", "YES", "TRUE", "Y"})
+TRUE_CONSTANTS = frozenset({"1", "ON", "YES", "TRUE", "Y"})
 _FALSE_CONSTANTS = frozenset({"", "0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND"})
 _ORDER_TESTS: dict[str, Callable[[int], bool]] = {
     "EQUAL": lambda sign: sign == 0,
@@ -68,7 +68,7 @@ class Condition:
         result = self._evaluate_or()
         return result if self._index == len(self.words) else None
 
-    def _next(self, *keywords: str) -> bool:
+    def _accept(self, *keywords: str) -> bool:
         if self._index < len(self.words) and self.words[self._index].keyword in keywords:
             self._index += 1
             return True
@@ -76,28 +76,28 @@ class Condition:
 
     def _evaluate_or(self) -> bool | None:
         result = self._evaluate_and()
-        while self._next("OR"):
+        while self._accept("OR"):
             other = self._evaluate_and()
             result = True if result or other else None if None in (result, other) else False
         return result
 
     def _evaluate_and(self) -> bool | None:
         result = self._evaluate_not()
-        while self._next("AND"):
+        while self._accept("AND"):
             other = self._evaluate_not()
             result = False if False in (result, other) else None if None in (result, other) else True
         return result
 
     def _evaluate_not(self) -> bool | None:
-        if self._next("NOT"):
+        if self._accept("NOT"):
             result = self._evaluate_not()
             return None if result is None else not result
         return self._evaluate_test()
 
     def _evaluate_test(self) -> bool | None:
-        if self._next("("):
+        if self._accept("("):
             result = self._evaluate_or()
-            return result if self._next(")") else None
+            return result if self._accept(")") else None
         if self._index >= len(self.words):
             return None
         word = self.words[self._index]
@@ -126,11 +126,11 @@ class Condition:
             return None
         right = self.words[self._index]
         self._index += 1
-        value = self._value(left)
+        value = self._get_value(left)
         if operator == "IN_LIST":
             items = self.variables.get(right.text)
             return None if items is None or is_open(items + value) else value in items.split(";")
-        other = right.text if operator == "MATCHES" else self._value(right)
+        other = right.text if operator == "MATCHES" else self._get_value(right)
         if is_open(value) or is_open(other):
             return None
         if operator == "MATCHES":
@@ -148,19 +148,19 @@ class Condition:
             self.variables.update({f"CMAKE_MATCH_{index}": group for index, group in enumerate(groups)})
         return bool(matches)
 
-    def _value(self, word: Word) -> str:
+    def _get_value(self, word: Word) -> str:
         return word.text if word.is_quoted else self.variables.get(word.text, word.text)
 
     def _evaluate_word(self, word: Word) -> bool | None:
         if is_open(word.text):
             return None
-        constant = _constant(word.text)
+        constant = _evaluate_constant(word.text)
         if constant is not None or word.is_quoted:
             return bool(constant)
         value = self.variables.get(word.text)
         if value is None or is_open(value):
             return None
-        return _constant(value) is not False
+        return _evaluate_constant(value) is not False
 
 
 def find_matches(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
@@ -177,9 +177,9 @@ def find_matches(pattern: str, text: str) -> list[tuple[str, list[str]]] | None:
         return None
 
 
-def _constant(text: str) -> bool | None:
+def _evaluate_constant(text: str) -> bool | None:
     upper = text.upper()
-    if upper in YES or (_NUMBER.fullmatch(upper) and float(upper)):
+    if upper in TRUE_CONSTANTS or (_NUMBER.fullmatch(upper) and float(upper)):
         return True
     if upper in _FALSE_CONSTANTS or upper.endswith("-NOTFOUND") or _NUMBER.fullmatch(upper):
         return False

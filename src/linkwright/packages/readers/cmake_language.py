@@ -21,25 +21,25 @@ from linkwright.diagnostics import SourceText
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.packages.ament import ROS_VARIABLES
-from linkwright.packages.readers.cmake_conditions import YES, Condition, Word
+from linkwright.packages.readers.cmake_conditions import TRUE_CONSTANTS, Condition, Word
 from linkwright.packages.readers.cmake_syntax import (
     BLOCK_ENDS,
     MAX_NESTED_BLOCKS,
     Statement,
     Token,
-    branches,
-    end_of_block,
+    find_end_of_block,
     is_open,
-    statements,
+    parse_statements,
+    split_branches,
 )
 from linkwright.packages.readers.cmake_values import (
     UNKNOWN,
+    compute_version_variables,
+    evaluate_list_command,
     evaluate_math,
-    filename_component,
-    items_of,
-    list_command,
-    string_command,
-    version_variables,
+    evaluate_string_command,
+    extract_filename_component,
+    split_items,
 )
 
 _VARIABLE = lazy_pattern(r"\$\{([A-Za-z0-9_.+/-]+)\}")
@@ -97,7 +97,7 @@ class Command:
 
     Attributes:
         name: the name in lower case.
-        arguments: the arguments.
+        arguments: the arguments, with the values of known variables.
         folder: the folder of the ``CMakeLists.txt``, relative to the package; empty for the package's own.
         is_conditional: whether the command is in a branch of an ``if`` whose condition is not known.
     """
@@ -176,7 +176,7 @@ class CMakeProgram:
 
     def _run_file(self, source: SourceText) -> Iterator[Command]:
         with self._leavable_block("return"):
-            yield from self._run_block(list(statements(source)))
+            yield from self._run_block(list(parse_statements(source)))
 
     # --- blocks ------------------------------------------------------------------------------------------------------
 
@@ -198,7 +198,7 @@ class CMakeProgram:
             statement = body[index]
             index += 1
             if statement.name in BLOCK_ENDS:
-                end = end_of_block(body, index, statement.name)
+                end = find_end_of_block(body, index, statement.name)
                 self._block_depth += 1
                 if self._block_depth > MAX_NESTED_BLOCKS:
                     raise _LimitExceededError(statement.name)
@@ -209,7 +209,7 @@ class CMakeProgram:
                 yield from self._run_command(statement)
 
     def _run_compound(self, opening: Statement, body: list[Statement]) -> Iterator[Command]:
-        words = [argument.text for argument in self._arguments(opening)]
+        words = [argument.text for argument in self._expand_arguments(opening)]
         if opening.name == "if":
             yield from self._run_branches(opening, body)
         elif opening.name == "while":
@@ -222,7 +222,7 @@ class CMakeProgram:
     def _run_branches(self, opening: Statement, body: Sequence[Statement]) -> Iterator[Command]:
         """Yield the commands of the first true branch, and of possible branches before it."""
         is_uncertain = False
-        for condition, branch in branches(opening, body):
+        for condition, branch in split_branches(opening, body):
             is_true = True if condition is None else self._evaluate_condition(condition)
             if is_true is False:
                 continue
@@ -237,20 +237,20 @@ class CMakeProgram:
         condition_words = list[Word]()
         for token in condition.tokens:
             text = self._substitute(token)
-            items = [text] if token.is_quoted else items_of(text)
+            items = [text] if token.is_quoted else split_items(text)
             condition_words += [Word(part, token.is_quoted) for part in items]
         return Condition(condition_words, self.variables, self._path_exists).evaluate()
 
     def _path_exists(self, test: str, path: str) -> bool | None:
         if self.package is None or not path.startswith(SOURCE):
             return None
-        full_path = self.package / within_package(path, self._folder)
+        full_path = self.package / to_package_path(path, self._folder)
         return full_path.is_dir() if test == "IS_DIRECTORY" else full_path.exists()
 
     def _run_while(self, opening: Statement, body: list[Statement]) -> Iterator[Command]:
         with self._leavable_block("break"):
             while not self._exit_command:
-                self._tick("while")
+                self._count_command("while")
                 is_true = self._evaluate_condition(opening)
                 if is_true is None:
                     self.unknown.append("while")
@@ -267,7 +267,7 @@ class CMakeProgram:
         old_values = {name: self.variables.get(name) for name in names}
         with self._leavable_block("break"):
             for values in iterations:
-                self._tick("foreach")
+                self._count_command("foreach")
                 self.variables.update(zip(names, values, strict=True))
                 yield from self._run_once(body)
                 if self._exit_command:
@@ -286,12 +286,15 @@ class CMakeProgram:
         """
         if "IN" in words[1:] and words[words.index("IN", 1) :][1:2] == ["ZIP_LISTS"]:
             index = words.index("IN", 1)
-            names, lists = words[:index], [items_of(self.variables.get(word, UNKNOWN)) for word in words[index + 2 :]]
+            names, lists = (
+                words[:index],
+                [split_items(self.variables.get(word, UNKNOWN)) for word in words[index + 2 :]],
+            )
             if len(names) != len(lists) or len({len(items) for items in lists}) != 1:
                 return None
             rounds = list(zip(*lists, strict=True))
         elif words[1:2] == ["RANGE"]:
-            names, rounds = words[:1], [(str(number),) for number in _foreach_range(words[2:])]
+            names, rounds = words[:1], [(str(number),) for number in _parse_foreach_range(words[2:])]
             if not rounds:
                 return None
         else:
@@ -304,12 +307,12 @@ class CMakeProgram:
             if words[0] == "IN" and word in ("LISTS", "ITEMS"):
                 kind = word
             elif kind == "LISTS":
-                items += items_of(self.variables.get(word, UNKNOWN))
+                items += split_items(self.variables.get(word, UNKNOWN))
             else:
                 items.append(word)
         return items
 
-    def _tick(self, name: str) -> None:
+    def _count_command(self, name: str) -> None:
         self._count += 1
         if self._count > _MAX_COMMANDS:
             raise _LimitExceededError(name)
@@ -318,8 +321,8 @@ class CMakeProgram:
 
     def _run_command(self, statement: Statement) -> Iterator[Command]:
         name = statement.name
-        self._tick(name)
-        command = Command(name, tuple(self._arguments(statement)), self._folder, self._unknown_conditions > 0)
+        self._count_command(name)
+        command = Command(name, tuple(self._expand_arguments(statement)), self._folder, self._unknown_conditions > 0)
         words = command.words
         if name in ("return", "break", "continue"):
             self._exit_command = name if self._unknown_conditions == self._enclosing_depths.get(name) else ""
@@ -362,7 +365,7 @@ class CMakeProgram:
         is_folder = command == "add_subdirectory"
         if not is_folder and "/" not in file_argument and not file_argument.endswith(".cmake"):
             return  # a module of CMake itself, which installs nothing
-        relative_path = within_package(file_argument, self._folder)
+        relative_path = to_package_path(file_argument, self._folder)
         path = (
             None
             if self.package is None or is_open(relative_path)
@@ -401,7 +404,7 @@ class CMakeProgram:
         if name == "project" and words:
             self.variables["PROJECT_NAME"] = self.variables["CMAKE_PROJECT_NAME"] = words[0]
             self.variables |= {f"{words[0]}_SOURCE_DIR": SOURCE, f"{words[0]}_BINARY_DIR": BUILD}
-            self.variables |= version_variables(words)
+            self.variables |= compute_version_variables(words)
             self.variables |= {
                 f"CATKIN_{name}_DESTINATION": folder.format(words[0]) for name, folder in _CATKIN_FOLDERS.items()
             }
@@ -414,12 +417,12 @@ class CMakeProgram:
         elif name == "list" and len(words) > 1:
             self._change_list(words)
         elif name == "string" and len(words) > 1:
-            for target, value in string_command(words, self._get_variable).items():
+            for target, value in evaluate_string_command(words, self._get_variable).items():
                 self._set(target, value)
         elif name == "math" and len(words) > 2:
             self._set(words[1], evaluate_math(words[2]))
         elif name == "get_filename_component" and len(words) > 2:
-            self._set(words[0], filename_component(words[1], words[2]))
+            self._set(words[0], extract_filename_component(words[1], words[2]))
         elif name == "file" and len(words) > 1 and words[0] in ("GLOB", "GLOB_RECURSE"):
             self._set(words[1], self._glob_files(words[2:], recursive=words[0] == "GLOB_RECURSE"))
         elif name == "cmake_parse_arguments" and len(words) >= 4:
@@ -445,7 +448,7 @@ class CMakeProgram:
         self.variables[name] = value if is_certain and not is_open(value) else UNKNOWN
 
     def _change_list(self, words: list[str]) -> None:
-        for target, value in list_command(words[0], words[1:], self._get_variable).items():
+        for target, value in evaluate_list_command(words[0], words[1:], self._get_variable).items():
             if words[0] in ("APPEND", "PREPEND"):
                 self.variables[target] = value  # even if the command is uncertain, so that a possible item is added
             else:
@@ -459,11 +462,11 @@ class CMakeProgram:
         word_iterator = iter(words)
         for word in word_iterator:
             if word == "RELATIVE":
-                relative_to = within_package(next(word_iterator, ""), self._folder)
+                relative_to = to_package_path(next(word_iterator, ""), self._folder)
             elif word == "LIST_DIRECTORIES":
-                includes_folders = next(word_iterator, "").upper() in YES
+                includes_folders = next(word_iterator, "").upper() in TRUE_CONSTANTS
             elif word not in ("CONFIGURE_DEPENDS", "FOLLOW_SYMLINKS"):
-                patterns.append(within_package(word, self._folder))
+                patterns.append(to_package_path(word, self._folder))
         if self.package is None or any(map(is_open, words)):
             return UNKNOWN
         if any(pattern.startswith(("/", "..", "<")) for pattern in patterns):
@@ -480,17 +483,17 @@ class CMakeProgram:
 
     def _parse_arguments(self, words: list[str]) -> None:
         if words[0] == "PARSE_ARGV":
-            arguments = items_of(self._get_variable("ARGV"))[int(words[1]) if words[1].isdecimal() else 0 :]
+            arguments = split_items(self._get_variable("ARGV"))[int(words[1]) if words[1].isdecimal() else 0 :]
             words = [*words[2:6], *arguments]
         prefix, options, one_value_names, multi_value_names, *arguments = words
         kinds = {
             name: kind
             for kind, names in enumerate((options, one_value_names, multi_value_names))
-            for name in items_of(names)
+            for name in split_items(names)
         }
         values: dict[str, list[str]] = {}
         current = "UNPARSED_ARGUMENTS"
-        for word in (item for text in arguments for item in items_of(text)):
+        for word in (item for text in arguments for item in split_items(text)):
             if word in kinds:
                 values[word] = ["TRUE"] if kinds[word] == 0 else []
                 current = "UNPARSED_ARGUMENTS" if kinds[word] == 0 else word
@@ -501,11 +504,11 @@ class CMakeProgram:
         for name in (*kinds, "UNPARSED_ARGUMENTS"):
             self.variables[f"{prefix}_{name}"] = ";".join(values.get(name, ["FALSE"] if kinds.get(name) == 0 else []))
 
-    def _arguments(self, statement: Statement) -> Iterator[Argument]:
+    def _expand_arguments(self, statement: Statement) -> Iterator[Argument]:
         for token in statement.tokens:
             text = self._substitute(token)
             self._count += len(text) // _CHARACTERS_PER_COMMAND
-            for item in [text] if token.is_quoted else items_of(text):
+            for item in [text] if token.is_quoted else split_items(text):
                 yield Argument(item, token.start, token.end, statement.source)
 
     def _substitute(self, token: Token) -> str:
@@ -534,7 +537,7 @@ def _get_environment_variable(name: str) -> str | None:
     return os.environ.get(name, ROS_VARIABLES[name]) if name in ROS_VARIABLES else None
 
 
-def _foreach_range(words: Sequence[str]) -> range:
+def _parse_foreach_range(words: Sequence[str]) -> range:
     """Return the numbers of ``foreach(i RANGE ...)``, including the last.
 
     The result is empty if an argument is not an integer or the range is too long.
@@ -558,7 +561,7 @@ def _glob_paths(package: Path, pattern: str, *, recursive: bool) -> Iterable[Pat
     return (package / folder).rglob(name_pattern) if recursive else package.glob(posixpath.join(folder, name_pattern))
 
 
-def within_package(text: str, folder: str) -> str:
+def to_package_path(text: str, folder: str) -> str:
     """Convert a path in a command to a path relative to the package.
 
     A trailing slash is preserved. Other absolute paths, generator expressions and paths in the build folder are

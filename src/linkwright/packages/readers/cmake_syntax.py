@@ -76,7 +76,7 @@ class Statement:
     source: SourceText
 
 
-def statements(source: SourceText) -> Iterator[Statement]:
+def parse_statements(source: SourceText) -> Iterator[Statement]:
     """Yield the commands of a file in the order of the text.
 
     Nested parentheses are treated as arguments.
@@ -113,13 +113,13 @@ def _make_token(match: re.Match[str]) -> Token:
     )
 
 
-def end_of_block(commands: Sequence[Statement], first_index: int, name: str) -> int:
+def find_end_of_block(commands: Sequence[Statement], first_index: int, name: str) -> int:
     """Return the index of the command that closes a block.
 
     If the block is not closed, return the number of commands.
 
     Args:
-        commands: the commands.
+        commands: the commands of the file or of a block.
         first_index: the index after the command that opens the block.
         name: the name of the command that opens the block.
     """
@@ -131,7 +131,9 @@ def end_of_block(commands: Sequence[Statement], first_index: int, name: str) -> 
     return len(commands)
 
 
-def branches(opening: Statement, body: Sequence[Statement]) -> Iterator[tuple[Statement | None, Sequence[Statement]]]:
+def split_branches(
+    opening: Statement, body: Sequence[Statement]
+) -> Iterator[tuple[Statement | None, Sequence[Statement]]]:
     """Yield the branches of an ``if``.
 
     Each branch is the command with the condition, or None for ``else``, and the body.

@@ -33,12 +33,12 @@ class _NotKnownError(Exception):
     """Raised when the effect of a command cannot be evaluated without CMake."""
 
 
-def items_of(text: str) -> list[str]:
+def split_items(text: str) -> list[str]:
     """Return the items of a CMake list, without empty items."""
     return [item for item in text.split(";") if item]
 
 
-def list_command(operation: str, words: Sequence[str], value_of: Callable[[str], str]) -> dict[str, str]:
+def evaluate_list_command(operation: str, words: Sequence[str], value_of: Callable[[str], str]) -> dict[str, str]:
     """Return the variable that a command ``list(OPERATION ...)`` sets, with its value.
 
     Args:
@@ -48,7 +48,7 @@ def list_command(operation: str, words: Sequence[str], value_of: Callable[[str],
     """
     if not words:
         return {}
-    items = items_of(value_of(words[0]))
+    items = split_items(value_of(words[0]))
     is_query = operation in ("LENGTH", "GET", "JOIN", "FIND", "SUBLIST")
     target = words[-1] if is_query else words[0]
     if any(map(is_open, (*items, *words[1:]))):
@@ -109,7 +109,7 @@ def _transform_item(item: str, words: Sequence[str]) -> str:
     raise _NotKnownError
 
 
-def string_command(words: Sequence[str], value_of: Callable[[str], str]) -> dict[str, str]:
+def evaluate_string_command(words: Sequence[str], value_of: Callable[[str], str]) -> dict[str, str]:
     """Return the variables that a command ``string(...)`` sets, with their values.
 
     Args:
@@ -187,7 +187,7 @@ def _evaluate_number(node: ast.expr) -> int:
     raise _NotKnownError
 
 
-def filename_component(path: str, component: str) -> str:
+def extract_filename_component(path: str, component: str) -> str:
     """Return the part of a path that ``get_filename_component`` extracts."""
     name = posixpath.basename(path)
     components = {
@@ -204,7 +204,7 @@ def filename_component(path: str, component: str) -> str:
     return components.get(component, UNKNOWN)
 
 
-def version_variables(words: Sequence[str]) -> dict[str, str]:
+def compute_version_variables(words: Sequence[str]) -> dict[str, str]:
     """Return the version variables that ``project(...)`` sets.
 
     Their values are empty if there is no version.

@@ -15,7 +15,7 @@ from linkwright.packages.readers.installed import PROGRAM_GROUP
 
 
 def read_setup_py_group(text: str, group: str) -> list[str]:
-    """Return the lines of a group in any dictionary of a ``setup.py``, without running the file."""
+    """Return the lines of a group in any dictionary of a ``setup.py``, without running it."""
     with suppress(SyntaxError):
         for node in ast.walk(ast.parse(text)):
             for key, value in zip(node.keys, node.values, strict=True) if isinstance(node, ast.Dict) else ():
@@ -28,7 +28,7 @@ def read_setup_py_group(text: str, group: str) -> list[str]:
 
 def read_setup_cfg_group(text: str, group: str) -> list[str]:
     """Return the lines of a group in a ``setup.cfg``."""
-    return option_lines(text, "options.entry_points", group)
+    return read_option_lines(text, "options.entry_points", group)
 
 
 def parse_toml(text: str) -> dict[str, Any]:
@@ -64,7 +64,7 @@ def read_metadata_group(text: str, group: str) -> list[str]:
     return [f"{name} = {value}" for name, value in parser.items(group)] if parser.has_section(group) else []
 
 
-def option_lines(text: str, section: str, option: str) -> list[str]:
+def read_option_lines(text: str, section: str, option: str) -> list[str]:
     """Return the lines of an option of a ``setup.cfg``."""
     from configparser import ConfigParser, Error
 
@@ -74,7 +74,7 @@ def option_lines(text: str, section: str, option: str) -> list[str]:
     return parser.get(section, option, fallback="").splitlines()
 
 
-def text_of(path: Path) -> str:
+def read_text(path: Path) -> str:
     """Return the text of a file, or an empty string if the file cannot be read."""
     try:
         return path.read_text(encoding="utf-8", errors="replace")

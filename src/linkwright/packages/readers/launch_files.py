@@ -9,12 +9,12 @@ from contextlib import suppress
 from linkwright.diagnostics import SourceText, Span
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.packages.readers.python_values import PythonFile, SharePath, argument_of, called_name
-from linkwright.packages.readers.setup_py import SyntaxProblem, syntax_problem
+from linkwright.packages.readers.setup_py import SyntaxProblem, make_syntax_problem
 
-FUNCTION = "generate_launch_description"
+LAUNCH_FUNCTION = "generate_launch_description"
 _TEST_FUNCTION = "generate_test_description"
 _TEST_PACKAGES = frozenset({"launch_testing", "launch_pytest"})
-_LAUNCH_EXTENSIONS = (".launch.py", "_launch.py")
+_LAUNCH_SUFFIXES = (".launch.py", "_launch.py")
 _WRITE_MODES = frozenset("wax")
 """The modes in which ``open`` creates a file."""
 _PATH_FUNCTIONS = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitution", "str", "as_posix"})
@@ -78,7 +78,7 @@ class LaunchFile:
 
 def is_launch_file(path: str) -> bool:
     """Return whether a path has the name of a Python launch file."""
-    return path.endswith(_LAUNCH_EXTENSIONS)
+    return path.endswith(_LAUNCH_SUFFIXES)
 
 
 def read_launch_file(source: SourceText, path: str) -> LaunchFile:
@@ -92,7 +92,7 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
     try:
         python_file = facts.python_file = PythonFile(source)
     except (SyntaxError, ValueError) as error:
-        facts.error = syntax_problem(source, error)
+        facts.error = make_syntax_problem(source, error)
         return facts
     facts.has_function = any(map(_may_define_function, python_file.tree.body))
     _read_imports(python_file, facts)
@@ -101,13 +101,13 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
     )
     for call in python_file.calls("Node", "LifecycleNode", "ComposableNode"):
         package, executable = argument_of(call, "package"), argument_of(call, "executable")
-        facts.nodes.append(StartedNode(_place_of(python_file, package), _place_of(python_file, executable)))
+        facts.nodes.append(StartedNode(_evaluate_text(python_file, package), _evaluate_text(python_file, executable)))
     for call in python_file.calls("get_package_share_directory", "get_package_share_path", "FindPackageShare"):
         argument = call.args[0] if call.args else argument_of(call, "package")
-        expression = _place_of(python_file, argument)
+        expression = _evaluate_text(python_file, argument)
         if expression is not None:
             facts.shares.append(expression)
-    written_paths = (python_file.value(node) for node in _written_paths(python_file))
+    written_paths = (python_file.value(node) for node in _find_written_paths(python_file))
     facts.written_files = frozenset(
         (share_path.package, share_path.subpath.strip("/"))
         for share_path in written_paths
@@ -121,7 +121,7 @@ def read_launch_file(source: SourceText, path: str) -> LaunchFile:
 def _may_define_function(node: ast.stmt) -> bool:
     if isinstance(node, ast.ImportFrom) and any(alias.name == "*" for alias in node.names):
         return True
-    return _defines_function(node, FUNCTION) or isinstance(node, (ast.If, ast.Try))  # a branch may define it
+    return _defines_function(node, LAUNCH_FUNCTION) or isinstance(node, (ast.If, ast.Try))  # a branch may define it
 
 
 def _defines_test(node: ast.stmt) -> bool:
@@ -151,7 +151,7 @@ def _read_imports(python_file: PythonFile, facts: LaunchFile) -> None:
     facts.imports = list(spans.items())
 
 
-def _written_paths(python_file: PythonFile) -> Iterator[ast.expr]:
+def _find_written_paths(python_file: PythonFile) -> Iterator[ast.expr]:
     """Yield the expressions for the paths of files that are written."""
     for call in python_file.calls("open", owner=""):
         mode = call.args[1] if len(call.args) > 1 else argument_of(call, "mode")
@@ -164,7 +164,7 @@ def _written_paths(python_file: PythonFile) -> Iterator[ast.expr]:
         yield from call.args[1:2]
 
 
-def _place_of(python_file: PythonFile, node: ast.expr | None) -> EvaluatedText | None:
+def _evaluate_text(python_file: PythonFile, node: ast.expr | None) -> EvaluatedText | None:
     if node is None:
         return None
     text = python_file.text(node)
@@ -172,13 +172,13 @@ def _place_of(python_file: PythonFile, node: ast.expr | None) -> EvaluatedText |
 
 
 class _PathReader(ast.NodeVisitor):
-    """A visitor that finds the complete paths in share folders, without the beginnings of longer paths."""
+    """A visitor that finds the paths in share folders, without prefixes of longer paths."""
 
     def __init__(self, python_file: PythonFile, facts: LaunchFile) -> None:
         self._python_file = python_file
         self._facts = facts
         self._path_depth = 0
-        self._names_in_paths = _names_in_path_operations(python_file.tree)
+        self._names_in_paths = _find_names_in_path_operations(python_file.tree)
 
     def visit_Assign(self, node: ast.Assign) -> None:
         names = [target.id for target in node.targets if isinstance(target, ast.Name)]
@@ -202,7 +202,7 @@ class _PathReader(ast.NodeVisitor):
         self._path_depth -= 1
 
 
-def _names_in_path_operations(tree: ast.AST) -> set[str]:
+def _find_names_in_path_operations(tree: ast.AST) -> set[str]:
     names = set()
     pending = [(tree, False)]
     while pending:

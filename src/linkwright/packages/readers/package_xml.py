@@ -7,7 +7,7 @@ from functools import cached_property
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.xmltree import Document, Element
 
-DEPENDENCIES = frozenset(
+DEPENDENCY_TAGS = frozenset(
     {
         *("depend", "build_depend", "build_export_depend", "exec_depend", "run_depend", "buildtool_depend"),
         *("buildtool_export_depend", "test_depend", "doc_depend"),
@@ -61,7 +61,7 @@ class Manifest:
         return tuple(
             Dependency(element.text().strip(), element.tag, element)
             for element in self.root.elements()
-            if element.tag in DEPENDENCIES
+            if element.tag in DEPENDENCY_TAGS
         )
 
     @property

@@ -157,7 +157,7 @@ class PythonFile:
         if isinstance(node, (ast.List, ast.Tuple)):
             return tuple(self.value(item, depth + 1) for item in node.elts)
         if isinstance(node, ast.JoinedStr):
-            return concatenated([self._piece(piece, depth) for piece in node.values])
+            return concatenate([self._piece(piece, depth) for piece in node.values])
         if isinstance(node, ast.BinOp):
             return self._operation(node, depth)
         if isinstance(node, ast.Call):
@@ -180,9 +180,9 @@ class PythonFile:
         if isinstance(node.op, ast.Add):
             if isinstance(left, tuple) and isinstance(right, tuple):
                 return left + right
-            return concatenated([left, right])
+            return concatenate([left, right])
         if isinstance(node.op, ast.Div):
-            return joined([left, right])
+            return join_path([left, right])
         if isinstance(node.op, ast.Mod) and isinstance(left, str):
             operands = right if isinstance(right, tuple) else (right,)
             if all(isinstance(value, (str, int)) for value in operands) and left.count("%") == len(operands):
@@ -203,10 +203,10 @@ class PythonFile:
         arguments = [self.value(argument, depth + 1) for argument in node.args]
         if name in _JOIN_FUNCTIONS and arguments:
             if function_name == "PathJoinSubstitution":
-                return joined(arguments[0]) if isinstance(arguments[0], tuple) else UNKNOWN
-            return joined(arguments)
+                return join_path(arguments[0]) if isinstance(arguments[0], tuple) else UNKNOWN
+            return join_path(arguments)
         if function_name == "joinpath" and isinstance(node.func, ast.Attribute):
-            return joined([self.value(node.func.value, depth + 1), *arguments])
+            return join_path([self.value(node.func.value, depth + 1), *arguments])
         if function_name in ("as_posix", "find") and isinstance(node.func, ast.Attribute):
             owner = self.value(node.func.value, depth + 1)
             return owner if isinstance(owner, SharePath) or function_name == "as_posix" else UNKNOWN
@@ -275,7 +275,7 @@ def argument_of(node: ast.Call, name: str) -> ast.expr | None:
     return next((keyword.value for keyword in node.keywords if keyword.arg == name), None)
 
 
-def concatenated(values: Sequence[Value]) -> Value:
+def concatenate(values: Sequence[Value]) -> Value:
     """Return the concatenation of values, or `UNKNOWN` if it is not known."""
     if not values:
         return ""
@@ -289,7 +289,7 @@ def concatenated(values: Sequence[Value]) -> Value:
     return prefix + text if isinstance(prefix, str) else UNKNOWN
 
 
-def joined(values: Sequence[Value]) -> Value:
+def join_path(values: Sequence[Value]) -> Value:
     """Return the path whose components are the values, or `UNKNOWN` if it is not known."""
     if not values:
         return UNKNOWN

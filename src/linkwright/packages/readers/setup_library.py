@@ -21,7 +21,7 @@ _MAX_ITEMS = 20_000
 _MAX_TEXT_LENGTH = 4096
 _WIDE_FORMAT = lazy_pattern(r"\d{3}|\*")
 
-METHODS: dict[type, frozenset[str]] = {
+METHODS_BY_TYPE: dict[type, frozenset[str]] = {
     kind: frozenset(names.split())
     for kind, names in {
         str: "startswith endswith replace split rsplit strip lstrip rstrip join lower upper removeprefix removesuffix "
@@ -35,7 +35,7 @@ METHODS: dict[type, frozenset[str]] = {
 }
 """The methods of values that may be called."""
 
-ATTRIBUTES = frozenset(("name", "stem", "suffix", "suffixes", "parent", "parents", "parts"))
+PATH_ATTRIBUTES = frozenset(("name", "stem", "suffix", "suffixes", "parent", "parents", "parts"))
 """The attributes of paths that may be read."""
 
 
@@ -43,7 +43,7 @@ class NotKnownError(Exception):
     """Raised when the value of an expression is not known."""
 
 
-def bounded(value: Any) -> Any:
+def check_size(value: Any) -> Any:
     """Check the size of a value, and return the value.
 
     Raises:
@@ -56,7 +56,7 @@ def bounded(value: Any) -> Any:
     return value
 
 
-def weight(value: Any, limit: int) -> int:
+def compute_weight(value: Any, limit: int) -> int:
     """Return the size of a value up to a limit.
 
     The size includes nested items and, in part, the lengths of texts. A list that contains the same list twice, on many
@@ -114,9 +114,9 @@ class PackageLibrary:
             },
             **dict.fromkeys(("abspath", "realpath"), self._absolute),
             "relpath": lambda path, start=".": posixpath.relpath(self._absolute(path), self._absolute(start)),
-            "isfile": lambda path: self._checked_path(path).is_file(),
-            "isdir": lambda path: self._checked_path(path).is_dir(),
-            "exists": lambda path: self._checked_path(path).exists(),
+            "isfile": lambda path: self._check_path(path).is_file(),
+            "isdir": lambda path: self._check_path(path).is_dir(),
+            "exists": lambda path: self._check_path(path).exists(),
         }
         self.functions: dict[str, Callable[..., Any]] = {
             **{f"os.path.{name}": function for name, function in path_functions.items()},
@@ -147,12 +147,12 @@ class PackageLibrary:
         Raises:
             NotKnownError: the path is outside the package.
         """
-        return self._checked_path(path).relative_to(self._folder).as_posix()
+        return self._check_path(path).relative_to(self._folder).as_posix()
 
     def _absolute(self, path: Any) -> str:
         return posixpath.normpath(posixpath.join(self._folder.as_posix(), str(path)))
 
-    def _checked_path(self, path: Any) -> Path:
+    def _check_path(self, path: Any) -> Path:
         if not isinstance(path, (str, PurePosixPath)):
             raise NotKnownError
         absolute_path = Path(self._absolute(path))
@@ -161,29 +161,29 @@ class PackageLibrary:
         return absolute_path
 
     def _list_folder(self, path: Any) -> Iterable[Path]:
-        return bounded(list(self._checked_path(path).iterdir()))  # type: ignore[no-any-return]  # what it is given
+        return check_size(list(self._check_path(path).iterdir()))  # type: ignore[no-any-return]  # what it is given
 
     def _walk(self, top: Any) -> Iterator[tuple[str, list[str], list[str]]]:
         count = 0
-        for root, folders, files in os.walk(self._checked_path(top)):
+        for root, folders, files in os.walk(self._check_path(top)):
             count += 1 + len(files)
             if count > _MAX_ITEMS:
                 raise NotKnownError
             folders.sort()
-            relative_root = Path(root).relative_to(self._checked_path(top)).as_posix()
+            relative_root = Path(root).relative_to(self._check_path(top)).as_posix()
             yield str(top) if relative_root == "." else posixpath.join(str(top), relative_root), folders, sorted(files)
 
     def _glob(self, pattern: Any, recursive: bool = False, **unsupported: Any) -> list[str]:
         text = str(pattern)
         fixed_prefix = re.split(r"[*?\[]", text, maxsplit=1)[0]
-        self._checked_path(fixed_prefix)
+        self._check_path(fixed_prefix)
         if unsupported or ".." in text.split("/"):
             raise NotKnownError
         names = glob(text, root_dir=self._folder, recursive=bool(recursive))  # noqa: PTH207 - as in setup.py
-        return sorted(bounded([name.replace("\\", "/") for name in names]))
+        return sorted(check_size([name.replace("\\", "/") for name in names]))
 
     def _path_glob(self, path: PurePosixPath, pattern: str) -> list[PurePosixPath]:
         if ".." in pattern.split("/") or pattern.startswith("/"):
             raise NotKnownError
-        top = self._checked_path(path)
-        return bounded(sorted(path / entry.relative_to(top).as_posix() for entry in top.glob(pattern)))  # type: ignore[no-any-return]  # what it is given
+        top = self._check_path(path)
+        return check_size(sorted(path / entry.relative_to(top).as_posix() for entry in top.glob(pattern)))  # type: ignore[no-any-return]  # what it is given

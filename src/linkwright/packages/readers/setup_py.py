@@ -113,7 +113,7 @@ def read_setup(source: SourceText) -> SetupFile:
     try:
         python_file = PythonFile(source)
     except (SyntaxError, ValueError) as error:
-        facts.error = syntax_problem(source, error)
+        facts.error = make_syntax_problem(source, error)
         return facts
     facts.tree = python_file.tree
     call = next(python_file.calls("setup"), None)
@@ -135,7 +135,7 @@ def read_setup(source: SourceText) -> SetupFile:
     return facts
 
 
-def syntax_problem(source: SourceText, error: SyntaxError | ValueError) -> SyntaxProblem:
+def make_syntax_problem(source: SourceText, error: SyntaxError | ValueError) -> SyntaxProblem:
     """Return the reason why a text is not valid Python, and its location."""
     if not isinstance(error, SyntaxError):
         return SyntaxProblem(str(error), source.span(0))
@@ -154,14 +154,14 @@ class _DataFilesReader:
     def read(self, node: ast.expr | None, call: ast.Call) -> None:
         self._facts.data_files_span = self._python_file.span(node if node is not None else call.func)
         if node is not None:
-            self._entries(node)
+            self._read_entries(node)
 
-    def _entries(self, node: ast.expr) -> None:
+    def _read_entries(self, node: ast.expr) -> None:
         if isinstance(node, ast.Name):
             self._read_entries_of_name(node)
         elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            self._entries(node.left)
-            self._entries(node.right)
+            self._read_entries(node.left)
+            self._read_entries(node.right)
         elif isinstance(node, (ast.List, ast.Tuple)):
             for entry in node.elts:
                 self._read_entry(entry)
@@ -176,20 +176,20 @@ class _DataFilesReader:
         if value is None:
             self._facts.is_complete = False
         else:
-            self._entries(value)
+            self._read_entries(value)
             self._read_additions(node.id)
 
     def _read_entry(self, node: ast.expr) -> None:
         if isinstance(node, ast.Starred):
-            self._entries(node.value)
+            self._read_entries(node.value)
             return
         node = self._python_file.resolved(node)
         if not isinstance(node, (ast.Tuple, ast.List)) or len(node.elts) != 2:
             self._facts.is_complete = False
             return
-        self._sources(node.elts[1], self._python_file.text(node.elts[0]))
+        self._read_sources(node.elts[1], self._python_file.text(node.elts[0]))
 
-    def _sources(self, node: ast.expr, destination: str | None) -> None:
+    def _read_sources(self, node: ast.expr, destination: str | None) -> None:
         if isinstance(node, ast.Name) and any(self._python_file.calls("append", "extend", "insert", owner=node.id)):
             self._facts.is_complete = False
         node = self._python_file.resolved(node)
@@ -201,10 +201,10 @@ class _DataFilesReader:
             self._add(value, destination, span, None)
         elif isinstance(node, (ast.List, ast.Tuple)):
             for item in node.elts:
-                self._sources(item.value if isinstance(item, ast.Starred) else item, destination)
+                self._read_sources(item.value if isinstance(item, ast.Starred) else item, destination)
         elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            self._sources(node.left, destination)
-            self._sources(node.right, destination)
+            self._read_sources(node.left, destination)
+            self._read_sources(node.right, destination)
         else:
             self._facts.is_complete = False
 
@@ -222,9 +222,9 @@ class _DataFilesReader:
                 if called_name(node).endswith("append"):
                     self._read_entry(node.args[0])
                 else:
-                    self._entries(node.args[0])
+                    self._read_entries(node.args[0])
             elif isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name) and node.target.id == name:
-                self._entries(node.value)
+                self._read_entries(node.value)
 
 
 def _read_packages(python_file: PythonFile, facts: SetupFile, node: ast.expr | None) -> None:

@@ -15,14 +15,14 @@ from pathlib import Path, PurePosixPath
 from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.installed import InstalledFile
 from linkwright.packages.readers.setup_library import (
-    ATTRIBUTES,
-    METHODS,
+    METHODS_BY_TYPE,
+    PATH_ATTRIBUTES,
     NotKnownError,
     PackageLibrary,
-    bounded,
+    check_size,
+    compute_weight,
     format_template,
     percent_format,
-    weight,
 )
 
 _MAX_STEPS = 300_000
@@ -44,7 +44,7 @@ _COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
 _BUILTINS: dict[str, Callable[..., Any]] = {
     **{call.__name__: call for call in (len, list, tuple, set, dict, str, zip, sorted, any, all, bool, int, min, max)},
     **{call.__name__: call for call in (enumerate, reversed, map, filter)},
-    "range": lambda *numbers: bounded(list(range(*numbers)[:20_001])),
+    "range": lambda *numbers: check_size(list(range(*numbers)[:20_001])),
     "sum": lambda items, start=0: [entry for item in items for entry in item] if start == [] else sum(items, start),
     "print": lambda *_, **__: None,
 }
@@ -98,13 +98,13 @@ def run_setup(tree: ast.Module, folder: Path) -> list[InstalledFile] | None:
     try:
         _Interpreter(library).body(tree.body)
     except _SetupCalledError as called:
-        return list(_installed_files(called.data_files, library))
+        return list(_iterate_installed_files(called.data_files, library))
     except Exception:  # noqa: BLE001 - the user's expressions may raise anything
         return None
     return None
 
 
-def _installed_files(data_files: Any, library: PackageLibrary) -> Iterator[InstalledFile]:
+def _iterate_installed_files(data_files: Any, library: PackageLibrary) -> Iterator[InstalledFile]:
     for entry in data_files if isinstance(data_files, (list, tuple)) else ():
         if not isinstance(entry, (list, tuple)) or len(entry) != 2 or not isinstance(entry[1], (list, tuple)):
             continue
@@ -128,10 +128,10 @@ class _Interpreter:
 
     def body(self, statements: Iterable[ast.stmt]) -> None:
         for statement in statements:
-            self._tick()
+            self._count_step()
             self._run_statement(statement)
 
-    def _tick(self) -> None:
+    def _count_step(self) -> None:
         self._steps += 1
         if self._steps > _MAX_STEPS:
             raise _CannotContinueError
@@ -189,7 +189,7 @@ class _Interpreter:
 
     def _loop(self, node: ast.For) -> None:
         for item in self._items(self._evaluate(node.iter)):
-            self._tick()
+            self._count_step()
             self._bind(node.target, item)
             try:
                 self.body(node.body)
@@ -218,9 +218,9 @@ class _Interpreter:
 
     def _evaluate(self, node: ast.expr) -> Any:
         """Return the value of an expression, or `_UNKNOWN` if it cannot be evaluated."""
-        self._tick()
+        self._count_step()
         try:
-            value = bounded(self._evaluate_or_raise(node))
+            value = check_size(self._evaluate_or_raise(node))
         except (NotKnownError, TypeError, ValueError, AttributeError, LookupError, OSError):
             return _UNKNOWN
         if isinstance(value, (list, tuple, dict, set)):
@@ -228,7 +228,7 @@ class _Interpreter:
         return value
 
     def _count_weight(self, value: Any) -> None:
-        value_weight = weight(value, _MAX_WEIGHT)
+        value_weight = compute_weight(value, _MAX_WEIGHT)
         self._steps += value_weight // _WEIGHT_PER_STEP
         if value_weight == _MAX_WEIGHT:
             raise _CannotContinueError
@@ -353,7 +353,7 @@ class _Interpreter:
             return
         generator, *remaining_generators = generators
         for item in self._items(self._evaluate(generator.iter)):
-            self._tick()
+            self._count_step()
             self._bind(generator.target, item)
             if all(self._evaluate_truth(condition) for condition in generator.ifs):
                 yield from self._evaluate_generators(remaining_generators, value)
@@ -374,7 +374,7 @@ class _Interpreter:
         owner = self._evaluate_known(node.value)
         if isinstance(owner, _ModuleMember):
             return "/" if owner.name == "os" and node.attr == "sep" else _ModuleMember(f"{owner.name}.{node.attr}")
-        if isinstance(owner, PurePosixPath) and node.attr in ATTRIBUTES:
+        if isinstance(owner, PurePosixPath) and node.attr in PATH_ATTRIBUTES:
             return getattr(owner, node.attr)
         return self._method(owner, node.attr)
 
@@ -383,7 +383,7 @@ class _Interpreter:
             return lambda *arguments, **keywords: format_template(owner, *arguments, **keywords)
         if isinstance(owner, PurePosixPath) and name in self._library.path_methods:
             return lambda *arguments, **keywords: self._library.path_methods[name](owner, *arguments, **keywords)
-        if any(isinstance(owner, kind) and name in names for kind, names in METHODS.items()):
+        if any(isinstance(owner, kind) and name in names for kind, names in METHODS_BY_TYPE.items()):
             method: Callable[..., Any] = getattr(owner, name)
             return method
         raise NotKnownError

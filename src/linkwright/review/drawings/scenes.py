@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.descriptions import Description, DescriptionLibrary
-from linkwright.descriptions.pairs import Pair, old_description_key
+from linkwright.descriptions.pairs import Pair, make_old_description_key
 from linkwright.diagnostics import LinkwrightError, display_path, phrase
 from linkwright.review.changes import RobotScene
 
@@ -57,6 +57,6 @@ def _take_snapshot(models: Pair, old: Description, new: Description) -> Snapshot
 
     library = DescriptionLibrary()
     assert new.robot is not None, "robots are compared"
-    old_text = library.store(old, old_description_key(old), models.old.finder)
+    old_text = library.store(old, make_old_description_key(old), models.old.finder)
     compared = OldDescription(models, old_text)
     return take_model_snapshot(library.store(new), new.robot, library, models.new.finder, compared)

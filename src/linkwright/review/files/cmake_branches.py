@@ -9,9 +9,9 @@ from linkwright.packages.readers.cmake_syntax import (
     BLOCK_ENDS,
     MAX_NESTED_BLOCKS,
     Statement,
-    branches,
-    end_of_block,
-    statements,
+    find_end_of_block,
+    parse_statements,
+    split_branches,
 )
 
 
@@ -26,7 +26,7 @@ def conditions_of(source: SourceText) -> dict[int, str]:
 
 def conditional_statements(source: SourceText) -> Iterator[tuple[Statement, str]]:
     """Yield the commands of a file with the condition around each, which is empty if there is none."""
-    yield from _walk(list(statements(source)), ())
+    yield from _walk(list(parse_statements(source)), ())
 
 
 def _walk(body: Sequence[Statement], around: tuple[str, ...], depth: int = 0) -> Iterator[tuple[Statement, str]]:
@@ -39,7 +39,7 @@ def _walk(body: Sequence[Statement], around: tuple[str, ...], depth: int = 0) ->
         if statement.name not in BLOCK_ENDS:
             yield statement, " AND ".join(around)
             continue
-        end = end_of_block(body, index, statement.name)
+        end = find_end_of_block(body, index, statement.name)
         block = body[index:end]
         if statement.name != "if":
             yield from _walk(block, around, depth + 1)
@@ -52,7 +52,7 @@ def _walk_branches(
     opening: Statement, body: Sequence[Statement], around: tuple[str, ...], depth: int
 ) -> Iterator[tuple[Statement, str]]:
     earlier: list[str] = []
-    for condition, branch in branches(opening, body):
+    for condition, branch in split_branches(opening, body):
         if condition is None:
             texts = [f"NOT ({text})" if " " in text else f"NOT {text}" for text in earlier[:1]]
         else:

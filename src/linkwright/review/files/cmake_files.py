@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 from linkwright.diagnostics import SourceText
 from linkwright.loading.lean_dataclasses import replace
 from linkwright.packages.readers.cmake import CMakeFile, read_cmake
-from linkwright.packages.readers.cmake_language import BUILD, Argument, CMakeProgram, Command, within_package
+from linkwright.packages.readers.cmake_language import BUILD, Argument, CMakeProgram, Command, to_package_path
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_facts import (
@@ -281,7 +281,7 @@ def _read_interfaces(commands: Sequence[Command]) -> Iterator[Fact]:
         if command.name == "rosidl_generate_interfaces":
             for argument in command.arguments:
                 if argument.text.endswith(_INTERFACE_SUFFIXES):
-                    yield _make_fact(FactKind.INTERFACE, argument, name=within_package(argument.text, command.folder))
+                    yield _make_fact(FactKind.INTERFACE, argument, name=to_package_path(argument.text, command.folder))
                 elif argument.text == "DEPENDENCIES":
                     break
         if command.name in ("rosidl_generate_interfaces", "generate_messages"):

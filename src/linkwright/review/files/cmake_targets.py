@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase
-from linkwright.packages.readers.cmake_language import Argument, Command, within_package
+from linkwright.packages.readers.cmake_language import Argument, Command, to_package_path
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_facts import BuildFacts, TargetParts, list_names, new_source
@@ -47,7 +47,7 @@ def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
             elif not is_open(argument.text) and (
                 command.name not in _TEST_COMMANDS or _TEST_SOURCE.fullmatch(argument.text)
             ):
-                parts.sources.setdefault(within_package(argument.text, command.folder), _argument_span(argument))
+                parts.sources.setdefault(to_package_path(argument.text, command.folder), _argument_span(argument))
     return targets
 
 

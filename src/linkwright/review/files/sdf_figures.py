@@ -13,7 +13,7 @@ from linkwright.geometry.single import IDENTITY
 from linkwright.picture import Scene
 from linkwright.review.changes import Figure
 from linkwright.review.quantities import figure_of
-from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of, pose_of
+from linkwright.sdf.frames import FrameError, Frames, PlacedLink, place_links, pose_of
 from linkwright.sdf.links import Inertial
 from linkwright.sdf.models import Model
 from linkwright.sdf.worlds import Sdf
@@ -51,7 +51,7 @@ class _Measures:
     """
 
     def __init__(self, models: Sequence[Model]) -> None:
-        links = [link for model in models for link in links_of(model, Frames(model), IDENTITY, model.name)]
+        links = [link for model in models for link in place_links(model, Frames(model), IDENTITY, model.name)]
         joints = [joint for model in models for joint in _joint_mobility(model)]
         self.links = len(links)
         self.joints = len(joints)

@@ -10,7 +10,7 @@ from linkwright.diagnostics import phrase
 from linkwright.sdf.editing import writing
 from linkwright.sdf.editing.changing import pose_in_world
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import ShapeKind, format_lengths, geometry, inertial, is_size, new_element
+from linkwright.sdf.editing.shapes import ShapeKind, format_lengths, is_size, make_element, make_geometry, make_inertial
 from linkwright.sdf.editing.text import WorldText
 from linkwright.sdf.includes import resolve_includes
 from linkwright.sdf.lights import Light
@@ -43,28 +43,28 @@ DEFAULT_SHAPES: dict[ShapeKind, NewShape] = {
 }
 _LIGHTS: dict[LightKind, tuple[Element, ...]] = {
     "point": (
-        new_element("diffuse", "0.8 0.8 0.8 1"),
-        new_element("specular", "0.2 0.2 0.2 1"),
-        new_element(
-            "attenuation", new_element("range", "20"), new_element("constant", "0.5"), new_element("linear", "0.1")
+        make_element("diffuse", "0.8 0.8 0.8 1"),
+        make_element("specular", "0.2 0.2 0.2 1"),
+        make_element(
+            "attenuation", make_element("range", "20"), make_element("constant", "0.5"), make_element("linear", "0.1")
         ),
     ),
     "directional": (
-        new_element("cast_shadows", "true"),
-        new_element("diffuse", "0.8 0.8 0.8 1"),
-        new_element("specular", "0.2 0.2 0.2 1"),
-        new_element("direction", "-0.5 0.1 -0.9"),
+        make_element("cast_shadows", "true"),
+        make_element("diffuse", "0.8 0.8 0.8 1"),
+        make_element("specular", "0.2 0.2 0.2 1"),
+        make_element("direction", "-0.5 0.1 -0.9"),
     ),
     "spot": (
-        new_element("cast_shadows", "true"),
-        new_element("diffuse", "0.8 0.8 0.8 1"),
-        new_element("specular", "0.2 0.2 0.2 1"),
-        new_element(
-            "attenuation", new_element("range", "20"), new_element("constant", "0.5"), new_element("linear", "0.1")
+        make_element("cast_shadows", "true"),
+        make_element("diffuse", "0.8 0.8 0.8 1"),
+        make_element("specular", "0.2 0.2 0.2 1"),
+        make_element(
+            "attenuation", make_element("range", "20"), make_element("constant", "0.5"), make_element("linear", "0.1")
         ),
-        new_element("direction", "0 0 -1"),
-        new_element(
-            "spot", new_element("inner_angle", "0.4"), new_element("outer_angle", "0.8"), new_element("falloff", "1")
+        make_element("direction", "0 0 -1"),
+        make_element(
+            "spot", make_element("inner_angle", "0.4"), make_element("outer_angle", "0.8"), make_element("falloff", "1")
         ),
     ),
 }
@@ -78,7 +78,7 @@ def add_shape(
     """Add a model that consists of one simple shape.
 
     Args:
-        world: the world.
+        world: the world, which stays unchanged.
         kind: the kind of shape; walls and ramps are static, the others have a mass of 1 kg.
         pose: the pose of the shape's center in the world: x, y, z in m, roll, pitch, yaw in rad.
         size: the size as in `SimpleShape`; empty for the default size.
@@ -95,22 +95,22 @@ def add_shape(
         raise EditError(
             phrase("'{numbers}' is not a valid size for a {kind}", numbers=" ".join(map(str, size)), kind=kind)
         )
-    name = world.free_name(kind)
+    name = world.choose_free_name(kind)
     color = format_lengths((*defaults.color, 1.0))
     children = [
-        new_element("collision", *geometry(kind, shape_size), name="collision"),
-        new_element(
+        make_element("collision", *make_geometry(kind, shape_size), name="collision"),
+        make_element(
             "visual",
-            *geometry(kind, shape_size),
-            new_element("material", new_element("ambient", color), new_element("diffuse", color)),
+            *make_geometry(kind, shape_size),
+            make_element("material", make_element("ambient", color), make_element("diffuse", color)),
             name="visual",
         ),
     ]
     if defaults.mass is not None:
-        children.insert(0, inertial(kind, shape_size, defaults.mass))
-    static_elements = [] if defaults.mass is not None else [new_element("static", "true")]
-    link = new_element("link", *children, name=kind if kind in ("wall", "ramp") else "link")
-    model = new_element("model", writing.pose_element(pose_in_world(pose)), *static_elements, link, name=name)
+        children.insert(0, make_inertial(kind, shape_size, defaults.mass))
+    static_elements = [] if defaults.mass is not None else [make_element("static", "true")]
+    link = make_element("link", *children, name=kind if kind in ("wall", "ramp") else "link")
+    model = make_element("model", writing.make_pose_element(pose_in_world(pose)), *static_elements, link, name=name)
     return _insert(world, model), name
 
 
@@ -118,7 +118,7 @@ def add_light(world: WorldText, kind: LightKind, pose: Sequence[float]) -> tuple
     """Add a light with default properties.
 
     Args:
-        world: the world.
+        world: the world, which stays unchanged.
         kind: the kind of light.
         pose: the pose of the light in the world: x, y, z in m, roll, pitch, yaw in rad.
 
@@ -128,8 +128,8 @@ def add_light(world: WorldText, kind: LightKind, pose: Sequence[float]) -> tuple
     Raises:
         EditError: the pose is invalid.
     """
-    name = world.free_name(f"{kind}_light")
-    light = new_element("light", writing.pose_element(pose_in_world(pose)), *_LIGHTS[kind], name=name, type=kind)
+    name = world.choose_free_name(f"{kind}_light")
+    light = make_element("light", writing.make_pose_element(pose_in_world(pose)), *_LIGHTS[kind], name=name, type=kind)
     return _insert(world, light), name
 
 
@@ -137,7 +137,7 @@ def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[
     """Add an include of a model from another file.
 
     Args:
-        world: the world.
+        world: the world, which stays unchanged.
         address: ``model://NAME``, or any other value that ``<uri>`` may have.
         pose: the pose of the model's frame in the world: x, y, z in m, roll, pitch, yaw in rad.
 
@@ -158,12 +158,12 @@ def add_include(world: WorldText, address: str, pose: Sequence[float]) -> tuple[
     entities: tuple[Model | Light, ...] = (*included.models, *included.lights)
     if not entities:
         raise EditError(phrase("there is no model in '{address}'", address=address))
-    name = world.free_name(entities[0].name)
-    pose_element = writing.pose_element(pose_in_world(pose))
+    name = world.choose_free_name(entities[0].name)
+    pose_element = writing.make_pose_element(pose_in_world(pose))
     return _insert(
-        world, new_element("include", new_element("uri", address), new_element("name", name), pose_element)
+        world, make_element("include", make_element("uri", address), make_element("name", name), pose_element)
     ), name
 
 
 def _insert(world: WorldText, element: Element) -> WorldText:
-    return world.apply_edits([writing.insertion_edit(world.element, [element], after=_ENTITY_TAGS)])
+    return world.apply_edits([writing.make_insertion_edit(world.element, [element], after=_ENTITY_TAGS)])

@@ -9,20 +9,20 @@ from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Transform, compose
 from linkwright.sdf.editing import writing
 from linkwright.sdf.editing.changing import (
-    pose_edits,
+    find_state_entries,
+    get_referenced_name,
+    make_entity_pose_edits,
+    make_reference_renaming_edits,
     pose_of_entity,
-    reference_renaming_edits,
-    referenced_name,
-    state_entries,
 )
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import format_lengths, new_element
+from linkwright.sdf.editing.shapes import format_lengths, make_element
 from linkwright.sdf.editing.text import Entity, WorldText
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.models import Include, Model
 from linkwright.sdf.poses import MODEL, SEPARATOR
 from linkwright.xmltree import Element
-from linkwright.xmltree.patches import Replacement, apply, escaped, indentation, line_ending
+from linkwright.xmltree.patches import Replacement, apply, escape, indentation, line_ending
 
 _INDENT_STEP = "  "
 _POSITION_DIGITS = 3
@@ -47,7 +47,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     """
     entities = [world.entity(entity_name) for entity_name in dict.fromkeys(names)]
     _check_group(entities)
-    name = world.free_name(name.strip() or "group")
+    name = world.choose_free_name(name.strip() or "group")
     world.check_name(name)
     member_names = frozenset(entity.name for entity in entities)
     x, y, z = (
@@ -57,23 +57,23 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     origin: Transform = (x, y, z, 0.0, 0.0, 0.0, 1.0)
     edits: list[Replacement] = []
     for entity in entities:
-        edits += [writing.removal_edit(entry) for entry in state_entries(world, entity.name)]
+        edits += [writing.make_removal_edit(entry) for entry in find_state_entries(world, entity.name)]
         reference_frame = entity.pose.relative_to
-        if reference_frame.partition(SEPARATOR)[0] in member_names and not state_entries(world, entity.name):
+        if reference_frame.partition(SEPARATOR)[0] in member_names and not find_state_entries(world, entity.name):
             continue  # The pose remains relative to another model in the group.
-        edits += _relative_pose_edits(world, entity, origin)
-    edits += outside_reference_edits(world, member_names, name)
+        edits += _make_relative_pose_edits(world, entity, origin)
+    edits += make_outside_reference_edits(world, member_names, name)
     text = world.text
     first_entity = min(entities, key=lambda entity: entity.element.offset)
-    start = writing.element_offsets(first_entity.element)[0]
+    start = writing.find_element_offsets(first_entity.element)[0]
     outer_indent, newline = indentation(text, start) or "", line_ending(text)
     inner_indent = outer_indent + _INDENT_STEP
     static_element = f"{newline}{inner_indent}<static>true</static>" if entities[0].is_static else ""
     pose_element = f"<pose>{format_lengths((x, y, z, 0.0, 0.0, 0.0))}</pose>"
-    group_start = f'<model name="{escaped(name)}">{newline}{inner_indent}{pose_element}{static_element}'
+    group_start = f'<model name="{escape(name)}">{newline}{inner_indent}{pose_element}{static_element}'
     member_texts = []
     for entity in sorted(entities, key=lambda entity: entity.element.offset):
-        begin, end = writing.element_offsets(entity.element)
+        begin, end = writing.find_element_offsets(entity.element)
         member_edits = [edit for edit in edits if begin <= edit.start and edit.end <= end]
         edits = [edit for edit in edits if edit not in member_edits]
         local_edits = [
@@ -82,9 +82,9 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
         ]
         member_texts.append(inner_indent + _indent(apply(text[begin:end], local_edits), _INDENT_STEP))
     group_text = newline.join([group_start, *member_texts, f"{outer_indent}</model>"])
-    begin, end = writing.element_offsets(first_entity.element)
+    begin, end = writing.find_element_offsets(first_entity.element)
     edits.append(Replacement(begin, end, group_text))
-    edits += [writing.removal_edit(entity.element) for entity in entities if entity is not first_entity]
+    edits += [writing.make_removal_edit(entity.element) for entity in entities if entity is not first_entity]
     return world.apply_edits(edits)
 
 
@@ -108,23 +108,27 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     member_elements = [element for element in entity.element.elements() if element.tag in ("model", "include")]
     if len(member_elements) != len(entity.member_names):
         raise EditError(phrase("'{name}' cannot be ungrouped: one of its includes does not exist", name=name))
-    new_names = _free_member_names(world, entity, member_elements)
-    edits: list[Replacement] = [writing.removal_edit(entry) for entry in state_entries(world, name)]
+    new_names = _choose_member_names(world, entity, member_elements)
+    edits: list[Replacement] = [writing.make_removal_edit(entry) for entry in find_state_entries(world, name)]
     frames = world.frames.inside(name)
-    for element, old in zip(member_elements, _old_names(entity, member_elements), strict=True):
-        edits += _release_edits(world, entity, element, old, new_names, compose(entity.world_pose, frames.pose(old)))
+    for element, old in zip(member_elements, _list_old_names(entity, member_elements), strict=True):
+        edits += _make_release_edits(
+            world, entity, element, old, new_names, compose(entity.world_pose, frames.pose(old))
+        )
     for element, attribute in writing.references(world.element):
-        head, colon, tail = referenced_name(element, attribute).partition(SEPARATOR)
+        head, colon, tail = get_referenced_name(element, attribute).partition(SEPARATOR)
         member_name, separator, nested_name = tail.partition(SEPARATOR)
         if head != name:
             continue
         if not colon or member_name not in new_names:
             raise EditError(phrase("'{name}' cannot be ungrouped: another element refers to it", name=name))
         new_reference = f"{new_names[member_name]}{separator}{nested_name}"
-        edits += writing.reference_edits(element, attribute, new_reference)
-    edits += [writing.removal_edit(element) for tag in ("pose", "static") for element in entity.element.elements(tag)]
-    begin, end = writing.element_offsets(entity.element)
-    content_start, content_end = writing.content_offsets(entity.element)
+        edits += writing.make_reference_edits(element, attribute, new_reference)
+    edits += [
+        writing.make_removal_edit(element) for tag in ("pose", "static") for element in entity.element.elements(tag)
+    ]
+    begin, end = writing.find_element_offsets(entity.element)
+    content_start, content_end = writing.find_content_offsets(entity.element)
     content_edits = [
         Replacement(e.start - content_start, e.end - content_start, e.text)
         for e in edits
@@ -138,13 +142,13 @@ def ungroup(world: WorldText, name: str) -> tuple[WorldText, list[str]]:
     return world.apply_edits(edits), list(new_names.values())
 
 
-def outside_reference_edits(world: WorldText, member_names: frozenset[str], group_name: str) -> list[Replacement]:
+def make_outside_reference_edits(world: WorldText, member_names: frozenset[str], group_name: str) -> list[Replacement]:
     """Return the edits that update references to the members of a group from outside the group."""
     names = {name: f"{group_name}{SEPARATOR}{name}" for name in member_names}
-    ranges = [writing.element_offsets(world.entity(name).element) for name in member_names]
+    ranges = [writing.find_element_offsets(world.entity(name).element) for name in member_names]
     return [
         renamed_reference
-        for renamed_reference in reference_renaming_edits(world, names)
+        for renamed_reference in make_reference_renaming_edits(world, names)
         if not any(start <= renamed_reference.start and renamed_reference.end <= end for start, end in ranges)
     ]
 
@@ -167,7 +171,7 @@ def _check_group(entities: Sequence[Entity]) -> None:
         )
 
 
-def _relative_pose_edits(world: WorldText, entity: Entity, origin: Transform) -> list[Replacement]:
+def _make_relative_pose_edits(world: WorldText, entity: Entity, origin: Transform) -> list[Replacement]:
     """Return the edits that write the pose of an entity relative to a group's origin.
 
     The pose of the entity in the world does not change.
@@ -179,14 +183,16 @@ def _relative_pose_edits(world: WorldText, entity: Entity, origin: Transform) ->
     if placement_frame:
         placement_transform = compose(transform_of(local_pose), world.frames.inside(entity.name).pose(placement_frame))
         local_pose = writing.pose_from_transform(placement_transform)
-    edits = pose_edits(entity, local_pose)
+    edits = make_entity_pose_edits(entity, local_pose)
     pose = entity.element.first("pose")
     if pose is not None:
-        edits += [edit for name in ("relative_to", "frame") for edit in writing.attribute_removal_edits(pose, name)]
+        edits += [
+            edit for name in ("relative_to", "frame") for edit in writing.make_attribute_removal_edits(pose, name)
+        ]
     return edits
 
 
-def _old_names(entity: Entity, parts: Sequence[Element]) -> list[str]:
+def _list_old_names(entity: Entity, parts: Sequence[Element]) -> list[str]:
     """Return the names that elements have within their group, in the order of `parts`."""
     assert isinstance(entity.written, Model), "groups are models"
     assert entity.model is not None, "groups are models"
@@ -196,16 +202,16 @@ def _old_names(entity: Entity, parts: Sequence[Element]) -> list[str]:
     return [order[id(part)] for part in parts]
 
 
-def _free_member_names(world: WorldText, entity: Entity, parts: Sequence[Element]) -> dict[str, str]:
+def _choose_member_names(world: WorldText, entity: Entity, parts: Sequence[Element]) -> dict[str, str]:
     names: dict[str, str] = {}
     used_names = world.used_names - {entity.name}
-    for old in _old_names(entity, parts):
-        names[old] = world.free_name(old, used_names)
+    for old in _list_old_names(entity, parts):
+        names[old] = world.choose_free_name(old, used_names)
         used_names |= {names[old]}
     return names
 
 
-def _release_edits(
+def _make_release_edits(
     world: WorldText, entity: Entity, element: Element, old_name: str, names: dict[str, str], world_pose: Transform
 ) -> list[Replacement]:
     """Return the edits that move a member out of its group.
@@ -221,24 +227,26 @@ def _release_edits(
     edits: list[Replacement] = []
     if names[old_name] != old_name:
         edits += (
-            writing.child_edits(element, "name", names[old_name], after=("uri",))
+            writing.make_child_edits(element, "name", names[old_name], after=("uri",))
             if element.tag == "include"
-            else writing.attribute_edits(element, "name", names[old_name])
+            else writing.make_attribute_edits(element, "name", names[old_name])
         )
     if entity.is_static and not model.static:
         preceding_tags = ("uri", "name", "pose")
         child = element.first("static")
         edits += (
-            writing.text_edits(child, "true")
+            writing.make_text_edits(child, "true")
             if child is not None
-            else [writing.insertion_edit(element, [new_element("static", "true")], after=preceding_tags, first=True)]
+            else [
+                writing.make_insertion_edit(element, [make_element("static", "true")], after=preceding_tags, first=True)
+            ]
         )
     pose = element.first("pose")
     reference_frame = model.pose.relative_to
     head, colon, tail = reference_frame.partition(SEPARATOR)
     if pose is not None and head in names:
         attribute = "relative_to" if "relative_to" in pose.attributes else "frame"
-        return [*edits, *writing.attribute_edits(pose, attribute, f"{names[head]}{colon}{tail}")]
+        return [*edits, *writing.make_attribute_edits(pose, attribute, f"{names[head]}{colon}{tail}")]
     if reference_frame not in ("", MODEL):
         raise EditError(
             phrase(
@@ -253,24 +261,26 @@ def _release_edits(
     member = Entity(
         old_name, "model", element, Include("") if element.tag == "include" else model, model, None, world_pose, None
     )
-    edits += pose_edits(member, member_pose)
+    edits += make_entity_pose_edits(member, member_pose)
     if pose is not None:
-        edits += [edit for name in ("relative_to", "frame") for edit in writing.attribute_removal_edits(pose, name)]
+        edits += [
+            edit for name in ("relative_to", "frame") for edit in writing.make_attribute_removal_edits(pose, name)
+        ]
     return edits
 
 
 def _indent(text: str, step: str) -> str:
     """Return a text with all lines except the first indented by `step`, but CDATA unchanged."""
-    return _outside_cdata(text, lambda part: _LINE_START.sub(step, part))
+    return _edit_outside_cdata(text, lambda part: _LINE_START.sub(step, part))
 
 
 def _unindent(text: str, step: str) -> str:
     """Return a text with `step` removed from the start of each line, but CDATA unchanged."""
     pattern = re.compile(rf"(?<=\n){re.escape(step)}")
-    return _outside_cdata(text, lambda part: pattern.sub("", part)) if step else text
+    return _edit_outside_cdata(text, lambda part: pattern.sub("", part)) if step else text
 
 
-def _outside_cdata(text: str, edit: Callable[[str], str]) -> str:
+def _edit_outside_cdata(text: str, edit: Callable[[str], str]) -> str:
     cdata_spans, chunks, position = [match.span() for match in _CDATA.finditer(text)], [], 0
     for start, end in cdata_spans:
         chunks += [edit(text[position:start]), text[start:end]]

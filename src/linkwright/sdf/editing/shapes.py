@@ -20,16 +20,16 @@ from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.materials import Material
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import AT_ORIGIN, RawPose
-from linkwright.sdf.scripts import gazebo_look, with_look
+from linkwright.sdf.scripts import find_gazebo_look, with_look
 from linkwright.sdf.shapes import Polyline, Shape
-from linkwright.sdf.values import Color, shortest_text
+from linkwright.sdf.values import Color, format_shortest
 from linkwright.xmltree import Element, Text
 
 ShapeKind = Literal["box", "cylinder", "sphere", "wall", "ramp"]
 
-COUNTS = {"box": 3, "cylinder": 2, "sphere": 1, "wall": 3, "ramp": 3}
+SIZE_COUNTS = {"box": 3, "cylinder": 2, "sphere": 1, "wall": 3, "ramp": 3}
 """The number of dimensions of each kind of shape: x, y, z; radius and length; or radius."""
-DIGITS = 9
+LENGTH_DIGITS = 9
 """Decimals of a written length in meters, or angle in radians."""
 
 
@@ -48,7 +48,7 @@ class SimpleShape:
     color: Color | None = None
 
 
-def simple_shape(model: Model) -> SimpleShape | None:
+def recognize_simple_shape(model: Model) -> SimpleShape | None:
     """Return the shape of a model that consists of one simple shape, or None for others.
 
     Such a model has one link, whose visuals and collisions all have this shape.
@@ -59,14 +59,14 @@ def simple_shape(model: Model) -> SimpleShape | None:
     parts: list[Visual | Collision] = [*link.visuals, *link.collisions]
     if link.pose != AT_ORIGIN or not parts or any(part.geometry != parts[0].geometry for part in parts):
         return None
-    shape = _shape_dimensions(parts[0].geometry, link.name)
+    shape = _find_dimensions(parts[0].geometry, link.name)
     if shape is None or any(not _is_at(part.pose, shape) for part in parts):
         return None
     kind, size = shape
-    return SimpleShape(kind, size, _display_color(link.visuals[0].material) if link.visuals else None)
+    return SimpleShape(kind, size, _find_display_color(link.visuals[0].material) if link.visuals else None)
 
 
-def _shape_dimensions(geometry: Shape, link: str) -> tuple[ShapeKind, tuple[float, ...]] | None:
+def _find_dimensions(geometry: Shape, link: str) -> tuple[ShapeKind, tuple[float, ...]] | None:
     if isinstance(geometry, Box):
         return "wall" if link == "wall" else "box", geometry.size
     if isinstance(geometry, Cylinder):
@@ -75,14 +75,14 @@ def _shape_dimensions(geometry: Shape, link: str) -> tuple[ShapeKind, tuple[floa
         return "sphere", (geometry.radius,)
     if isinstance(geometry, tuple) and len(geometry) == 1 and link == "ramp":
         (x, y), height = np.ptp(np.array(geometry[0].points or [(0.0, 0.0)]), axis=0).tolist(), geometry[0].height
-        size = round(x, DIGITS), height, round(y, DIGITS)
-        if _is_close(geometry[0].points, wedge(size).points):
+        size = round(x, LENGTH_DIGITS), height, round(y, LENGTH_DIGITS)
+        if _is_close(geometry[0].points, make_wedge(size).points):
             return "ramp", size
     return None
 
 
 def _is_at(pose: RawPose, shape: tuple[ShapeKind, tuple[float, ...]]) -> bool:
-    expected_pose = ramp_pose(shape[1]) if shape[0] == "ramp" else AT_ORIGIN.pose
+    expected_pose = compute_ramp_pose(shape[1]) if shape[0] == "ramp" else AT_ORIGIN.pose
     return not pose.relative_to and _is_close((pose.pose.xyz, pose.pose.rpy), (expected_pose.xyz, expected_pose.rpy))
 
 
@@ -94,10 +94,10 @@ def _is_close(points: tuple[tuple[float, ...], ...], other_points: tuple[tuple[f
     )
 
 
-def _display_color(material: Material | None) -> Color | None:
+def _find_display_color(material: Material | None) -> Color | None:
     if material is None:
         return None
-    look = gazebo_look(material.script.name) if material.script else None
+    look = find_gazebo_look(material.script.name) if material.script else None
     if look is not None:
         material = with_look(material, look)
     return material.diffuse or material.ambient
@@ -105,10 +105,10 @@ def _display_color(material: Material | None) -> Color | None:
 
 def is_size(kind: str, size: tuple[float, ...]) -> bool:
     """Return whether dimensions in meters are valid for a kind of shape."""
-    return len(size) == COUNTS[kind] and all(isfinite(value) and 1e-6 <= value <= 1e6 for value in size)
+    return len(size) == SIZE_COUNTS[kind] and all(isfinite(value) and 1e-6 <= value <= 1e6 for value in size)
 
 
-def wedge(size: tuple[float, ...]) -> Polyline:
+def make_wedge(size: tuple[float, ...]) -> Polyline:
     """Return the ramp's triangular profile, extruded to the ramp's width.
 
     The x and y axes of the polyline are the x and z axes of the ramp.
@@ -117,7 +117,7 @@ def wedge(size: tuple[float, ...]) -> Polyline:
     return Polyline(((-x / 2, -z / 2), (x / 2, -z / 2), (x / 2, z / 2)), y)
 
 
-def ramp_pose(size: tuple[float, ...]) -> Pose:
+def compute_ramp_pose(size: tuple[float, ...]) -> Pose:
     """Return the pose of a ramp's polyline in its link.
 
     A rotation of 90 degrees about x turns the extrusion from z to the ramp's width.
@@ -125,7 +125,7 @@ def ramp_pose(size: tuple[float, ...]) -> Pose:
     return Pose((0.0, size[1] / 2, 0.0), (pi / 2, 0.0, 0.0))
 
 
-def solid_properties(kind: str, size: tuple[float, ...]) -> MassProperties:
+def compute_solid_properties(kind: str, size: tuple[float, ...]) -> MassProperties:
     """Return the mass properties of a solid shape in the frame of its link.
 
     The density is 1 kg/m3.
@@ -144,7 +144,7 @@ def solid_properties(kind: str, size: tuple[float, ...]) -> MassProperties:
     return MassProperties(mass, np.array([x / 6, 0.0, -z / 6]), inertia)
 
 
-def tensor_texts(properties: MassProperties) -> dict[str, str]:
+def format_tensor(properties: MassProperties) -> dict[str, str]:
     """Return the text of each child element of ``<inertia>``, by tag."""
     inertia = properties.inertia
     indices = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
@@ -153,12 +153,12 @@ def tensor_texts(properties: MassProperties) -> dict[str, str]:
 
 def format_number(value: float) -> str:
     """Format a number with six significant digits, as used for masses and inertias."""
-    return shortest_text(float(f"{value:.6g}"))
+    return format_shortest(float(f"{value:.6g}"))
 
 
 def format_length(value: float) -> str:
     """Format a length or angle, rounded to nine decimals."""
-    return shortest_text(round(value, DIGITS))
+    return format_shortest(round(value, LENGTH_DIGITS))
 
 
 def format_lengths(values: tuple[float, ...]) -> str:
@@ -166,47 +166,47 @@ def format_lengths(values: tuple[float, ...]) -> str:
     return " ".join(map(format_length, values))
 
 
-def new_element(tag: str, *children: Element | str, **attributes: str) -> Element:
+def make_element(tag: str, *children: Element | str, **attributes: str) -> Element:
     """Return a new element with attributes, and with texts or elements as its children."""
     element = Element(tag, attributes)
     element.children.extend(Text(child) if isinstance(child, str) else child for child in children)
     return element
 
 
-def inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
+def make_inertial(kind: str, size: tuple[float, ...], mass: float) -> Element:
     """Return the ``<inertial>`` element of a solid shape with a mass in kg."""
-    properties = solid_properties(kind, size).with_mass(mass)
-    children = [new_element("mass", format_number(mass))]
+    properties = compute_solid_properties(kind, size).with_mass(mass)
+    children = [make_element("mass", format_number(mass))]
     if properties.center.any():
-        children.append(new_element("pose", f"{format_lengths(tuple(properties.center.tolist()))} 0 0 0"))
+        children.append(make_element("pose", f"{format_lengths(tuple(properties.center.tolist()))} 0 0 0"))
     children.append(
-        new_element(
-            "inertia", *(new_element(tag, text) for tag, text in tensor_texts(properties).items() if text != "0")
+        make_element(
+            "inertia", *(make_element(tag, text) for tag, text in format_tensor(properties).items() if text != "0")
         )
     )
-    return new_element("inertial", *children)
+    return make_element("inertial", *children)
 
 
-def geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
+def make_geometry(kind: str, size: tuple[float, ...]) -> list[Element]:
     """Return the ``<geometry>`` element of a shape, preceded by any required ``<pose>``."""
     if kind == "ramp":
-        outline = wedge(size)
-        points = (new_element("point", format_lengths(point)) for point in outline.points)
-        shape = new_element("polyline", *points, new_element("height", format_length(outline.height)))
-        pose = ramp_pose(size)
-        text = f"{format_lengths(pose.xyz)} {' '.join(map(shortest_text, pose.rpy))}"
-        return [new_element("pose", text), new_element("geometry", shape)]
+        outline = make_wedge(size)
+        points = (make_element("point", format_lengths(point)) for point in outline.points)
+        shape = make_element("polyline", *points, make_element("height", format_length(outline.height)))
+        pose = compute_ramp_pose(size)
+        text = f"{format_lengths(pose.xyz)} {' '.join(map(format_shortest, pose.rpy))}"
+        return [make_element("pose", text), make_element("geometry", shape)]
     if kind == "cylinder":
         return [
-            new_element(
+            make_element(
                 "geometry",
-                new_element(
+                make_element(
                     "cylinder",
-                    new_element("radius", format_length(size[0])),
-                    new_element("length", format_length(size[1])),
+                    make_element("radius", format_length(size[0])),
+                    make_element("length", format_length(size[1])),
                 ),
             )
         ]
     if kind == "sphere":
-        return [new_element("geometry", new_element("sphere", new_element("radius", format_length(size[0]))))]
-    return [new_element("geometry", new_element("box", new_element("size", format_lengths(size))))]
+        return [make_element("geometry", make_element("sphere", make_element("radius", format_length(size[0]))))]
+    return [make_element("geometry", make_element("box", make_element("size", format_lengths(size))))]

@@ -14,7 +14,7 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.single import Transform
 from linkwright.sdf.actors import Actor
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import SimpleShape, simple_shape
+from linkwright.sdf.editing.shapes import SimpleShape, recognize_simple_shape
 from linkwright.sdf.frames import FrameError, Frames, transform_of
 from linkwright.sdf.includes import resolve_includes
 from linkwright.sdf.joints import Joint
@@ -30,7 +30,7 @@ from linkwright.sdf.worlds import World
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import Replacement, apply
 
-_MATCH_NUMBERED_NAME = re.compile(r"(.+?)_\d+").fullmatch
+_match_numbered_name = re.compile(r"(.+?)_\d+").fullmatch
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +165,7 @@ class WorldText:
             diagnostic = error.diagnostics[0]
             raise EditError(phrase("the result would not be valid SDF: {reason}", reason=diagnostic.message)) from None
 
-    def free_name(self, preferred_name: str, used_names: AbstractSet[str] | None = None) -> str:
+    def choose_free_name(self, preferred_name: str, used_names: AbstractSet[str] | None = None) -> str:
         """Return the preferred name, or this name with the first free number if it is in use.
 
         `used_names` are the names in use; None for the names in this world.
@@ -173,7 +173,7 @@ class WorldText:
         used_names = self.used_names if used_names is None else used_names
         if preferred_name not in used_names:
             return preferred_name
-        numbered_match = _MATCH_NUMBERED_NAME(preferred_name)
+        numbered_match = _match_numbered_name(preferred_name)
         stem = numbered_match[1] if numbered_match else preferred_name
         number = 2
         while f"{stem}_{number}" in used_names:
@@ -216,7 +216,7 @@ class WorldText:
         resolved = self._included.entities.get(id(element)) if isinstance(written, Include) else written
         if isinstance(resolved, Model):
             model = self._models.get(resolved.name, resolved)
-            shape = simple_shape(written) if isinstance(written, Model) else None
+            shape = recognize_simple_shape(written) if isinstance(written, Model) else None
             return Entity(resolved.name, "model", element, written, model, None, self._world_pose(model), shape)
         if isinstance(resolved, Light):
             light = self._lights.get(resolved.name, resolved)

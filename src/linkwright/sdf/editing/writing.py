@@ -9,18 +9,18 @@ from math import atan2, degrees, hypot
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Pose, Quaternion, Transform, pose_quaternion
 from linkwright.sdf.editing.errors import EditError
-from linkwright.sdf.editing.shapes import format_length, format_lengths, new_element
+from linkwright.sdf.editing.shapes import format_length, format_lengths, make_element
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import (
     Replacement,
-    block,
-    element_range,
-    escaped,
+    escape,
+    extend_to_whole_lines,
+    find_element_range,
     find_start_tag,
+    format_block,
     indentation,
-    insertion,
     line_ending,
-    whole_lines,
+    make_insertion,
 )
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
 
@@ -28,76 +28,76 @@ _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _TOLERANCE = 0.5e-9
 """The maximum difference for which a written number is kept."""
 _GIMBAL_LOCK_TOLERANCE = 1e-9
-_TRUE = frozenset({"true", "1"})
+_TRUE_TEXTS = frozenset({"true", "1"})
 
 
-def source_text(element: Element) -> str:
+def get_source_text(element: Element) -> str:
     """Return the text of the file that contains an element."""
     assert element.source is not None, "it was read from a text"
     return element.source.text
 
 
-def element_offsets(element: Element) -> tuple[int, int]:
+def find_element_offsets(element: Element) -> tuple[int, int]:
     """Return the offsets of an element in its text: of its ``<``, and after its last ``>``.
 
     Raises:
         EditError: the element comes from an XML entity.
     """
-    element_span = element_range(element)
+    element_span = find_element_range(element)
     if element_span is None:
         raise EditError(phrase("<{tag}> cannot be edited because it comes from an XML entity", tag=element.tag))
     return element_span
 
 
-def content_offsets(element: Element) -> tuple[int, int]:
+def find_content_offsets(element: Element) -> tuple[int, int]:
     """Return the start and end offsets of an element's content.
 
     For ``<a/>``, the range is empty and after the tag.
     """
-    start, end = element_offsets(element)
+    start, end = find_element_offsets(element)
     tag = find_start_tag(element)
     assert tag is not None, "its range is known"
-    return (tag.end, tag.end) if tag.is_empty_element else (tag.end, source_text(element).rindex("</", start, end))
+    return (tag.end, tag.end) if tag.is_empty_element else (tag.end, get_source_text(element).rindex("</", start, end))
 
 
-def text_edits(element: Element, value: str) -> list[Replacement]:
+def make_text_edits(element: Element, value: str) -> list[Replacement]:
     """Return the edits that set the text of an element, and keep surrounding whitespace."""
-    text, (start, end) = source_text(element), content_offsets(element)
+    text, (start, end) = get_source_text(element), find_content_offsets(element)
     tag = find_start_tag(element)
     assert tag is not None, "its content is known"
     if tag.is_empty_element:
-        return [Replacement(tag.insertion_offset, tag.end, f">{escaped(value)}</{element.tag}>")]
+        return [Replacement(tag.insertion_offset, tag.end, f">{escape(value)}</{element.tag}>")]
     old = text[start:end]
     if "<" not in old and old.strip():
         start, end = start + len(old) - len(old.lstrip()), start + len(old.rstrip())
-    return [] if text[start:end] == escaped(value) else [Replacement(start, end, escaped(value))]
+    return [] if text[start:end] == escape(value) else [Replacement(start, end, escape(value))]
 
 
-def number_edits(element: Element, numbers: Sequence[float]) -> list[Replacement]:
+def make_number_edits(element: Element, numbers: Sequence[float]) -> list[Replacement]:
     """Return the edits that set the numbers of an element.
 
     Unchanged numbers are kept as written.
     """
-    text, (start, end) = source_text(element), content_offsets(element)
+    text, (start, end) = get_source_text(element), find_content_offsets(element)
     uncommented_text = _COMMENT.sub(lambda comment: " " * len(comment[0]), text[start:end])
     number_matches = list(re.finditer(r"\S+", uncommented_text))
     if len(number_matches) != len(numbers) or "<" in uncommented_text or "&" in uncommented_text:
-        return text_edits(element, " ".join(map(format_length, numbers)))
+        return make_text_edits(element, " ".join(map(format_length, numbers)))
     return [
         Replacement(start + number_match.start(), start + number_match.end(), format_length(number))
         for number_match, number in zip(number_matches, numbers, strict=True)
-        if not _has_value(number_match[0], number)
+        if not _is_number(number_match[0], number)
     ]
 
 
-def _has_value(text: str, number: float) -> bool:
+def _is_number(text: str, number: float) -> bool:
     try:
         return bool(abs(float(text) - number) <= _TOLERANCE)
     except ValueError:
         return False
 
 
-def child_edits(
+def make_child_edits(
     owner: Element, tag: str, value: str | Sequence[float], *, after: tuple[str, ...] = ()
 ) -> list[Replacement]:
     """Return the edits that set the value of a child element.
@@ -112,12 +112,12 @@ def child_edits(
     """
     child = owner.first(tag)
     if child is not None:
-        return text_edits(child, value) if isinstance(value, str) else number_edits(child, value)
-    child_element = new_element(tag, value if isinstance(value, str) else format_lengths(tuple(value)))
-    return [insertion_edit(owner, [child_element], after=after)]
+        return make_text_edits(child, value) if isinstance(value, str) else make_number_edits(child, value)
+    child_element = make_element(tag, value if isinstance(value, str) else format_lengths(tuple(value)))
+    return [make_insertion_edit(owner, [child_element], after=after)]
 
 
-def insertion_edit(
+def make_insertion_edit(
     owner: Element, new_elements: list[Element], *, after: tuple[str, ...] = (), first: bool = False
 ) -> Replacement:
     """Return the edit that inserts elements into a parent element.
@@ -129,41 +129,43 @@ def insertion_edit(
         EditError: the owner comes from an XML entity.
     """
     preceding_children = [child for child in owner.elements() if child.tag in after]
-    edit = insertion(owner, new_elements, after=preceding_children[-1] if preceding_children else None, first=first)
+    edit = make_insertion(
+        owner, new_elements, after=preceding_children[-1] if preceding_children else None, first=first
+    )
     if edit is None:
         raise EditError(phrase("<{tag}> cannot be edited because it comes from an XML entity", tag=owner.tag))
     return edit
 
 
-def attribute_edits(element: Element, name: str, value: str) -> list[Replacement]:
+def make_attribute_edits(element: Element, name: str, value: str) -> list[Replacement]:
     """Return the edits that set an attribute, and keep existing quote characters.
 
     A missing attribute is appended to the start tag.
     """
-    text = source_text(element)
+    text = get_source_text(element)
     value_range = attribute_value_range(text, element.offset, name)
     if value_range is None:
-        element_offsets(element)
+        find_element_offsets(element)
         tag = find_start_tag(element)
         assert tag is not None, "its range is known"
-        return [Replacement(tag.insertion_offset, tag.insertion_offset, f' {name}="{escaped(value)}"')]
-    escaped_value = escaped(value)
+        return [Replacement(tag.insertion_offset, tag.insertion_offset, f' {name}="{escape(value)}"')]
+    escaped_value = escape(value)
     if text[value_range[0] - 1] == "'":
         escaped_value = escaped_value.replace("&quot;", '"').replace("'", "&apos;")
     return [Replacement(*value_range, escaped_value)]
 
 
-def reference_edits(element: Element, attribute: str | None, name: str) -> list[Replacement]:
+def make_reference_edits(element: Element, attribute: str | None, name: str) -> list[Replacement]:
     """Return the edits that set the name in a reference.
 
     The name is in an attribute, or in the text of the element if `attribute` is None.
     """
-    return text_edits(element, name) if attribute is None else attribute_edits(element, attribute, name)
+    return make_text_edits(element, name) if attribute is None else make_attribute_edits(element, attribute, name)
 
 
-def attribute_removal_edits(element: Element, name: str) -> list[Replacement]:
+def make_attribute_removal_edits(element: Element, name: str) -> list[Replacement]:
     """Return the edits that remove an attribute and the whitespace before it."""
-    text = source_text(element)
+    text = get_source_text(element)
     name_range, value_range = (
         find_range(text, element.offset, name) for find_range in (attribute_name_range, attribute_value_range)
     )
@@ -173,36 +175,36 @@ def attribute_removal_edits(element: Element, name: str) -> list[Replacement]:
     return [Replacement(name_range[0] - blank_count, value_range[1] + 1, "")]
 
 
-def removal_edit(element: Element) -> Replacement:
+def make_removal_edit(element: Element) -> Replacement:
     """Return the edit that removes an element and the lines that become empty."""
-    return Replacement(*whole_lines(source_text(element), *element_offsets(element)), "")
+    return Replacement(*extend_to_whole_lines(get_source_text(element), *find_element_offsets(element)), "")
 
 
-def replacement_edit(element: Element, new_elements: list[Element]) -> Replacement:
+def make_replacement_edit(element: Element, new_elements: list[Element]) -> Replacement:
     """Return the edit that replaces an element with other elements.
 
     The element is removed if `new_elements` is empty.
     """
     if not new_elements:
-        return removal_edit(element)
-    text, (start, end) = source_text(element), element_offsets(element)
+        return make_removal_edit(element)
+    text, (start, end) = get_source_text(element), find_element_offsets(element)
     indent = indentation(text, start)
     separator = "" if indent is None else f"{line_ending(text)}{indent}"
-    return Replacement(start, end, separator.join(block(element) for element in new_elements))
+    return Replacement(start, end, separator.join(format_block(element) for element in new_elements))
 
 
-def pose_edits(element: Element, pose: Pose) -> list[Replacement]:
-    """Return the edits that set a ``<pose>``, in the units and rotation format that it declares."""
+def make_pose_edits(element: Element, pose: Pose) -> list[Replacement]:
+    """Return the edits that set a ``<pose>``, in its declared units and rotation format."""
     if element.attributes.get("rotation_format", "").strip() == "quat_xyzw":
-        numbers: tuple[float, ...] = (*pose.xyz, *_nearest_quaternion(element, pose_quaternion(pose)))
-    elif element.attributes.get("degrees", "").strip().casefold() in _TRUE:
+        numbers: tuple[float, ...] = (*pose.xyz, *_choose_nearest_quaternion(element, pose_quaternion(pose)))
+    elif element.attributes.get("degrees", "").strip().casefold() in _TRUE_TEXTS:
         numbers = (*pose.xyz, *map(degrees, pose.rpy))
     else:
         numbers = (*pose.xyz, *pose.rpy)
-    return number_edits(element, numbers)
+    return make_number_edits(element, numbers)
 
 
-def _nearest_quaternion(element: Element, quaternion: Quaternion) -> Quaternion:
+def _choose_nearest_quaternion(element: Element, quaternion: Quaternion) -> Quaternion:
     """Return a quaternion or its negation, whichever is nearer to an element's quaternion."""
     try:
         written_quaternion = [float(word) for word in element.text().split()[3:]]
@@ -229,9 +231,9 @@ def pose_from_transform(transform: Transform) -> Pose:
     return Pose(transform[:3], rpy)
 
 
-def pose_element(pose: Pose) -> Element:
+def make_pose_element(pose: Pose) -> Element:
     """Return a new ``<pose>`` element."""
-    return new_element("pose", format_lengths((*pose.xyz, *pose.rpy)))
+    return make_element("pose", format_lengths((*pose.xyz, *pose.rpy)))
 
 
 def references(world: Element) -> Iterator[tuple[Element, str | None]]:

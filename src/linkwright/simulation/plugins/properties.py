@@ -18,7 +18,7 @@ from linkwright.geometry.validity import TOLERANCE, is_positive_definite, triang
 from linkwright.messages import Vector3, from_values
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.sdf.worlds import physics_of
+from linkwright.sdf.worlds import find_physics
 from linkwright.simulation.plugins.entities import Entities, fill_response, pose_to_message, vector_components
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -146,7 +146,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
     def _get_physics(self, _: Any, response: Any) -> Any:
         self.simulation.refresh()
         response.time_step = self.simulation.step / NANOSECONDS_PER_SECOND
-        response.max_update_rate = physics_of(self.context.world).real_time_update_rate
+        response.max_update_rate = find_physics(self.context.world).real_time_update_rate
         response.gravity = from_values(Vector3, np.asarray(self.simulation.model.opt.gravity).tolist())
         response.success, response.status_message = True, "GetPhysicsProperties: got properties"
         return response

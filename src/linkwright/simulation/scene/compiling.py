@@ -12,7 +12,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign,
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.models import Model
 from linkwright.sdf.resources import ResourceFinder
-from linkwright.sdf.worlds import World, physics_of
+from linkwright.sdf.worlds import World, find_physics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
@@ -107,7 +107,7 @@ def step_to_nanoseconds(step: float, world: World) -> int:
     if not (isfinite(step) and round(step * NANOSECONDS_PER_SECOND) > 0):
         message = phrase("a time step of {step} s cannot be simulated", step=step)
         hint = phrase("use a time step such as <max_step_size>0.001")
-        physics = physics_of(world)
+        physics = find_physics(world)
         element = physics.element if physics.max_step_size == step else None
         if element is None:
             raise LinkwrightError(Diagnostic("SIM106", message, hint=hint))

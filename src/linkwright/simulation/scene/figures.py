@@ -12,8 +12,8 @@ import numpy as np
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose
 from linkwright.sdf.actors import Actor
-from linkwright.sdf.figures import actor_model, road_model
-from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of
+from linkwright.sdf.figures import make_actor_model, make_road_model
+from linkwright.sdf.frames import FrameError, Frames, PlacedLink, place_links
 from linkwright.sdf.models import Model
 from linkwright.sdf.walking import Walk
 from linkwright.sdf.worlds import World
@@ -73,8 +73,8 @@ def create_figures(world: World, meshes: MeshLibrary) -> list[Figure]:
         actor = _choose_free_name(actor, used_names)
         try:
             pose = frames.placed(actor.pose)
-            model = actor_model(actor, _find_skin_origin(actor, meshes))
-            links = tuple(links_of(model, Frames(model), IDENTITY, actor.name))
+            model = make_actor_model(actor, _find_skin_origin(actor, meshes))
+            links = tuple(place_links(model, Frames(model), IDENTITY, actor.name))
         except FrameError:
             continue
         walk = Walk(actor.script)
@@ -82,8 +82,8 @@ def create_figures(world: World, meshes: MeshLibrary) -> list[Figure]:
         initial_pose = compose(origin, walk.pose(0.0)) if walk.has_waypoints else pose
         figures.append(Figure(model, initial_pose, walk if walk.has_waypoints else None, origin, links))
     for road in world.roads:
-        model = _choose_free_name(road_model(road), used_names)
-        links = tuple(links_of(model, Frames(model), IDENTITY, model.name))
+        model = _choose_free_name(make_road_model(road), used_names)
+        links = tuple(place_links(model, Frames(model), IDENTITY, model.name))
         figures.append(Figure(model, IDENTITY, None, IDENTITY, links))
     return figures
 

@@ -16,7 +16,7 @@ from linkwright.geometry.single import IDENTITY, Transform, compose, invert, rot
 from linkwright.sdf.frames import FrameError, Frames
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR, WORLD
-from linkwright.sdf.worlds import World, gravity_of, physics_of
+from linkwright.sdf.worlds import World, find_gravity, find_physics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import SECOND_AXIS_SUFFIX, BodyWriter, compute_hinge_anchors
 from linkwright.simulation.scene.connections import ConnectedModel, find_connections, get_model_name
@@ -159,7 +159,7 @@ class Scene:
 
         If the time step is 0, report a finding and return the default.
         """
-        physics = physics_of(world)
+        physics = find_physics(world)
         if physics.max_step_size:
             return physics.max_step_size
         message = phrase("the time step is 0 s; the world is simulated in steps of {step} s", step=_DEFAULT_STEP)
@@ -185,7 +185,7 @@ class Scene:
         The models do not change.
         """
         self._connections = find_connections(world)
-        self.spec.option.gravity = list(gravity_of(world))
+        self.spec.option.gravity = list(find_gravity(world))
         if step == self.step:
             return
         self.step = self.spec.option.timestep = step
@@ -202,7 +202,7 @@ class Scene:
         """
         option = self.spec.option
         option.timestep = self.step
-        option.gravity = list(gravity_of(world))
+        option.gravity = list(find_gravity(world))
         option.cone = self._mujoco.mjtCone.mjCONE_ELLIPTIC
         option.impratio = 10.0
         option.noslip_iterations = 3  # otherwise a wheel that accelerates suddenly jumps

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from linkwright.geometry.single import Transform, Vector3, compose
-from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of
+from linkwright.sdf.frames import FrameError, Frames, PlacedLink, place_links
 from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR, WORLD
@@ -74,7 +74,7 @@ def build_kinematic_trees(model: Model, name: str, pose: Transform) -> Kinematic
         FrameError: the pose of a link is not defined.
     """
     frames = Frames(model)
-    links = {placed_link.name: placed_link for placed_link in links_of(model, frames, pose, name)}
+    links = {placed_link.name: placed_link for placed_link in place_links(model, frames, pose, name)}
     joints: dict[str, PlacedJoint] = {}
     for owner, owner_frames, owner_pose, path in _find_nested_models(model, frames, pose, name):
         for joint in owner.joints:

@@ -12,7 +12,7 @@ from linkwright.sdf.frames import FrameError, Frames
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import AT_ORIGIN
 from linkwright.sdf.resources import ResourceFinder
-from linkwright.sdf.worlds import World, physics_of
+from linkwright.sdf.worlds import World, find_physics
 from linkwright.simulation.scene.compiling import count_links
 from linkwright.simulation.scene.scene import SceneModel
 from linkwright.simulation.server.motion import Motion
@@ -179,7 +179,7 @@ def get_properties_used_by_plugins(world: World) -> tuple[object, ...]:
 
     The server compares these properties with those of a world that replaces this one.
     """
-    physics = physics_of(world)
+    physics = find_physics(world)
     joints = tuple(world.joints)
     return world.name, world.spherical_coordinates, world.magnetic_field, world.wind, physics.max_step_size, joints
 

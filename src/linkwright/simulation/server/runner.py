@@ -10,7 +10,7 @@ from math import inf
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import run_logged
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
-from linkwright.sdf.worlds import physics_of
+from linkwright.sdf.worlds import find_physics
 from linkwright.simulation.server.pace import PaceWatch
 from linkwright.simulation.server.server import SimulationServer
 
@@ -107,7 +107,7 @@ class Runner:
     def _restart_timing(self) -> None:
         """Restart the measurement of real time, and update the factor from the current world."""
         self._factor = (
-            self._requested_factor or max(physics_of(self._server.simulation.world).real_time_factor, 0.0) or 1.0
+            self._requested_factor or max(find_physics(self._server.simulation.world).real_time_factor, 0.0) or 1.0
         )
         self._reference_times = self._last_measurement = (time.monotonic(), self._server.simulation.time)
 

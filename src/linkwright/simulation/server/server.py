@@ -18,7 +18,7 @@ from linkwright.graph.stepped.calls import Calls
 from linkwright.graph.stepped.exchange import Exchange
 from linkwright.sdf.comparison import have_equal_content
 from linkwright.sdf.models import Model
-from linkwright.sdf.plugins import Plugin, library_name, original_library
+from linkwright.sdf.plugins import Plugin, find_original_library, library_name
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import with_saved_state
 from linkwright.sdf.worlds import World
@@ -375,7 +375,7 @@ class SimulationServer:
         if context.plugin is None:
             assert context.sensor is not None
             return find_sensor_class(context.sensor.sensor.type)
-        filename, original = context.plugin.filename, original_library(context.plugin.name)
+        filename, original = context.plugin.filename, find_original_library(context.plugin.name)
         found_class = find_plugin_class(library_name(filename))
         if (
             found_class is None

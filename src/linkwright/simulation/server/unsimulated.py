@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from linkwright.sdf.models import Model
-from linkwright.sdf.reader import OPEN
+from linkwright.sdf.reader import OPEN_TAGS
 from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.registry import is_built_in
 from linkwright.xmltree import Element
@@ -42,7 +42,7 @@ def _collect_unsimulated_names(roots: Iterable[Element]) -> list[str]:
                 name = _describe_unsimulated(element, child)
                 if name:
                     names.add(name)
-                elif child.tag not in OPEN and child.tag != "state":
+                elif child.tag not in OPEN_TAGS and child.tag != "state":
                     pending.append(child)
     return sorted(names)
 

@@ -40,9 +40,9 @@ class LoadedWorld(NamedTuple):
     @property
     def mesh_files(self) -> tuple[Path, ...]:
         """The existing mesh files of the world's models."""
-        from linkwright.sdf.mesh_files import mesh_files
+        from linkwright.sdf.mesh_files import find_mesh_files
 
-        return mesh_files(self.world.models, self.finder)
+        return find_mesh_files(self.world.models, self.finder)
 
 
 def load_world(name: str, text: str | None = None, environment: Mapping[str, str] | None = None) -> LoadedWorld:

@@ -48,7 +48,7 @@ def get_interface_path(interface_name: str) -> str:
         raise ValueError(f"Invalid name '{interface_name}'. Expected three parts separated by '/'")
     package, kind, name = parts
     share = current_finder().find(package)
-    path = interface_files.interface_file(share, kind, name) if share is not None else None
+    path = interface_files.find_interface_file(share, kind, name) if share is not None else None
     if path is None:
         raise LookupError(f"Could not find the interface '{interface_name}'")
     return str(path)

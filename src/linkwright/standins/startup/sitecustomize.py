@@ -201,9 +201,13 @@ def _report_with_hint(kind: type[BaseException], error: BaseException, traceback
     if isinstance(error, ImportError) and name and not _stand_ins.has_real_ros():
         try:
             _make_importable()
-            from linkwright.packages.programs.missing_modules import known_provider_hint, other_module_hint
+            from linkwright.packages.programs.missing_modules import make_known_provider_hint, make_other_module_hint
 
-            hint = known_provider_hint(name) if isinstance(error, ModuleNotFoundError) else other_module_hint(error)
+            hint = (
+                make_known_provider_hint(name)
+                if isinstance(error, ModuleNotFoundError)
+                else make_other_module_hint(error)
+            )
         except Exception:  # noqa: BLE001 - the program's own error is reported
             return
         if hint:

@@ -30,8 +30,8 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
     """
 
     depth = 0
-    merged = 0
-    large = 0
+    merged_pair_count = 0
+    large_number_count = 0
 
     def resolve(self, kind: Any, value: Any, implicit: Any) -> Any:
         """Return the tag of a node without an explicit tag."""

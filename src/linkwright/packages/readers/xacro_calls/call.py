@@ -82,16 +82,16 @@ class CallingFile:
             self.choices[_LAUNCH_PREFIX + name] = Choice(tuple((value,) for value in values))
 
 
-def launch_argument(name: str) -> Placeholder:
+def make_launch_argument(name: str) -> Placeholder:
     """Return the placeholder for the value of a launch argument."""
     return Placeholder(_LAUNCH_PREFIX + name)
 
 
-def launch_choice(name: str) -> str:
+def name_launch_choice(name: str) -> str:
     """Return the name of the choice for a launch argument."""
     return _LAUNCH_PREFIX + name
 
 
-def launch_names(choices: Mapping[str, Choice]) -> dict[str, str]:
+def find_launch_names(choices: Mapping[str, Choice]) -> dict[str, str]:
     """Return the choices that are launch arguments: name of the choice -> name of the argument."""
     return {name: name.removeprefix(_LAUNCH_PREFIX) for name in choices if name.startswith(_LAUNCH_PREFIX)}

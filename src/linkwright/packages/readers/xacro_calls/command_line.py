@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from linkwright.loading.deferred import lazy_pattern
-from linkwright.packages.readers.xacro_calls.texts import Placeholder, Share, Text, joined, literal
+from linkwright.packages.readers.xacro_calls.texts import Placeholder, Share, Text, join_texts, make_literal
 
 _PROGRAM = lazy_pattern(r"(^|/)xacro(\.py)?$")
 _NAME = lazy_pattern(r"[A-Za-z_][\w.-]*:=")
@@ -18,7 +18,7 @@ def parse_xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
 
     The result is None for other command lines. Words with unknown contents become an argument without a name.
     """
-    words = list(_words(line))
+    words = list(_split_words(line))
     start = next((index for index, word in enumerate(words) if _is_program(word)), None)
     if start is None:
         return None
@@ -33,7 +33,7 @@ def parse_xacro_command(line: Text) -> tuple[Text, dict[str, Text]] | None:
             next(word_iterator, None)
         elif _NAME.match(first):
             name, _, value = first.partition(":=")
-            arguments[name] = _unquote((*literal(value), *word[1:]))
+            arguments[name] = _unquote((*make_literal(value), *word[1:]))
         elif word and not first.startswith("-") and path is None and not _is_program(word):
             path = _unquote(word)
         elif word and not isinstance(word[0], str):
@@ -46,7 +46,7 @@ def _is_program(word: Text) -> bool:
     return bool(word) and isinstance(word[-1], str) and _PROGRAM.search(word[-1]) is not None and len(word) <= 2
 
 
-def _words(line: Text) -> Iterator[Text]:
+def _split_words(line: Text) -> Iterator[Text]:
     """Yield the words of a command line.
 
     Quotes protect whitespace, and are preserved in the words.
@@ -64,12 +64,12 @@ def _words(line: Text) -> Iterator[Text]:
             elif letter in "\"'":
                 quote = letter
             elif letter.isspace():
-                word.append(literal(piece[start:index]))
+                word.append(make_literal(piece[start:index]))
                 start = index + 1
                 if any(word):
                     yield _join_pieces(word)
                 word = []
-        word.append(literal(piece[start:]))
+        word.append(make_literal(piece[start:]))
     if any(word):
         yield _join_pieces(word)
 
@@ -77,7 +77,7 @@ def _words(line: Text) -> Iterator[Text]:
 def _join_pieces(parts: Iterable[Text]) -> Text:
     """Concatenate texts, and merge adjacent strings."""
     pieces: list[str | Share | Placeholder] = []
-    for piece in joined(parts):
+    for piece in join_texts(parts):
         previous = pieces[-1] if pieces else None
         if isinstance(piece, str) and isinstance(previous, str):
             pieces[-1] = previous + piece
@@ -93,6 +93,6 @@ def _unquote(word: Text) -> Text:
     first, last = word[0], word[-1]
     if isinstance(first, str) and isinstance(last, str) and first[:1] in ("'", '"') and last[-1:] == first[:1]:
         if len(word) == 1:
-            return literal(first[1:-1])
-        return (*literal(first[1:]), *word[1:-1], *literal(last[:-1]))
+            return make_literal(first[1:-1])
+        return (*make_literal(first[1:]), *word[1:-1], *make_literal(last[:-1]))
     return word

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from linkwright.diagnostics import LinkwrightError, SourceText, Span
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
-from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall, launch_argument
+from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall, make_launch_argument
 from linkwright.packages.readers.xacro_calls.command_line import parse_xacro_command
-from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Placeholder, Share, Text, literal
+from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Placeholder, Share, Text, make_literal
 from linkwright.xmltree import Element, parse
 
 _TAG_AND_REST = lazy_pattern(r"\s*(\S+)\s*(.*)", re.DOTALL)
@@ -38,7 +38,7 @@ def read_xml(source: SourceText) -> CallingFile:
         values = {key: parse_markup_text(value, source.name) for key, value in element.attributes.items()}
         if element.tag in ("arg", "let") and id(element) not in include_children and "name" in element.attributes:
             default = values.get("default", values.get("value"))
-            file.declare(element.attributes["name"], default, tuple(_choice_values(element)))
+            file.declare(element.attributes["name"], default, tuple(_read_choice_values(element)))
         elif element.tag == "include" and "file" in values:
             arguments = {
                 child.attributes.get("name", ""): parse_markup_text(child.attributes["value"], source.name)
@@ -52,10 +52,10 @@ def read_xml(source: SourceText) -> CallingFile:
     return file
 
 
-def _choice_values(element: Element) -> Iterator[Text]:
+def _read_choice_values(element: Element) -> Iterator[Text]:
     for child in element.elements():
         if child.tag == "choice" and "value" in child.attributes:
-            yield literal(child.attributes["value"])
+            yield make_literal(child.attributes["value"])
 
 
 def read_yaml(source: SourceText) -> CallingFile:
@@ -85,33 +85,35 @@ def _read_entity(entity: Any, source: SourceText, file: CallingFile) -> None:
         attributes = value if isinstance(value, dict) else {}
         if tag in ("arg", "let") and "name" in attributes:
             default = attributes.get("default", attributes.get("value"))
-            choices = tuple(literal(str(mapping["value"])) for mapping in _mappings(attributes.get("choice"), "value"))
+            choices = tuple(
+                make_literal(str(mapping["value"])) for mapping in _filter_mappings(attributes.get("choice"), "value")
+            )
             default_text = None if default is None else parse_markup_text(str(default), source.name)
             file.declare(str(attributes["name"]), default_text, choices)
             continue
         if tag == "include" and "file" in attributes:
-            argument_entries = _mappings(attributes.get("arg", attributes.get("let")), "name")
+            argument_entries = _filter_mappings(attributes.get("arg", attributes.get("let")), "name")
             arguments = {
                 str(item["name"]): parse_markup_text(str(item.get("value", "")), source.name)
                 for item in argument_entries
             }
             file.inclusions.append(Inclusion(parse_markup_text(str(attributes["file"]), source.name), arguments))
-        for text in _strings(value):
+        for text in _iterate_strings(value):
             _record_calls(file, list(_find_commands(text, source.name)), source.span(max(source.text.find(text), 0)))
         for nested_entity in value if isinstance(value, list) else ():
             _read_entity(nested_entity, source, file)
 
 
-def _mappings(value: Any, key: str) -> list[dict[Any, Any]]:
+def _filter_mappings(value: Any, key: str) -> list[dict[Any, Any]]:
     """Return the items of a list that are mappings and have a key."""
     return [item for item in value if isinstance(item, dict) and key in item] if isinstance(value, list) else []
 
 
-def _strings(value: Any) -> Iterator[str]:
+def _iterate_strings(value: Any) -> Iterator[str]:
     if isinstance(value, str):
         yield value
     for item in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
-        yield from _strings(item)
+        yield from _iterate_strings(item)
 
 
 def _record_calls(file: CallingFile, lines: list[Text], span: Span | None) -> None:
@@ -125,16 +127,16 @@ def parse_markup_text(text: str, file: str) -> Text:
     """Convert a text of a launch file, with a placeholder for each ``$(...)``.
 
     Args:
-        text: the text.
+        text: an attribute value or a YAML scalar, as written.
         file: the path of the launch file, for ``$(dirname)``.
     """
     pieces: list[str | Share | Placeholder] = []
     position = 0
     for start, end in _find_substitutions(text):
-        pieces += literal(text[position:start])
+        pieces += make_literal(text[position:start])
         pieces += _read_substitution(text[start + 2 : end - 1], file)
         position = end
-    return (*pieces, *literal(text[position:]))
+    return (*pieces, *make_literal(text[position:]))
 
 
 def _find_substitutions(text: str) -> Iterator[tuple[int, int]]:
@@ -157,13 +159,13 @@ def _read_substitution(content: str, file: str) -> Text:
         return (UNKNOWN,)
     tag, argument = match[1], match[2].strip().strip("'\"")
     if tag in _ARGUMENT_TAGS:
-        return (launch_argument(argument),)
+        return (make_launch_argument(argument),)
     if tag in _SHARE_TAGS:
         return (Share(parse_markup_text(argument, file)),)
     if tag == "dirname":
-        return literal(os.path.dirname(file))  # noqa: PTH120 - a part of a path as text
+        return make_literal(os.path.dirname(file))  # noqa: PTH120 - a part of a path as text
     if tag == "find-exec":
-        return literal(argument)
+        return make_literal(argument)
     if tag in ("env", "optenv"):
         default = argument.partition(" ")[2]
         return parse_markup_text(default.strip(), file) if default else (UNKNOWN,)

@@ -9,9 +9,9 @@ from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall
 from linkwright.packages.readers.xacro_calls.command_line import parse_xacro_command
-from linkwright.packages.readers.xacro_calls.python_scopes import Function, Scope, walk
+from linkwright.packages.readers.xacro_calls.python_scopes import Function, Scope, walk_with_scopes
 from linkwright.packages.readers.xacro_calls.python_texts import UNKNOWN_ENTRIES, Entries, Items, PythonTexts, Value
-from linkwright.packages.readers.xacro_calls.texts import Selection, Text, joined, resolve
+from linkwright.packages.readers.xacro_calls.texts import Selection, Text, join_texts, resolve
 
 _DESCRIPTION_EXTENSIONS = (".xacro", ".urdf")
 _XACRO_FUNCTIONS = frozenset({"process_file", "process_doc", "process", "load_xacro", "Xacro"})
@@ -36,7 +36,7 @@ class _Reader:
     def __init__(self, python_file: PythonFile, file: CallingFile) -> None:
         self._python_file = python_file
         self._file = file
-        self._nodes = walk(python_file.tree)
+        self._nodes = walk_with_scopes(python_file.tree)
         functions = {node.name for node, _ in self._nodes if isinstance(node, Function)}
         calls: dict[str, list[tuple[ast.Call, Scope]]] = {}
         for node, scope in self._nodes:
@@ -52,7 +52,7 @@ class _Reader:
                 self._read_declaration(node, scope)
             elif isinstance(node, ast.Call) and called_name(node).endswith("Command") and node.args:
                 # The items of a list may be fragments of arguments, so they are not read as separate commands.
-                self._handled_nodes.update(_assigned_expressions(node.args[0], scope))
+                self._handled_nodes.update(_find_assigned_expressions(node.args[0], scope))
         for node, scope in self._nodes:
             if node in self._handled_nodes:
                 self._handled_nodes.update(ast.iter_child_nodes(node))
@@ -93,7 +93,7 @@ class _Reader:
         value = self._texts.value(node, scope)
         if isinstance(value, Items):
             tokens = [item for item in value.values if isinstance(item, tuple)]
-            command_line = joined((*token, " ") for token in tokens) if len(tokens) == len(value.values) else ()
+            command_line = join_texts((*token, " ") for token in tokens) if len(tokens) == len(value.values) else ()
         else:
             command_line = value if isinstance(value, tuple) else ()
         if any(isinstance(fragment, str) and "xacro" in fragment for fragment in command_line):
@@ -116,7 +116,7 @@ class _Reader:
             mapping = UNKNOWN_ENTRIES if has_mappings else {}
         if paths and mapping is not None:
             is_command = name == "Xacro" or name not in _XACRO_FUNCTIONS  # a helper may build a command line
-            self._record_call((paths[0], dict(_entry_texts(mapping))), node, is_command=is_command)
+            self._record_call((paths[0], dict(_iterate_entry_texts(mapping))), node, is_command=is_command)
 
     def _read_builder_call(self, node: ast.Call, scope: Scope) -> None:
         """Record a call ``MoveItConfigsBuilder(...).robot_description(...)``."""
@@ -129,15 +129,15 @@ class _Reader:
         file = (
             self._texts.text(file_path, scope)
             if file_path is not None
-            else joined((("config/",), robot, (".urdf.xacro",)))
+            else join_texts((("config/",), robot, (".urdf.xacro",)))
         )
         package_name = self._texts.text(package, scope) if package is not None else (*robot, "_moveit_config")
         mappings = self._texts.value(
             argument_of(node, "mappings") or (node.args[1] if len(node.args) > 1 else None), scope
         )
-        arguments = dict(_entry_texts(mappings.values)) if isinstance(mappings, Entries) else {}
+        arguments = dict(_iterate_entry_texts(mappings.values)) if isinstance(mappings, Entries) else {}
         # The builder passes its arguments on a command line, as the substitution `Command` does.
-        self._record_call((_share_path(package_name, file), arguments), node, is_command=True)
+        self._record_call((_make_share_path(package_name, file), arguments), node, is_command=True)
 
     def _read_inclusion(self, node: ast.Call, scope: Scope) -> None:
         source = node.args[0] if node.args else argument_of(node, "launch_description_source")
@@ -146,13 +146,13 @@ class _Reader:
         launch_arguments = self._texts.value(argument_of(node, "launch_arguments"), scope)
         arguments: dict[str, Text] = {}
         if isinstance(launch_arguments, Entries):
-            arguments = dict(_entry_texts(launch_arguments.values))
+            arguments = dict(_iterate_entry_texts(launch_arguments.values))
         elif isinstance(launch_arguments, Items):
             pairs = [
                 value.values for value in launch_arguments.values if isinstance(value, Items) and len(value.values) == 2
             ]
             arguments = dict(
-                _entry_texts(
+                _iterate_entry_texts(
                     {resolve(key, {}, Selection()) or "": value for key, value in pairs if isinstance(key, tuple)}
                 )
             )
@@ -171,7 +171,7 @@ class _Reader:
             self._file.calls.append(XacroCall(*call, self._python_file.span(node), is_command))
 
 
-def _assigned_expressions(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
+def _find_assigned_expressions(node: ast.expr, scope: Scope) -> Iterator[ast.AST]:
     """Yield the expressions that are assigned to a name, or nothing for any other node."""
     lookup = scope.find(node.id) if isinstance(node, ast.Name) else None
     yield from (binding.value for binding in (lookup[1] if lookup else ()) if binding.value is not None)
@@ -181,17 +181,17 @@ def _is_builder(node: ast.AST) -> bool:
     return isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] == _BUILDER_NAME
 
 
-def _entry_texts(entries: Mapping[str, Value]) -> Iterator[tuple[str, Text]]:
+def _iterate_entry_texts(entries: Mapping[str, Value]) -> Iterator[tuple[str, Text]]:
     for name, value in entries.items():
         yield (
             name,
             value
             if isinstance(value, tuple)
-            else joined(item for item in getattr(value, "values", ()) if isinstance(item, tuple)),
+            else join_texts(item for item in getattr(value, "values", ()) if isinstance(item, tuple)),
         )
 
 
-def _share_path(package: Text, file: Text) -> Text:
-    from linkwright.packages.readers.xacro_calls.texts import Share, joined_path
+def _make_share_path(package: Text, file: Text) -> Text:
+    from linkwright.packages.readers.xacro_calls.texts import Share, join_path
 
-    return joined_path([(Share(package),), file])
+    return join_path([(Share(package),), file])

@@ -53,8 +53,8 @@ class Scope:
         return None
 
 
-def walk(tree: ast.Module) -> list[tuple[ast.AST, Scope]]:
-    """Return the nodes of a file, each with its scope, after reading the bindings of all scopes.
+def walk_with_scopes(tree: ast.Module) -> list[tuple[ast.AST, Scope]]:
+    """Return the nodes of a file, each with its scope, and read the bindings of all scopes.
 
     Outer nodes come first.
     """
@@ -109,14 +109,14 @@ def _bind_target(target: ast.expr, binding: Binding, scope: Scope) -> None:
             _bind_target(element, element_binding, scope)
 
 
-def parameters(function: Function) -> list[str]:
+def list_parameters(function: Function) -> list[str]:
     """Return the names of a function's parameters that can be passed by position."""
     return [argument.arg for argument in (*function.args.posonlyargs, *function.args.args)]
 
 
-def defaults(function: Function) -> Iterator[tuple[str, ast.expr]]:
+def iterate_defaults(function: Function) -> Iterator[tuple[str, ast.expr]]:
     """Yield each parameter of a function that has a default, and the default."""
-    names = parameters(function)
+    names = list_parameters(function)
     values = function.args.defaults
     yield from zip(names[len(names) - len(values) :], values, strict=True)
     for argument, default in zip(function.args.kwonlyargs, function.args.kw_defaults, strict=True):

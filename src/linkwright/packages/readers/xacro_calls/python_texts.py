@@ -12,17 +12,17 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import Union
 from linkwright.packages.readers.python_values import argument_of, called_name
-from linkwright.packages.readers.xacro_calls.call import CallingFile, launch_argument
-from linkwright.packages.readers.xacro_calls.python_scopes import Binding, Scope, defaults, parameters
+from linkwright.packages.readers.xacro_calls.call import CallingFile, make_launch_argument
+from linkwright.packages.readers.xacro_calls.python_scopes import Binding, Scope, iterate_defaults, list_parameters
 from linkwright.packages.readers.xacro_calls.texts import (
     UNKNOWN,
     Choice,
     Placeholder,
     Share,
     Text,
-    joined,
-    joined_path,
-    literal,
+    join_path,
+    join_texts,
+    make_literal,
 )
 
 _MAX_DEPTH = 30
@@ -92,7 +92,7 @@ class PythonTexts:
 
     def _evaluate(self, node: ast.expr, scope: Scope) -> Value:
         if isinstance(node, ast.Constant):
-            return literal(str(node.value)) if isinstance(node.value, (str, int, float)) else _UNKNOWN_TEXT
+            return make_literal(str(node.value)) if isinstance(node.value, (str, int, float)) else _UNKNOWN_TEXT
         if isinstance(node, ast.Name):
             return self._name(node.id, scope)
         if isinstance(node, (ast.List, ast.Tuple, ast.Set)):
@@ -100,7 +100,7 @@ class PythonTexts:
         if isinstance(node, ast.Dict):
             return self._evaluate_entries(node, scope)
         if isinstance(node, ast.JoinedStr):
-            return joined(self.text(piece, scope) for piece in node.values)
+            return join_texts(self.text(piece, scope) for piece in node.values)
         if isinstance(node, ast.FormattedValue):
             return self.text(node.value, scope) if node.conversion == -1 and node.format_spec is None else _UNKNOWN_TEXT
         if isinstance(node, ast.BinOp):
@@ -131,7 +131,7 @@ class PythonTexts:
             entry_value = self.value(value, scope)
             if key is None:
                 entries.update(_get_known_entries(entry_value))
-            elif entry_name := _plain_string(self.text(key, scope)):
+            elif entry_name := _to_plain_string(self.text(key, scope)):
                 entries[entry_name] = entry_value
             else:
                 entries.update(UNKNOWN_ENTRIES)
@@ -140,10 +140,10 @@ class PythonTexts:
     def _operation(self, node: ast.BinOp, scope: Scope) -> Value:
         left, right = self.value(node.left, scope), self.value(node.right, scope)
         if isinstance(node.op, ast.Div):
-            return joined_path([_as_text(left), _as_text(right)])
+            return join_path([_as_text(left), _as_text(right)])
         if isinstance(node.op, (ast.Add, ast.BitOr)):
             return _add_values(left, right)
-        if isinstance(node.op, ast.Mod) and (pattern := _plain_string(_as_text(left))):
+        if isinstance(node.op, ast.Mod) and (pattern := _to_plain_string(_as_text(left))):
             texts = [*map(_as_text, right.values)] if isinstance(right, Items) else [_as_text(right)]
             fragments = pattern.split("%s")
             if len(fragments) == len(texts) + 1 and "%" not in "".join(fragments):
@@ -155,7 +155,7 @@ class PythonTexts:
             return self._launch_argument(node.slice, None, scope)
         owner = self.value(node.value, scope)
         if isinstance(owner, Entries):
-            return owner.values.get(_plain_string(self.text(node.slice, scope)) or "", _UNKNOWN_TEXT)
+            return owner.values.get(_to_plain_string(self.text(node.slice, scope)) or "", _UNKNOWN_TEXT)
         if isinstance(owner, Items) and isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, int):
             return owner.values[node.slice.value] if abs(node.slice.value) < len(owner.values) else _UNKNOWN_TEXT
         return _UNKNOWN_TEXT
@@ -171,7 +171,7 @@ class PythonTexts:
         mapping = self.value(owner, scope)
         if not isinstance(mapping, Entries):
             return _UNKNOWN_TEXT
-        name = _plain_string(self.text(key, scope)) or ""
+        name = _to_plain_string(self.text(key, scope)) or ""
         if name in mapping.values or not name or "" in mapping.values:
             return mapping.values.get(name, _UNKNOWN_TEXT)
         return self.value(default, scope)
@@ -187,14 +187,14 @@ class PythonTexts:
         if name in _SHARE_FUNCTIONS:
             return (Share(self.text(first, scope)),)
         if name in _JOIN_FUNCTIONS:
-            return self._joined_path(node, name, owner, scope)
+            return self._join_path(node, name, owner, scope)
         if name == "get" and owner is not None and first is not None and "environ" not in ast.unparse(owner):
             return self._get_call_value(owner, node, scope)
         if (name in ("getenv", "get") and len(node.args) == 2) or name == "EnvironmentVariable":
             default = argument_of(node, "default_value") or (node.args[1] if len(node.args) > 1 else None)
             return self.value(default, scope)
         if name == "format" and owner is not None:
-            return self._formatted(owner, node, scope)
+            return self._format(owner, node, scope)
         if name == "dict" and not node.args:
             return Entries({keyword.arg: self.value(keyword.value, scope) for keyword in node.keywords if keyword.arg})
         if name == "product":
@@ -206,14 +206,14 @@ class PythonTexts:
         return _UNKNOWN_TEXT
 
     def _launch_argument(self, name: ast.expr | None, default: ast.expr | None, scope: Scope) -> Text:
-        argument_name = _plain_string(self.text(name, scope))
+        argument_name = _to_plain_string(self.text(name, scope))
         if argument_name is None:
             return _UNKNOWN_TEXT
         if default is not None:
             self.file.declare(argument_name, self.text(default, scope))
-        return (launch_argument(argument_name),)
+        return (make_launch_argument(argument_name),)
 
-    def _joined_path(self, node: ast.Call, name: str, owner: ast.expr | None, scope: Scope) -> Value:
+    def _join_path(self, node: ast.Call, name: str, owner: ast.expr | None, scope: Scope) -> Value:
         parts = self._evaluate_items(node.args, scope)
         if name == "PathJoinSubstitution":
             path_components = parts[0] if parts else None
@@ -222,10 +222,10 @@ class PythonTexts:
             parts = [self.value(owner, scope), *parts]
         elif name == "join" and isinstance(owner, ast.Constant):
             return _UNKNOWN_TEXT
-        return joined_path([_as_text(part) for part in parts])
+        return join_path([_as_text(part) for part in parts])
 
-    def _formatted(self, owner: ast.expr, node: ast.Call, scope: Scope) -> Value:
-        pattern = _plain_string(self.text(owner, scope))
+    def _format(self, owner: ast.expr, node: ast.Call, scope: Scope) -> Value:
+        pattern = _to_plain_string(self.text(owner, scope))
         if pattern is None:
             return _UNKNOWN_TEXT
         texts_by_name = {keyword.arg: self.text(keyword.value, scope) for keyword in node.keywords if keyword.arg}
@@ -267,7 +267,7 @@ class PythonTexts:
                 value = _add_values(value, self._evaluate_binding(binding, defining_scope))
         if isinstance(value, Entries) and name in defining_scope.entries:
             added_entries = {
-                _plain_string(self.text(key, defining_scope)) or "": self.value(item, defining_scope)
+                _to_plain_string(self.text(key, defining_scope)) or "": self.value(item, defining_scope)
                 for key, item in defining_scope.entries[name]
             }
             value = Entries({**value.values, **added_entries, **(UNKNOWN_ENTRIES if "" in added_entries else {})})
@@ -285,7 +285,9 @@ class PythonTexts:
         if not isinstance(value, Items):
             return _UNKNOWN_TEXT
         return (
-            value.values[0] if len(value.values) == 1 else self._choice_placeholder(node, value.values, is_certain=True)
+            value.values[0]
+            if len(value.values) == 1
+            else self._make_choice_placeholder(node, value.values, is_certain=True)
         )
 
     def _combine_alternatives(self, node: ast.expr | None, values: Sequence[Value]) -> Value:
@@ -293,9 +295,9 @@ class PythonTexts:
         known_values = [value for value in values if value != _UNKNOWN_TEXT]
         if len(known_values) < 2 or not all(isinstance(item, tuple) for item in known_values):
             return known_values[0] if known_values else _UNKNOWN_TEXT
-        return self._choice_placeholder(node, known_values, is_certain=False)
+        return self._make_choice_placeholder(node, known_values, is_certain=False)
 
-    def _choice_placeholder(self, node: ast.expr | None, values: Sequence[Value], *, is_certain: bool) -> Value:
+    def _make_choice_placeholder(self, node: ast.expr | None, values: Sequence[Value], *, is_certain: bool) -> Value:
         """Return a placeholder for one of several values.
 
         For lists of equal length, the result is a list of placeholders.
@@ -326,10 +328,10 @@ class PythonTexts:
                     if len(names) == 1:
                         return value
                     return value.values[names.index(name)] if isinstance(value, Items) else _UNKNOWN_TEXT
-        default = dict(defaults(function)).get(name)
+        default = dict(iterate_defaults(function)).get(name)
         values: list[Value] = []
         for call, calling_scope in self.calls.get(function.name, ()):
-            positions = parameters(function)
+            positions = list_parameters(function)
             position = positions.index(name) if name in positions else len(call.args)
             argument = argument_of(call, name) or (call.args[position] if position < len(call.args) else default)
             values.append(self.value(argument, calling_scope))
@@ -341,11 +343,11 @@ class PythonTexts:
     def _parametrized_names(self, node: ast.expr, scope: Scope) -> list[str]:
         value = self.value(node, scope)
         if isinstance(value, Items):
-            return [_plain_string(_as_text(item)) or "" for item in value.values]
-        return [word.strip() for word in (_plain_string(_as_text(value)) or "").split(",")]
+            return [_to_plain_string(_as_text(item)) or "" for item in value.values]
+        return [word.strip() for word in (_to_plain_string(_as_text(value)) or "").split(",")]
 
 
-def _plain_string(text: Text) -> str | None:
+def _to_plain_string(text: Text) -> str | None:
     """Return a text as a string, or None if the text has placeholders."""
     strings = [piece for piece in text if isinstance(piece, str)]
     return "".join(strings) if len(strings) == len(text) else None
@@ -353,7 +355,7 @@ def _plain_string(text: Text) -> str | None:
 
 def _as_text(value: Value) -> Text:
     if isinstance(value, Items):
-        return joined(_as_text(item) for item in value.values)
+        return join_texts(_as_text(item) for item in value.values)
     return _UNKNOWN_TEXT if isinstance(value, Entries) else value
 
 
@@ -373,7 +375,7 @@ def _add_values(left: Value, right: Value) -> Value:
 
 def _interleave(parts: Sequence[str], texts: Sequence[Text]) -> Text:
     """Return a text of the parts of a pattern, with the given texts between them."""
-    result = literal(parts[0])
+    result = make_literal(parts[0])
     for text, part in zip(texts, parts[1:], strict=True):
-        result = (*result, *text, *literal(part))
+        result = (*result, *text, *make_literal(part))
     return result

@@ -74,17 +74,17 @@ class Selection:
     fixed_texts: Mapping[str, str] = field(default_factory=dict)
 
 
-def literal(text: str) -> Text:
+def make_literal(text: str) -> Text:
     """Return a `Text` that consists of one literal string."""
     return (text,) if text else ()
 
 
-def joined(parts: Iterable[Text]) -> Text:
+def join_texts(parts: Iterable[Text]) -> Text:
     """Concatenate texts."""
     return tuple(piece for part in parts for piece in part)
 
 
-def joined_path(parts: Sequence[Text]) -> Text:
+def join_path(parts: Sequence[Text]) -> Text:
     """Join texts as components of a path.
 
     As in ``os.path.join``, an absolute component starts a new path.
@@ -106,7 +106,7 @@ def joined_path(parts: Sequence[Text]) -> Text:
 def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, depth: int = 0) -> str | None:
     """Fill the placeholders of a text, and return the string, or None if a value is missing.
 
-    A share folder is written as its `share_mark`.
+    A share folder is written as its `make_share_mark`.
     """
     if depth > _MAX_DEPTH:
         return None
@@ -115,18 +115,18 @@ def resolve(text: Text, choices: Mapping[str, Choice], selection: Selection, dep
         if isinstance(piece, str):
             strings.append(piece)
             continue
-        content = piece.package if isinstance(piece, Share) else _selected_text(piece, choices, selection)
+        content = piece.package if isinstance(piece, Share) else _select_text(piece, choices, selection)
         value = content if isinstance(content, str) else content and resolve(content, choices, selection, depth + 1)
         if value is None and content != ():
             return None
-        string = share_mark(value or "") if isinstance(piece, Share) else value or ""
+        string = make_share_mark(value or "") if isinstance(piece, Share) else value or ""
         if isinstance(piece, Placeholder) and piece.starts_component and string.startswith(("/", _SHARE_DELIMITER)):
             strings.clear()
         strings.append(string)
     return "".join(strings)
 
 
-def share_mark(package: str) -> str:
+def make_share_mark(package: str) -> str:
     """Return the text that represents a package's share folder in the result of `resolve`."""
     return f"{_SHARE_DELIMITER}{package}{_SHARE_DELIMITER}"
 
@@ -142,7 +142,7 @@ def split_mark(path: str) -> tuple[str | None, str]:
     return package, subpath
 
 
-def _selected_text(placeholder: Placeholder, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:
+def _select_text(placeholder: Placeholder, choices: Mapping[str, Choice], selection: Selection) -> Text | str | None:
     if placeholder.choice in selection.fixed_texts:
         return selection.fixed_texts[placeholder.choice]
     choice = choices.get(placeholder.choice)
@@ -152,7 +152,7 @@ def _selected_text(placeholder: Placeholder, choices: Mapping[str, Choice], sele
     return row[placeholder.column] if placeholder.column < len(row) else None
 
 
-def choices_in(text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[str, str]) -> list[str]:
+def find_choices(text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[str, str]) -> list[str]:
     """Return the names of the choices that a text depends on, except names in `fixed_texts`."""
     names: dict[str, None] = {}
     pending: list[Text] = [text]
@@ -168,10 +168,12 @@ def choices_in(text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[s
     return list(names)
 
 
-def selections(text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[str, str]) -> Iterator[Selection]:
+def generate_selections(
+    text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[str, str]
+) -> Iterator[Selection]:
     """Yield the selections of rows for the placeholders of a text, up to a maximum number."""
     row_combinations: list[dict[str, int]] = [{}]
-    for name in choices_in(text, choices, fixed_texts):
+    for name in find_choices(text, choices, fixed_texts):
         rows = range(len(choices[name].rows) or 1)
         row_combinations = [{**combination, name: row} for combination in row_combinations for row in rows][
             :_MAX_SELECTIONS
@@ -179,7 +181,7 @@ def selections(text: Text, choices: Mapping[str, Choice], fixed_texts: Mapping[s
     return (Selection(rows, fixed_texts) for rows in row_combinations)
 
 
-def variations(
+def generate_variations(
     texts: Iterable[Text], choices: Mapping[str, Choice], start: Selection
 ) -> Iterator[tuple[Selection, bool]]:
     """Yield selections of rows for several texts, each with whether it is known to occur.
@@ -187,7 +189,7 @@ def variations(
     First, each row of each choice is selected, one choice at a time. Then pairs of rows follow, which might not occur
     together. Larger combinations are omitted, because there would be too many.
     """
-    names = dict.fromkeys(name for text in texts for name in choices_in(text, choices, start.fixed_texts))
+    names = dict.fromkeys(name for text in texts for name in find_choices(text, choices, start.fixed_texts))
     unselected_names = [name for name in names if name not in start.rows and len(choices[name].rows) > 1]
     is_certain = all(choices[name].is_certain for name in unselected_names)
     yield start, is_certain

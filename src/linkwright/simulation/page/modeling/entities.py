@@ -31,7 +31,7 @@ from linkwright.sdf.editing import (
     ungroup,
 )
 from linkwright.sdf.models import Include
-from linkwright.sdf.resources import Missing, ResourceFinder, model_file
+from linkwright.sdf.resources import Missing, ResourceFinder, find_model_file
 
 
 def list_entities(world: WorldText) -> list[WorldEntity]:
@@ -58,7 +58,7 @@ def _to_message(entity: Entity) -> WorldEntity:
 def list_model_choices(packages: PackageFinder) -> ModelChoices:
     """Return the message that lists the models on the search path, sorted by name."""
     folders = ResourceFinder(packages).models()
-    names = sorted(name for name, folder in folders.items() if not isinstance(model_file(folder), Missing))
+    names = sorted(name for name, folder in folders.items() if not isinstance(find_model_file(folder), Missing))
     return ModelChoices([ModelChoice(name, f"model://{name}") for name in names])
 
 

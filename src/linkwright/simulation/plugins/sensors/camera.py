@@ -19,7 +19,7 @@ from linkwright.graph.stepped.node import Output
 from linkwright.messages import get_message
 from linkwright.sdf.cameras import Camera
 from linkwright.sdf.frames import transform_of
-from linkwright.sdf.optics import Optics, optics_of
+from linkwright.sdf.optics import Optics, make_optics
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameNameParameter, SensorPlugin
 from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud
@@ -105,7 +105,7 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
                 )
                 self.node.logger.warning(warning)
         pose = compose(self.sensor.pose, transform_of(camera.pose.pose))
-        return MountedCamera(camera, optics_of(camera), pose, PixelNoise(camera.noise, generator), encoding)
+        return MountedCamera(camera, make_optics(camera), pose, PixelNoise(camera.noise, generator), encoding)
 
     def _log_renderer(self, renderer_description: Phrase) -> None:
         self.node.logger.info(phrase("camera images are rendered by {renderer}", renderer=renderer_description))
