@@ -119,7 +119,7 @@ def _page(words: Words) -> str:
     for package, modules in tables.items():
         parts.append(f"\n## {package}\n")
         parts += [line for module in modules.values() if _is_public(module.name) for line in _module(module, words)]
-    names = ", ".join(f"`{name}`" for name in sorted(catalog.packages()))
+    names = ", ".join(f"`{name}`" for name in sorted(catalog.list_packages()))
     absent = _listed(ROS_MODULES)
     return "\n".join([*parts, words.messages.format(packages=names), words.missing.format(modules=absent)])
 

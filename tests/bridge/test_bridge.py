@@ -8,7 +8,7 @@ import pytest
 from linkwright.bridge.bridged_network import BridgedNetwork
 from linkwright.bridge.mirrors import MirroredPublisher
 from linkwright.bridge.outlet import Outlet
-from linkwright.bridge.streams import publisher_stream
+from linkwright.bridge.streams import get_stream
 from linkwright.graph import Graph
 from linkwright.graph.actions.client import ActionClient
 from linkwright.graph.actions.server import ActionServer
@@ -167,7 +167,7 @@ def test_first_message_of_second_publisher_on_bridged_topic_is_not_lost(networks
 @pytest.mark.parametrize(("source", "target"), WAYS)
 def test_last_message_of_closed_publisher_is_delivered(networks, monkeypatch, source, target):
     """Messages are published once the bridge is connected; a busy machine needs over a second to acknowledge all."""
-    monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIME", SECONDS)
+    monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIMEOUT_S", SECONDS)
     networks.bridge()
     there, here = networks.make(source)("there"), networks.make(target)("here")
     received = listen(here, "chatter", EVERYTHING)
@@ -403,7 +403,7 @@ def test_mirrored_publisher_waits_longer_if_listeners_are_expected(monkeypatch, 
         EndpointKind.PUBLISHER, NodeIdentity("there", "/"), "/odd", "strange_msgs/msg/Odd", QoSProfile(10), bytes(16)
     )
     node = graph.create_node("there").handle
-    publisher = MirroredPublisher(node, info, publisher_stream(info, is_keyed=False))
+    publisher = MirroredPublisher(node, info, get_stream(info, is_keyed=False))
     publisher.expects_listeners = expects
     now[0] += seconds - 0.1
     publisher.put(b"first")

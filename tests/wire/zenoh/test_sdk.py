@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 from linkwright.messages import String, get_service
-from linkwright.wire.zenoh.settings import OVERRIDES
+from linkwright.wire.zenoh.settings import OVERRIDES_VARIABLE
 
 PYTHON = os.environ.get("LINKWRIGHT_ZENOH_SDK_PYTHON", "")
 CALLS = 1000
@@ -26,13 +26,13 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ZENOH_SDK_PYTHON 
 @pytest.fixture
 def peer(programs, router_port, monkeypatch):
     """Start a program with the SDK that connects to a session of ours, because there is no router."""
-    settings = os.environ[OVERRIDES]
-    monkeypatch.setenv(OVERRIDES, f'connect/endpoints=[];listen/endpoints=["tcp/127.0.0.1:{router_port}"]')
+    settings = os.environ[OVERRIDES_VARIABLE]
+    monkeypatch.setenv(OVERRIDES_VARIABLE, f'connect/endpoints=[];listen/endpoints=["tcp/127.0.0.1:{router_port}"]')
     return lambda: programs(
         "sdk_peer",
         "sdk",
         python=PYTHON,
-        **{OVERRIDES: settings, "PYTHONPATH": ""},
+        **{OVERRIDES_VARIABLE: settings, "PYTHONPATH": ""},
     )
 
 

@@ -15,7 +15,7 @@ from linkwright.page.audience import Page
 from linkwright.page.protocol.monitor import AimTeleop, Drive, TeleopState, TeleopTarget
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
-_STOP_DELAY = 0.4
+_STOP_DELAY_S = 0.4
 """The robot is stopped after this many seconds without a velocity from the page."""
 
 
@@ -78,7 +78,7 @@ class _Pad:
         self._cancel_stop()
         self._topic.publish(velocity.linear, velocity.angular)
         if any(velocity.linear) or any(velocity.angular):
-            self._stop_timer = asyncio.get_running_loop().call_later(_STOP_DELAY, self._stop)
+            self._stop_timer = asyncio.get_running_loop().call_later(_STOP_DELAY_S, self._stop)
 
     def close(self) -> None:
         """Stop the robot, and destroy the publisher."""

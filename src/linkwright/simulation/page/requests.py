@@ -1,7 +1,7 @@
 """The page features of simulated worlds, created on demand."""
 
 from linkwright.page.protocol.simulation import NO_SIMULATION, NO_WORLD
-from linkwright.panels.page_feature import OnDemand, messages
+from linkwright.panels.page_feature import OnDemand, list_message_paths
 
 _MODELING = "linkwright.page.protocol.simulation"
 _SIMULATION = "linkwright.page.protocol.simulation"
@@ -10,8 +10,10 @@ ON_DEMAND = (
     OnDemand(
         "linkwright.simulation.page.modeling.feature:ModelingFeature",
         (
-            *messages(_MODELING, "AddEntity", "ChangeEntities", "CopyEntities", "DeleteEntities", "RequestModels"),
-            *messages(
+            *list_message_paths(
+                _MODELING, "AddEntity", "ChangeEntities", "CopyEntities", "DeleteEntities", "RequestModels"
+            ),
+            *list_message_paths(
                 _MODELING, "GroupEntities", "RedoWorld", "SaveWorld", "SetModeling", "UndoWorld", "UngroupEntity"
             ),
         ),
@@ -20,7 +22,7 @@ ON_DEMAND = (
     ),
     OnDemand(
         "linkwright.simulation.page.controls:SimulationFeature",
-        messages(_SIMULATION, "ControlSimulation", "SpawnModel", "DeleteModel", "DragModel", "PushLink"),
+        list_message_paths(_SIMULATION, "ControlSimulation", "SpawnModel", "DeleteModel", "DragModel", "PushLink"),
         ("/simulation_state",),
         until=NO_SIMULATION,
         refuses_recordings=True,
