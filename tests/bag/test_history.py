@@ -7,7 +7,7 @@ import threading
 import numpy as np
 import pytest
 
-from linkwright.bag.history import History, _zstd, decompress
+from linkwright.bag.history import History, _import_zstd, decompress
 from linkwright.bag.saving import find_last_reset_ns, to_simulated_time
 from linkwright.bag.stillness import Content, extract_content
 from linkwright.messages import TFMessage, TransformBatch, deserialize, get_message, serialize
@@ -127,13 +127,13 @@ def test_incompressible_messages_are_stored_uncompressed() -> None:
 
 def test_messages_dropped_before_compression_are_harmless(monkeypatch: pytest.MonkeyPatch) -> None:
     proceed = threading.Event()
-    compress = _zstd().compress
+    compress = _import_zstd().compress
 
     def slow(data: bytes, level: int) -> bytes:
         proceed.wait(10)
         return bytes(compress(data, level))
 
-    monkeypatch.setattr(_zstd(), "compress", slow)
+    monkeypatch.setattr(_import_zstd(), "compress", slow)
     history, _ = filled_history(count=0, max_size=500_000)
     for shade in range(5):
         history.add("/camera", image(shade))

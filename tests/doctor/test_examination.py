@@ -12,8 +12,8 @@ from linkwright.doctor import (
     FixedFrame,
     Observation,
     ObservedClock,
-    ObservedDescription,
     ObservedCommanders,
+    ObservedDescription,
     ObservedFrame,
     ObservedJoint,
     ObservedStamp,
@@ -379,7 +379,8 @@ def test_contradictory_velocity_publishers_are_reported():
         WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST)
     )
     diagnostic = only_diagnostic(
-        replace(observation, contradictory_velocities=(ObservedCommanders("/cmd_vel", ("/planner", "/teleop")),)), "DOC208"
+        replace(observation, contradictory_velocities=(ObservedCommanders("/cmd_vel", ("/planner", "/teleop")),)),
+        "DOC208",
     )
     assert (
         diagnostic.message

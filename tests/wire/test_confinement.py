@@ -48,7 +48,7 @@ def test_only_loopback_is_used_if_memberships_fail(monkeypatch):
         raise OSError("no buffer space")
 
     used = []
-    first_taken = open_domains._first_taken
+    first_taken = open_domains._create_with_first_accepted
 
     def note(number, configurations):
         used.extend(configurations)

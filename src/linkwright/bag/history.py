@@ -393,7 +393,9 @@ class History:
         self._shrinker.close()
 
     def _make_comparable_clock(self, content: Content, clock_ns: int) -> Content:
-        """Return the content of a clock message, with the state that decides whether it repeats an earlier one.
+        """Return the content of a clock message for comparison with earlier ones.
+
+        The state in it decides whether the message repeats an earlier one.
 
         Clock messages count as repeated while no other message arrives and the clock is not reset.
         """

@@ -48,7 +48,10 @@ class McapLookup:
         self._cached_chunks: OrderedDict[int, bytes] = OrderedDict()
 
     def latest(self, channels: Collection[int], at_ns: int) -> tuple[int, bytes] | None:
-        """Return the time in nanoseconds and the data of the last message of some channels up to a time, or None."""
+        """Return the time and the data of the last message of some channels up to a time.
+
+        The time is in nanoseconds. Returns None if there is no message.
+        """
         best: tuple[int, ChunkInfo, int] | None = None
         for channel in channels:
             for chunk, latest_end in self._get_channel_chunks(channel).iterate_backwards(at_ns):
@@ -61,7 +64,9 @@ class McapLookup:
         return None if best is None else (best[0], self._read_message(best[1], best[2]))
 
     def between(self, channels: Collection[int], start_ns: int, end_ns: int) -> list[tuple[int, bytes]]:
-        """Return the times in nanoseconds and the data of the messages from one time to another, ordered by time.
+        """Return the times and the data of the messages from one time to another.
+
+        The messages are ordered by time, and the times are in nanoseconds.
 
         Both limits are inclusive.
         """

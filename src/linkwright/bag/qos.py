@@ -113,7 +113,7 @@ def choose_recording_profile(offered: Sequence[QoSProfile]) -> QoSProfile:
 
 
 def choose_playing_profile(recorded: Sequence[QoSProfile]) -> QoSProfile:
-    """Return the recorded profile if all publishers offered equivalent profiles, or the default.
+    """Return the recorded profile if all publishers offered equivalent ones, or the default.
 
     Depth and lifespan may differ. The largest depth is then used, because one publisher now represents all of them.
     rosbag2 always uses a depth of 10 messages.

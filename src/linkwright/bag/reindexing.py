@@ -1,4 +1,4 @@
-"""Rebuild the ``metadata.yaml`` of a recording from its files, as ``ros2 bag reindex`` does."""
+"""Rebuild the ``metadata.yaml`` of a recording, as ``ros2 bag reindex`` does."""
 
 from __future__ import annotations
 

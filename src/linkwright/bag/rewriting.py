@@ -1,4 +1,4 @@
-"""Rewrite recordings into other files, with other topics or another compression, as ``ros2 bag convert`` does.
+"""Rewrite recordings with other topics or compression, as ``ros2 bag convert`` does.
 
 The keys of the options file, in YAML, are those of rosbag2's ``StorageOptions`` and ``RecordOptions``. Keys that
 only affect rosbag2's performance are ignored.

@@ -44,7 +44,7 @@ def find_recorded_description(bag: BagReader) -> str | None:
 
 
 def find_recorded_hash(bag: BagReader) -> str | None:
-    """Return the hash of the description with which a recording was made, or None if it is not known.
+    """Return the hash of the description of a recording, or None if it is not known.
 
     Raises:
         LinkwrightError: BAG102, the messages cannot be read.

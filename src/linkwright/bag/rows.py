@@ -31,7 +31,10 @@ class RowLookup:
         self._interval_ns = storage.metadata.duration // _INTERVALS + 1
 
     def latest(self, topics: Collection[int], at_ns: int) -> tuple[int, bytes] | None:
-        """Return the time in nanoseconds and the data of the last message of some topics up to a time, or None."""
+        """Return the time and the data of the last message of some topics up to a time.
+
+        The time is in nanoseconds. Returns None if there is no message.
+        """
         best = max((item for topic in topics for item in self._latest(topic, at_ns)), default=None)
         if best is None:
             return None
@@ -39,7 +42,9 @@ class RowLookup:
         return best[0], data
 
     def between(self, topics: Collection[int], start_ns: int, end_ns: int) -> list[tuple[int, bytes]]:
-        """Return the times in nanoseconds and the data of the messages from one time to another, ordered by time.
+        """Return the times and the data of the messages from one time to another.
+
+        The messages are ordered by time, and the times are in nanoseconds.
 
         Both limits are inclusive.
         """

@@ -57,7 +57,7 @@ class TopicSelection:
 
     @property
     def required_topics(self) -> frozenset[str] | None:
-        """The topics whose discovery completes the search, or None if any new topic may be selected."""
+        """The topics whose discovery completes the search, or None if any topic may be selected."""
         return None if self._accepts_unnamed else self.selected_names
 
     @property

@@ -1,4 +1,4 @@
-"""Read the files of a recording without ``metadata.yaml`` as one recording, ordered by time."""
+"""Read the files of a recording without ``metadata.yaml`` as one, ordered by time."""
 
 from __future__ import annotations
 

@@ -133,6 +133,6 @@ def make_endpoint_key(endpoint: EndpointInfo) -> EndpointKey:
 
 
 def _find_owning_bridge(node: NodeIdentity) -> str:
-    """Return the ID of the bridge that a node belongs to, or an empty string for any other node."""
+    """Return the ID of the bridge that a node belongs to, or an empty string if it has none."""
     root, slash, bridge_id = node.enclave.rpartition("/")
     return bridge_id if slash and root == ENCLAVE else ""

@@ -64,7 +64,7 @@ class Tap:
 
 
 class MirroredPublisher:
-    """A publisher in one network that forwards the messages of a publisher in the other network.
+    """A publisher in one network that forwards the messages of a publisher in the other.
 
     Messages are queued until a subscription is matched, because existing subscriptions have not discovered the
     publisher yet.

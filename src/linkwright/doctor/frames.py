@@ -102,7 +102,7 @@ def _examine_numbers(observation: Observation) -> Iterator[Diagnostic]:
 
 
 def _find_cycle(transforms: Sequence[ObservedTransform]) -> list[str]:
-    """Return the frames of a cycle in the tree of frames, or an empty list if there is no cycle.
+    """Return the frames of a cycle in the tree of frames, or an empty list.
 
     The first frame is repeated as the last one.
     """

@@ -147,7 +147,7 @@ async def observe(
 
 
 class _Watcher:
-    """The subscriptions to the topics that the examinations need, and a record of their messages."""
+    """The subscriptions that the examinations need, and a record of their messages."""
 
     def __init__(self, graph: Graph, node: Node) -> None:
         self._graph = graph
@@ -195,7 +195,7 @@ class _Watcher:
             await asyncio.sleep(_POLL_S)
 
     def waits_for_transforms(self) -> bool:
-        """Return whether a topic with a publisher of transforms has not delivered any transform yet.
+        """Return whether a topic with a publisher of transforms has not delivered any.
 
         On a busy computer, the first transforms take seconds to arrive.
         """
@@ -365,7 +365,9 @@ class _Watcher:
         return tuple(drivers_by_topic)
 
     def compute_stamp_ages(self, sim_time: Mapping[str, bool]) -> tuple[ObservedStamp, ...]:
-        """Return the age of the last stamp of each sender on each topic, measured with the sender's clock.
+        """Return the age of the last stamp of each sender on each topic.
+
+        Ages are measured with the sender's clock.
 
         This clock is simulated time if the sender uses or publishes it. Any other sender may forward the stamps of
         other nodes, so the age is measured with the clock that is closer to the stamp.

@@ -186,7 +186,7 @@ class _FieldCode:
         return self.kind.container is Container.ONE
 
     def _get_default(self) -> Any:
-        """Return the default value as the field stores it, or None if the definition has no default."""
+        """Return the default value as the field stores it, or None if there is no default."""
         value = self.field.default
         if value is None or self._is_single():
             return value

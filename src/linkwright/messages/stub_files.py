@@ -1,4 +1,4 @@
-"""Type stubs of message classes, which are created at run time, for type checkers and editors."""
+"""Type stubs for type checkers and editors of message classes that are created at run time."""
 
 from __future__ import annotations
 

@@ -164,7 +164,7 @@ class Gate:
         self._names = {"localhost", host.lower(), machine, f"{machine}.local"}
 
     def find_refusal_reason(self, headers: Mapping[str, str]) -> str | None:
-        """Return the reason to refuse a request because of its Host or Origin header (403), or None."""
+        """Return why a request is refused (403) for its Host or Origin header, or None."""
         host = headers.get("Host", "")
         if not self.accepts_host(host):
             return f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"

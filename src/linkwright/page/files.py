@@ -171,7 +171,9 @@ class MeshIndex:
 
 
 def without_secrets(text: str) -> str:
-    """Return a text that can be shared: file addresses have neither secrets, nor hashes of paths, nor times of files.
+    """Return a text that can be shared, without the secrets in file addresses.
+
+    Hashes of paths and times of files are also removed.
 
     Folders are numbered instead, in the order in which the text names them.
     """

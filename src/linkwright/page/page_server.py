@@ -98,7 +98,10 @@ class PageServer:
         return self._embedding is not None
 
     def on_pause(self, function: Callable[[bool], bool]) -> None:
-        """Call a function when the page that shows this one asks to pause or resume a world, see `Embedding`."""
+        """Call a function when the embedding page asks to pause or resume a world.
+
+        See `Embedding`.
+        """
         if self._embedding is not None:
             self._embedding.on_pause = function
 

@@ -70,7 +70,10 @@ class ProgramPages:
         return bool(self._paused)
 
     def pause_worlds(self) -> None:
-        """Ask all programs to pause their worlds, including programs that start before `resume_worlds` is called."""
+        """Ask all programs to pause their worlds.
+
+        This includes programs that start before `resume_worlds` is called.
+        """
         self._must_pause = True
         for response in self._responses.values():
             self._send(response, _PAUSE)
@@ -84,7 +87,7 @@ class ProgramPages:
                 self._send(response, _RESUME)
 
     def make_variables(self, origin: str) -> dict[str, str]:
-        """Return the environment variables for programs whose pages are shown in a page of an origin."""
+        """Return the environment variables for programs whose pages a page of an origin shows."""
         return {PROGRAM_PAGES_VARIABLE: f"{origin}{PROGRAM_PAGES_PATH}{self._key}"}
 
     def is_key(self, key: str) -> bool:

@@ -461,7 +461,7 @@ def _make_refusal(status: int, reason: str) -> web.Response:
 async def _make_file_response(
     request: web.Request, path: Path, content_type: str, cache: str, *, may_compress: bool
 ) -> web.Response:
-    """Return a response with a file, or 304 if the browser already has this version of the file.
+    """Return a response with a file, or 304 if the browser already has this version.
 
     The ETag changes with the content. If `may_compress` is true and the file becomes clearly smaller, it is compressed,
     and a header contains the uncompressed length.

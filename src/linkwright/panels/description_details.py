@@ -72,7 +72,9 @@ class SourcePositions:
 
 
 def _iterate_calls(element: Element) -> Iterator[CallSite]:
-    """Yield the macro calls and includes that produced an element, the innermost first, without duplicates.
+    """Yield the macro calls and includes that produced an element.
+
+    They are in order from the innermost, without duplicates.
 
     They begin with the innermost, without duplicates.
     """
@@ -216,7 +218,7 @@ class SourceTexts:
 
 
 def _index_sources(root: Element | None) -> dict[str, SourceText]:
-    """Return the source texts of the elements and of the calls that produced them, by file name."""
+    """Return the source texts of elements and of the calls that produced them, by file name."""
     sources: dict[str, SourceText] = {}
     visited_frames: set[int] = set()
     for element in root.walk() if root is not None else ():

@@ -19,7 +19,7 @@ def split_fields(text: str) -> list[str]:
 
 
 def split_topic(field: str, topics: Collection[str]) -> tuple[str, str] | None:
-    """Return the topic and the path in its messages, or None if none of the topics contains the field.
+    """Return the topic and the path in its messages, or None if no topic contains the field.
 
     Args:
         field: a field such as ``/odom/twist/twist/linear/x``; in the path, dots are accepted as separators, too.

@@ -79,7 +79,9 @@ class RequestedPanelsFeature(PageFeature):
     # --- displays ----------------------------------------------------------------------------------------------
 
     def _find_or_add_display(self, request: PanelRequest) -> ViewerDisplay:
-        """Return the enabled display of the requested class and topic, which is added if there is none.
+        """Return the enabled display of the requested class and topic.
+
+        If there is none, a display is added.
 
         The configuration does not count as changed by the user.
         """
@@ -141,7 +143,9 @@ def _get_topic(display: ViewerDisplay) -> str:
 
 
 def _set_topic(display: ViewerDisplay, topic: str) -> None:
-    """Set the topic of a new display, if any, and subscribe with Best Effort, as ``rqt_image_view`` does.
+    """Set the topic of a new display, and subscribe as ``rqt_image_view`` does.
+
+    The reliability is Best Effort.
 
     This matches all publishers, also those that do not exist yet.
     """

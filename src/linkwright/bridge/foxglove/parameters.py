@@ -134,7 +134,7 @@ class ParameterSubscription:
         self._change(set(names), subscribes=True)
 
     def remove(self, names: Iterable[str]) -> None:
-        """Unsubscribe from parameters with these names, or from all parameters if there are no names."""
+        """Unsubscribe from parameters with these names, or from all if there are no names."""
         self._change(set(names), subscribes=False)
 
     def _change(self, names: set[str], *, subscribes: bool) -> None:

@@ -111,7 +111,7 @@ class _ReaderCode:
     # --- structures and fields ------------------------------------------------------------------------------
 
     def add_creation(self, structure: Structure) -> str:
-        """Generate code that creates an object for a structure, and return the name of its variable."""
+        """Generate code that creates a structure's object, and return its variable's name."""
         name = f"m{next(self._names)}"
         self._add_line(f"{name} = new({self._name_constant(self._class_of(structure), 'C')})")
         return name

@@ -27,7 +27,7 @@ class InterfaceName(NamedTuple):
 
 
 def split_name(text: str) -> InterfaceName | None:
-    """Return the parts of ``package/kind/Name`` or ``package/Name``, or None for any other text."""
+    """Return the parts of ``package/kind/Name`` or ``package/Name``, or None for other texts."""
     parts = text.split("/")
     if len(parts) == 3 and parts[1] in KINDS:
         package, kind, name = parts

@@ -207,7 +207,7 @@ class Library:
         return None if name is None else self._make_not_found_diagnostic(name, ("msg",)).hint
 
     def _check(self, definition: Definition, source: SourceText, enclosing_types: tuple[str, ...]) -> None:
-        """Check that no structure contains itself and that the files of nested structures are valid."""
+        """Check that no structure contains itself, and that nested structures are valid."""
         if definition.type_name in self._checked:
             return
         for structure in list_structures(definition):

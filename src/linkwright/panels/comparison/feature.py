@@ -94,7 +94,9 @@ class ComparisonFeature(PageFeature):
             self._publish(manager)
 
     def on_edit(self, manager: VisualizationManager) -> None:
-        """Send the differences again if they have changed, because displays may have been added or removed.
+        """Send the differences again if they have changed.
+
+        Displays may have been added or removed.
 
         Displays may have been added or removed.
         """

@@ -91,7 +91,7 @@ class OldRobot:
 
 
 def find_leading_joints(old: Robot, new: Robot, same_names: Mapping[str, str]) -> dict[str, str]:
-    """Return, by old names, the joints of the new robot that determine the positions of the old robot's joints.
+    """Return the joints of the new robot that move the old robot's joints, by old names.
 
     Both joints are revolute or continuous, or both are prismatic.
     """

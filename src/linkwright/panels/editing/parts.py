@@ -18,7 +18,10 @@ _CONTEXT_LINES = 1
 
 
 def find_parts(robot: Robot, link_name: str) -> list[EditablePart]:
-    """Return the editable parts of a link: parent joint and axis, visuals, collisions, inertial."""
+    """Return the editable parts of a link.
+
+    These are the parent joint and its axis, the visuals, the collisions and the inertial.
+    """
     link = robot.links.get(link_name)
     if link is None:
         return []

@@ -53,7 +53,9 @@ def write_html(snapshot: Snapshot) -> bytes:
 
 
 def split_page(title: str) -> tuple[str, str]:
-    """Return the parts of the page before and after the recorded messages, for several snapshots with one program.
+    """Return the parts of the page before and after the recorded messages.
+
+    With both, one program can show several snapshots.
 
     Args:
         title: the title of the page.

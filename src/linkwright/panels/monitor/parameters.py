@@ -329,7 +329,7 @@ class ParametersFeature(PageFeature):
                     reappeared_node.refresh()
 
     def _find_reappeared_node(self, request: _Request, node_list: ParameterNodes) -> RemoteNode | None:
-        """Return the node that a page watches if the node has reappeared after it was missing, or None."""
+        """Return the watched node if it has reappeared after it was missing, or None."""
         if (
             request.sent is None
             or request.node is None

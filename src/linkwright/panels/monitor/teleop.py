@@ -20,7 +20,7 @@ _STOP_DELAY_S = 0.4
 
 
 class TeleopFeature(PageFeature):
-    """The feature that publishes velocities from teleop pads, with a publisher for each open pad."""
+    """The feature that publishes the velocities of teleop pads, one publisher for each pad."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)

@@ -1,4 +1,4 @@
-"""The page feature for terminals, which is disabled unless the program was started with terminals."""
+"""The page feature for terminals, which a program must enable."""
 
 from __future__ import annotations
 
