@@ -57,7 +57,7 @@ class Engine(AnyEngine):
         LinkwrightError: the domain cannot be joined.
     """
 
-    refusal = CycloneError
+    library_error = CycloneError
 
     def __init__(
         self,

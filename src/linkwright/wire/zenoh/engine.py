@@ -51,7 +51,7 @@ class Engine(AnyEngine):
         LinkwrightError: the session cannot be opened.
     """
 
-    refusal = zenoh.ZError
+    library_error = zenoh.ZError
 
     def __init__(
         self,
