@@ -27,7 +27,7 @@ from benchmarks.data_scenes import FramePublisher, call_at_rate
 from benchmarks.measure import ROOT, Row
 from benchmarks.robots import make_tree_robot
 from linkwright.bag import History
-from linkwright.bag.stillness import content_of
+from linkwright.bag.stillness import extract_content
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String, TFMessage, TransformBatch, get_message, serialize
@@ -196,7 +196,7 @@ def measure_growth() -> float:
 
     def keep(topic: str, message: Any) -> None:
         data = serialize(message)
-        history.add(topic, data, content=content_of(message.TYPE_NAME, data))
+        history.add(topic, data, content=extract_content(message.TYPE_NAME, data))
 
     clock = get_message("rosgraph_msgs/msg/Clock")()
     process = psutil.Process()

@@ -52,7 +52,7 @@ class _Any:
     def has_message(self, type_name: str) -> bool:
         return bool(type_name)
 
-    def hint_for(self, type_name: str) -> str | None:
+    def find_hint(self, type_name: str) -> str | None:
         return type_name
 
 

@@ -69,7 +69,7 @@ def make_completion_table() -> str:
     executables: dict[str, list[str]] = {}
     for package, name in sorted(hosted_executables()):
         executables.setdefault(package, []).append(name)
-    names = [f"{package}/{name}" for package in catalog.packages() for name in catalog.texts(package)]
+    names = [f"{package}/{name}" for package in catalog.list_packages() for name in catalog.read_texts(package)]
     types = {kind: sorted(name for name in names if f"/{kind}/" in name) for kind in ("msg", "srv", "action")}
     verbs = {name: _describe_for_completion(create_parser(name)) for name in collect_help_texts()}
     table = {"verbs": verbs, "ros2": list(COMMANDS), "executables": executables, "types": types}

@@ -123,7 +123,7 @@ def _format_page(words: Words) -> str:
         parts += [
             line for module in modules.values() if _is_public(module.name) for line in _format_module(module, words)
         ]
-    names = ", ".join(f"`{name}`" for name in sorted(catalog.packages()))
+    names = ", ".join(f"`{name}`" for name in sorted(catalog.list_packages()))
     absent = _format_names(ROS_MODULES)
     return "\n".join([*parts, words.messages.format(packages=names), words.missing.format(modules=absent)])
 

@@ -10,9 +10,9 @@ import threading
 import numpy as np
 import pytest
 
-from linkwright.bag.history import History, _zstd, uncompressed_bytes
-from linkwright.bag.saving import last_reset_ns, to_simulated_time
-from linkwright.bag.stillness import Content, content_of
+from linkwright.bag.history import History, _import_zstd, decompress
+from linkwright.bag.saving import find_last_reset_ns, to_simulated_time
+from linkwright.bag.stillness import Content, extract_content
 from linkwright.messages import TFMessage, TransformBatch, deserialize, get_message, serialize
 from tests.waiting import wait_until
 
@@ -112,7 +112,7 @@ def test_repetitive_large_messages_are_compressed_and_read_unchanged() -> None:
     assert [data for _, _, data in history.messages(["/camera"], 98 * SECOND_NS)] == [make_image(98), make_image(99)]
     part = history.messages_between(97 * SECOND_NS, 99 * SECOND_NS)
     assert sum(len(data) for _, _, data in part) < 204_000, "all but the state before them are compressed"
-    assert [uncompressed_bytes(data) for _, _, data in part] == [
+    assert [decompress(data) for _, _, data in part] == [
         make_image(96),
         make_image(97),
         make_image(98),
@@ -135,13 +135,13 @@ def test_incompressible_messages_are_stored_uncompressed() -> None:
 
 def test_messages_dropped_before_compression_are_harmless(monkeypatch: pytest.MonkeyPatch) -> None:
     proceed = threading.Event()
-    compress = _zstd().compress
+    compress = _import_zstd().compress
 
     def slow(data: bytes, level: int) -> bytes:
         proceed.wait(10)
         return bytes(compress(data, level))
 
-    monkeypatch.setattr(_zstd(), "compress", slow)
+    monkeypatch.setattr(_import_zstd(), "compress", slow)
     history, _ = filled_history(count=0, max_size=500_000)
     for shade in range(5):
         history.add("/camera", make_image(shade))
@@ -159,12 +159,12 @@ def add_states(clock: Clock, history: History, positions: list[float], *, start:
         state = JointState(name=["arm"], position=[position])
         state.header.stamp.sec, state.header.stamp.nanosec = divmod(clock.ns, SECOND_NS)
         data = serialize(state)
-        history.add("/joint_states", data, content=content_of(JointState.TYPE_NAME, data))
+        history.add("/joint_states", data, content=extract_content(JointState.TYPE_NAME, data))
 
 
 def joint_positions(messages: list[tuple[str, int, bytes]]) -> list[tuple[float, float]]:
     """Position and stamp, in seconds, of joint states."""
-    joint_states = [deserialize(uncompressed_bytes(data), JointState) for _, _, data in messages]
+    joint_states = [deserialize(decompress(data), JointState) for _, _, data in messages]
     return [
         (joint_state.position[0], joint_state.header.stamp.sec + joint_state.header.stamp.nanosec / 1e9)
         for joint_state in joint_states
@@ -219,7 +219,7 @@ def test_transforms_of_unmoving_publishers_are_thinned_separately() -> None:
         for child, x in (("wheel", 0.0), ("robot", number / 100)):
             pose = np.array([[x, 0, 0, 0, 0, 0, 1.0]])
             data = serialize(TFMessage(batch=TransformBatch(("base",), (child,), clock.ns, pose)))
-            history.add("/tf", data, content=content_of(TFMessage.TYPE_NAME, data))
+            history.add("/tf", data, content=extract_content(TFMessage.TYPE_NAME, data))
     assert history.count == 3000 + 2 * 3
     for second in (5, 15, 28):
         batches = [deserialize(data, TFMessage).batch for _, _, data in history.state_at(["/tf"], second * SECOND_NS)]
@@ -232,7 +232,7 @@ def add_transforms(history: History, clock: Clock, x: float) -> None:
     data = serialize(
         TFMessage(batch=TransformBatch(("base",), ("robot",), clock.ns, np.array([[x, 0, 0, 0, 0, 0, 1.0]])))
     )
-    history.add("/tf", data, content=content_of(TFMessage.TYPE_NAME, data))
+    history.add("/tf", data, content=extract_content(TFMessage.TYPE_NAME, data))
 
 
 def publish_clock(history: History, clock: Clock, simulated_ns: int) -> None:
@@ -240,7 +240,7 @@ def publish_clock(history: History, clock: Clock, simulated_ns: int) -> None:
     time = SimulatedTime()
     time.clock.sec, time.clock.nanosec = divmod(simulated_ns, SECOND_NS)
     data = serialize(time)
-    history.add("/clock", data, content=content_of(SimulatedTime.TYPE_NAME, data))
+    history.add("/clock", data, content=extract_content(SimulatedTime.TYPE_NAME, data))
 
 
 def simulated_time_at(history: History, second: float) -> float:
@@ -300,7 +300,7 @@ def test_clock_reset_is_detected() -> None:
         clock.ns = number * SECOND_NS // 100
         publish_clock(history, clock, clock.ns % (4 * SECOND_NS))
     part = history.messages_between(0, clock.ns)
-    assert last_reset_ns(part) == 4 * SECOND_NS
+    assert find_last_reset_ns(part) == 4 * SECOND_NS
     assert simulated_time_at(history, 3.99) == pytest.approx(3.99)
     assert simulated_time_at(history, 4.0) == 0.0
 
@@ -319,16 +319,16 @@ def test_messages_between_thinned_clock_ticks_keep_simulated_times() -> None:
 
 def test_content_of_malformed_clock_is_none() -> None:
     for data in (b"", b"\0\1\0\0", b"\0\0\0\0" + bytes(8)):
-        assert content_of(SimulatedTime.TYPE_NAME, data) is None
+        assert extract_content(SimulatedTime.TYPE_NAME, data) is None
 
 
 def test_content_of_message_without_stamp_is_none() -> None:
-    assert content_of("std_msgs/msg/Bool", serialize(get_message("std_msgs/msg/Bool")(data=True))) is None
+    assert extract_content("std_msgs/msg/Bool", serialize(get_message("std_msgs/msg/Bool")(data=True))) is None
 
 
 @pytest.mark.parametrize("data", [b"", b"\0\1\0\0", b"\0\1\0\0\xff\0\0\0", b"\0\0\0\0\0\0\0\1" + bytes(80)])
 def test_content_of_malformed_transforms_is_empty(data: bytes) -> None:
-    transforms = content_of(TFMessage.TYPE_NAME, data)
+    transforms = extract_content(TFMessage.TYPE_NAME, data)
     assert transforms is None or transforms.child_frames == ""
 
 
@@ -363,7 +363,7 @@ def test_thinned_images_reach_back_at_most_ten_minutes() -> None:
 
 def content_of_poses(children: tuple[str, ...], numbers: list[list[float]], stamp_ns: int = 0) -> Content:
     batch = TransformBatch(("odom",) * len(children), children, stamp_ns, np.array(numbers))
-    transforms = content_of(TFMessage.TYPE_NAME, serialize(TFMessage(batch=batch)))
+    transforms = extract_content(TFMessage.TYPE_NAME, serialize(TFMessage(batch=batch)))
     assert transforms is not None
     return transforms
 

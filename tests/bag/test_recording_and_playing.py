@@ -86,7 +86,7 @@ async def test_recorder_receives_latched_messages_published_earlier(
 ) -> None:
     publisher = graph.create_node("talker").create_publisher(String, "chatter", DESCRIPTION_QOS)
     publisher.publish(String(data="before"))
-    recorder = Recorder(graph.create_node("recorder"), TopicSelection(everything=True), BagWriter(tmp_path / "bag"))
+    recorder = Recorder(graph.create_node("recorder"), TopicSelection(all_topics=True), BagWriter(tmp_path / "bag"))
     await clock.advance(0.1)
     recorder.close()
     assert recorded_texts(tmp_path / "bag") == ["before"]
@@ -95,7 +95,7 @@ async def test_recorder_receives_latched_messages_published_earlier(
 async def test_paused_recorder_writes_nothing(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
     publisher = graph.create_node("talker").create_publisher(String, "chatter", SENSOR_DATA_QOS)
     recorder = Recorder(
-        graph.create_node("recorder"), TopicSelection(everything=True), BagWriter(tmp_path / "bag"), paused=True
+        graph.create_node("recorder"), TopicSelection(all_topics=True), BagWriter(tmp_path / "bag"), paused=True
     )
     for text in ("no", "yes"):
         publisher.publish(String(data=text))
@@ -112,7 +112,7 @@ async def test_unknown_type_is_reported_once(
     monkeypatch.setattr(
         type(node), "get_topic_names_and_types", lambda _: [("/odd", ["nowhere_msgs/msg/Odd"])], raising=True
     )
-    recorder = Recorder(node, TopicSelection(everything=True), BagWriter(tmp_path / "bag"), without_publishers=True)
+    recorder = Recorder(node, TopicSelection(all_topics=True), BagWriter(tmp_path / "bag"), without_publishers=True)
     await clock.advance(1)
     recorder.close()
     assert sum("nowhere_msgs" in record.text for record in log) == 1
@@ -144,7 +144,7 @@ async def test_service_events_are_recorded_and_played(graph: Graph, clock: JumpC
     node = graph.create_node("server")
     service = node.create_service("example_interfaces/srv/AddTwoInts", "sum", lambda _request, response: response)
     service.configure_introspection(node.get_clock(), DEFAULT_QOS, ServiceIntrospectionState.CONTENTS)
-    selection = TopicSelection(every_service=True)
+    selection = TopicSelection(all_services=True)
     recorder = Recorder(graph.create_node("recorder"), selection, BagWriter(tmp_path / "bag"))
     client = graph.create_node("user").create_client("example_interfaces/srv/AddTwoInts", "sum")
     client.call_async(client.srv_type.Request(a=2, b=3))
@@ -349,7 +349,7 @@ async def test_malformed_definition_is_reported_and_other_topics_play(
 
 async def test_player_excludes_given_topics(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
     with write_recording(tmp_path, [0]) as bag:
-        player = Player(player_node, bag, PlayOptions(without=["/chatter"]))
+        player = Player(player_node, bag, PlayOptions(excluded_topics=["/chatter"]))
         player.start()
         await clock.advance(1)
     assert player.finished
@@ -397,7 +397,7 @@ async def test_recorder_on_simulated_time_waits_for_first_clock(graph: Graph, cl
     talker.create_publisher(String, "chatter", DESCRIPTION_QOS).publish(String(data="kept"))
     tick = get_message("rosgraph_msgs/msg/Clock")
     ticks = talker.create_publisher(tick, "/clock", DEFAULT_QOS)
-    recorder = Recorder(node, TopicSelection(everything=True), BagWriter(tmp_path / "bag"))
+    recorder = Recorder(node, TopicSelection(all_topics=True), BagWriter(tmp_path / "bag"))
     await clock.advance(1)
     for second in (1, 2):
         message = tick()

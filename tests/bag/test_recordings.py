@@ -17,7 +17,13 @@ from rosbags.typesys import Stores, get_typestore
 
 from linkwright.bag import STORAGES, BagReader, BagWriter, TopicSelection, summarize_bag
 from linkwright.bag.names import belong_together
-from linkwright.bag.qos import from_library, parse_overrides, profile_for_playing, profile_for_recording, to_library
+from linkwright.bag.qos import (
+    choose_playing_profile,
+    choose_recording_profile,
+    from_library,
+    parse_overrides,
+    to_library,
+)
 from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import (
@@ -333,18 +339,18 @@ def test_unknown_topic_error_suggests_nearest(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("selection", "selected"),
     [
-        (TopicSelection(everything=True), ["/a", "/b/c"]),
-        (TopicSelection(everything=True, hidden=True), ["/a", "/b/c", "/b/_hidden"]),
+        (TopicSelection(all_topics=True), ["/a", "/b/c"]),
+        (TopicSelection(all_topics=True, include_hidden=True), ["/a", "/b/c", "/b/_hidden"]),
         (TopicSelection(names=["/a", "/b/_hidden"]), ["/a", "/b/_hidden"]),
         (TopicSelection(types=["std_msgs/msg/String"]), ["/a"]),
         (TopicSelection(pattern="^/b"), ["/b/c"]),
-        (TopicSelection(everything=True, without_pattern="b"), ["/a"]),
-        (TopicSelection(everything=True, without_names=["/a"]), ["/b/c"]),
-        (TopicSelection(everything=True, without_types=["std_msgs/msg/String"]), ["/b/c"]),
+        (TopicSelection(all_topics=True, without_pattern="b"), ["/a"]),
+        (TopicSelection(all_topics=True, without_names=["/a"]), ["/b/c"]),
+        (TopicSelection(all_topics=True, without_types=["std_msgs/msg/String"]), ["/b/c"]),
         (TopicSelection(names=["/a"], without_pattern="a"), []),
-        (TopicSelection(every_service=True), ["/s/_service_event"]),
+        (TopicSelection(all_services=True), ["/s/_service_event"]),
         (TopicSelection(services=["/s"]), ["/s/_service_event"]),
-        (TopicSelection(every_service=True, without_services=["/s"]), []),
+        (TopicSelection(all_services=True, without_services=["/s"]), []),
         (TopicSelection(pattern="^/[sa]$"), ["/a", "/s/_service_event"]),
     ],
 )
@@ -379,29 +385,29 @@ def test_qos_profiles_survive_recording() -> None:
 
 
 def test_recording_qos_requests_no_more_than_publishers_offer() -> None:
-    assert profile_for_recording([DEFAULT_QOS, SENSOR_DATA_QOS]).reliability is ReliabilityPolicy.BEST_EFFORT
-    assert profile_for_recording([DEFAULT_QOS]).reliability is ReliabilityPolicy.RELIABLE
-    assert profile_for_recording([DESCRIPTION_QOS]).durability is DurabilityPolicy.TRANSIENT_LOCAL
-    assert profile_for_recording([DESCRIPTION_QOS, DEFAULT_QOS]).durability is DurabilityPolicy.VOLATILE
+    assert choose_recording_profile([DEFAULT_QOS, SENSOR_DATA_QOS]).reliability is ReliabilityPolicy.BEST_EFFORT
+    assert choose_recording_profile([DEFAULT_QOS]).reliability is ReliabilityPolicy.RELIABLE
+    assert choose_recording_profile([DESCRIPTION_QOS]).durability is DurabilityPolicy.TRANSIENT_LOCAL
+    assert choose_recording_profile([DESCRIPTION_QOS, DEFAULT_QOS]).durability is DurabilityPolicy.VOLATILE
 
 
 def test_playing_qos_matches_recorded_qos_if_publishers_agree() -> None:
-    assert profile_for_playing([DESCRIPTION_QOS, DESCRIPTION_QOS]) == DESCRIPTION_QOS
-    assert profile_for_playing([DESCRIPTION_QOS, SENSOR_DATA_QOS]) == QoSProfile(depth=10)
+    assert choose_playing_profile([DESCRIPTION_QOS, DESCRIPTION_QOS]) == DESCRIPTION_QOS
+    assert choose_playing_profile([DESCRIPTION_QOS, SENSOR_DATA_QOS]) == QoSProfile(depth=10)
 
 
 def test_playing_qos_uses_largest_recorded_history() -> None:
     """History and depth do not affect compatibility (as in rosbag2)."""
     profiles = [QoSProfile(depth=20), QoSProfile(depth=50, lifespan=Duration(seconds=1.0)), QoSProfile(depth=1)]
-    assert profile_for_playing(profiles) == profiles[1]
+    assert choose_playing_profile(profiles) == profiles[1]
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-    assert profile_for_playing([*profiles, keep_all]) == keep_all
+    assert choose_playing_profile([*profiles, keep_all]) == keep_all
 
 
 def test_playing_qos_defaults_to_depth_ten_if_history_is_unknown() -> None:
     """Fast DDS does not announce history and depth."""
     unknown_history = QoSProfile(history=HistoryPolicy.UNKNOWN, depth=0)
-    assert profile_for_playing([from_library(to_library(unknown_history))]) == QoSProfile(depth=10)
+    assert choose_playing_profile([from_library(to_library(unknown_history))]) == QoSProfile(depth=10)
 
 
 def test_qos_overrides_are_parsed() -> None:

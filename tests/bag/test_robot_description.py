@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.bag import BagReader, BagWriter, Recorder, TopicSelection
-from linkwright.bag.robot_description import hash_of_description, recorded_description, recorded_hash
+from linkwright.bag.robot_description import find_recorded_description, find_recorded_hash, hash_description
 from linkwright.cli import main
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, Graph, JumpClock
 from linkwright.messages import String
@@ -49,23 +49,23 @@ def record(tmp_path):
 
 async def test_recorded_description_and_hash_are_returned(record):
     with BagReader(await record("/chatter", "/robot_description")) as bag:
-        assert recorded_description(bag) == ROBOT
-        assert recorded_hash(bag) == hash_of_description(ROBOT)
+        assert find_recorded_description(bag) == ROBOT
+        assert find_recorded_hash(bag) == hash_description(ROBOT)
 
 
 async def test_description_hash_is_recorded_without_description_topic(record):
     folder = await record("/chatter")
     with BagReader(folder) as bag:
         assert [topic.name for topic in bag.topics] == ["/chatter"]
-        assert recorded_description(bag) is None
-        assert recorded_hash(bag) == hash_of_description(ROBOT)
+        assert find_recorded_description(bag) is None
+        assert find_recorded_hash(bag) == hash_description(ROBOT)
     assert "robot_description_sha256" in (folder / "metadata.yaml").read_text()
 
 
 async def test_recording_without_robot_has_no_description(record, capsys):
     folder = await record("/chatter", description=None)
     with BagReader(folder) as bag:
-        assert recorded_hash(bag) is None
+        assert find_recorded_hash(bag) is None
     assert main(["bag", "description", str(folder)]) == 2
     assert "error[BAG118]" in capsys.readouterr().err
 

@@ -14,7 +14,12 @@ from linkwright.bridge.bridge import run_bridge
 from linkwright.bridge.filters import NameFilter
 from linkwright.bridge.networks import read_network
 from linkwright.graph import LogRecord
-from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES, ROUTER_FILE, SESSION_FILE
+from linkwright.wire.zenoh.settings import (
+    ATTEMPTS_VARIABLE,
+    OVERRIDES_VARIABLE,
+    ROUTER_FILE_VARIABLE,
+    SESSION_FILE_VARIABLE,
+)
 from tests.waiting import TIMEOUT_S
 from tests.wire.conftest import Process, domain, router_port  # noqa: F401 - fixtures, which take no part here else
 
@@ -24,9 +29,9 @@ collect_ignore_glob = [] if find_spec("zenoh") and find_spec("cyclonedds") else 
 @pytest.fixture(autouse=True)
 def variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: int) -> None:  # noqa: F811 - fixtures
     """Set the router's address to a port that only this test uses."""
-    for name in (ATTEMPTS, ROUTER_FILE, SESSION_FILE, "RMW_IMPLEMENTATION"):
+    for name in (ATTEMPTS_VARIABLE, ROUTER_FILE_VARIABLE, SESSION_FILE_VARIABLE, "RMW_IMPLEMENTATION"):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setenv(OVERRIDES, f'connect/endpoints=["tcp/localhost:{router_port}"]')
+    monkeypatch.setenv(OVERRIDES_VARIABLE, f'connect/endpoints=["tcp/localhost:{router_port}"]')
 
 
 ClosableT = TypeVar("ClosableT", Process, "Bridge")

@@ -10,7 +10,7 @@ import pytest
 from linkwright.bridge.bridged_network import BridgedNetwork
 from linkwright.bridge.mirrors import MirroredPublisher
 from linkwright.bridge.outlet import Outlet
-from linkwright.bridge.streams import publisher_stream
+from linkwright.bridge.streams import get_stream
 from linkwright.graph import Graph
 from linkwright.graph.actions.client import ActionClient
 from linkwright.graph.actions.server import ActionServer
@@ -172,7 +172,7 @@ def test_last_message_of_closed_publisher_is_delivered(networks, monkeypatch, so
 
     A busy machine needs over a second to acknowledge all.
     """
-    monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIME", TIMEOUT_S)
+    monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIMEOUT_S", TIMEOUT_S)
     networks.bridge()
     remote, local = networks.make(source)("remote"), networks.make(target)("local")
     received = listen(local, "chatter", KEEP_ALL)
@@ -411,7 +411,7 @@ def test_mirrored_publisher_waits_longer_if_listeners_are_expected(monkeypatch, 
         EndpointKind.PUBLISHER, NodeIdentity("remote", "/"), "/odd", "strange_msgs/msg/Odd", QoSProfile(10), bytes(16)
     )
     node = graph.create_node("remote").handle
-    publisher = MirroredPublisher(node, info, publisher_stream(info, is_keyed=False))
+    publisher = MirroredPublisher(node, info, get_stream(info, is_keyed=False))
     publisher.expects_listeners = expects
     now[0] += seconds - 0.1
     publisher.put(b"first")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.bridge.streams import awaited_streams, can_receive, publisher_stream
+from linkwright.bridge.streams import can_receive, find_awaited_streams, get_stream
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import QoSProfile, ReliabilityPolicy
@@ -27,15 +27,15 @@ def test_subscription_awaits_the_stream_that_its_publisher_uses(type_name, messa
     hashed = type_hash(type_name) if type_name.startswith("std_msgs") else OTHER_HASH
     publisher = endpoint(EndpointKind.PUBLISHER, type_name, hashed)
     subscription = endpoint(EndpointKind.SUBSCRIPTION, type_name, message and hashed)
-    assert publisher_stream(publisher, is_keyed=True) in awaited_streams(subscription, is_keyed=True)
+    assert get_stream(publisher, is_keyed=True) in find_awaited_streams(subscription, is_keyed=True)
 
 
 def test_type_hash_distinguishes_streams_only_when_keyed():
     linkwright_endpoint, other_endpoint = (
         endpoint(EndpointKind.PUBLISHER, "std_msgs/msg/String", type_hash) for type_hash in ("", OTHER_HASH)
     )
-    assert publisher_stream(linkwright_endpoint, is_keyed=True) != publisher_stream(other_endpoint, is_keyed=True)
-    assert publisher_stream(linkwright_endpoint, is_keyed=False) == publisher_stream(other_endpoint, is_keyed=False)
+    assert get_stream(linkwright_endpoint, is_keyed=True) != get_stream(other_endpoint, is_keyed=True)
+    assert get_stream(linkwright_endpoint, is_keyed=False) == get_stream(other_endpoint, is_keyed=False)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
-from linkwright.doctor.hello import Greetings, greeting
+from linkwright.doctor.hello import Greetings, make_greeting
 from linkwright.wire import multicast
 from tests.domains import own_domain
 from tests.waiting import TIMEOUT_S
@@ -73,7 +73,7 @@ def test_unreachable_network_is_reported(monkeypatch, capsys):
 def test_greetings_are_counted_by_host_until_table_is_taken():
     counts = Greetings("desk", published_count=2, sent_count=1)
     for host in ("robot", "desk", "robot", "laptop"):
-        counts.count_topic_greeting(greeting(host))
+        counts.count_topic_greeting(make_greeting(host))
     counts.count_multicast_greeting("hello, it's me robot")
     counts.count_multicast_greeting("")
     assert counts.pop_table("/t", 0.5).splitlines() == [

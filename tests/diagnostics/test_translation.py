@@ -28,7 +28,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.diagnostics.formats import format_diagnostics
 from linkwright.diagnostics.translation import language, language_of, localized, set_language, translate, translated
-from linkwright.doctor.record import listed
+from linkwright.doctor.record import format_names
 from tests.repository_tools import load_tool
 
 VARIABLES = ("LINKWRIGHT_LANG", "LC_ALL", "LC_MESSAGES", "LANG")
@@ -123,7 +123,7 @@ def test_message_notes_and_hint_are_translated() -> None:
 
 
 def test_long_name_list_ends_with_remaining_count() -> None:
-    text = phrase("published by {senders}", senders=listed([f"/n{number}" for number in range(9)], 2))
+    text = phrase("published by {senders}", senders=format_names([f"/n{number}" for number in range(9)], 2))
     assert text == "published by '/n0', '/n1' and 7 more"
     assert in_chinese(text).message == "它由“/n0”、“/n1”和另外 7 个发布"
 

@@ -15,8 +15,8 @@ from linkwright.doctor import (
     FixedFrame,
     Observation,
     ObservedClock,
+    ObservedCommanders,
     ObservedDescription,
-    ObservedDrivers,
     ObservedFrame,
     ObservedJoint,
     ObservedStamp,
@@ -384,7 +384,8 @@ def test_contradictory_velocity_publishers_are_reported():
         HEALTHY, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST)
     )
     diagnostic = only_diagnostic(
-        replace(observation, disputed=(ObservedDrivers("/cmd_vel", ("/planner", "/teleop")),)), "DOC208"
+        replace(observation, contradictory_velocities=(ObservedCommanders("/cmd_vel", ("/planner", "/teleop")),)),
+        "DOC208",
     )
     assert (
         diagnostic.message

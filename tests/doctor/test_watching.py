@@ -104,7 +104,7 @@ async def test_contradictory_velocity_publishers_are_recorded(joined: Graph) -> 
             driven.linear.x = 0.5 if publisher.topic_name.startswith("/base") else float(number)
             publisher.publish(message)
         await asyncio.sleep(0.01)
-    assert [(dispute.topic, dispute.drivers) for dispute in watched.result().disputed] == [
+    assert [(dispute.topic, dispute.commanders) for dispute in watched.result().contradictory_velocities] == [
         ("/arm/cmd_vel", ("/keys", "/planner")),
         ("/cmd_vel", ("/keys", "/planner")),
     ]
@@ -122,8 +122,8 @@ async def test_velocities_but_no_stamps_of_commands_are_recorded(joined: Graph) 
                 message.linear.x = float(number)
             publisher.publish(message)
         await asyncio.sleep(0.01)
-    (disputed,) = watched.result().disputed
-    assert disputed.drivers == ("/_ros2cli_7", "/_ros2cli_8")
+    (disputed,) = watched.result().contradictory_velocities
+    assert disputed.commanders == ("/_ros2cli_7", "/_ros2cli_8")
     assert not watched.result().stamps
 
 
@@ -146,7 +146,7 @@ async def test_bridged_transforms_have_one_sender_and_no_delay(joined: Graph) ->
     (transform,) = watched.result().transforms
     assert len(transform.senders) == 1
     assert {stamp.topic for stamp in watched.result().stamps} == {"/robot1/tf", "/tf"}
-    assert {stamp.behind_ns for stamp in watched.result().stamps} == {0}
+    assert {stamp.age_ns for stamp in watched.result().stamps} == {0}
 
 
 async def test_simulator_stamps_have_no_delay_and_world_poses_are_not_frames(joined: Graph) -> None:
@@ -169,7 +169,7 @@ async def test_simulator_stamps_have_no_delay_and_world_poses_are_not_frames(joi
         await asyncio.sleep(0.01)
     observation = watched.result()
     assert [(transform.parent, transform.child) for transform in observation.transforms] == [("odom", "base")]
-    assert [(stamp.topic, stamp.behind_ns) for stamp in observation.stamps] == [("/robot1/tf", 0)]
+    assert [(stamp.topic, stamp.age_ns) for stamp in observation.stamps] == [("/robot1/tf", 0)]
 
 
 async def test_latched_and_bond_messages_have_no_recorded_stamps(joined: Graph) -> None:

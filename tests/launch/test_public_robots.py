@@ -19,7 +19,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError, package_hint
 from linkwright.launch.arguments import format_arguments
 from linkwright.launch.frontend.launch_file import load_launch_file
-from linkwright.messages.distribution import ASSUMED
+from linkwright.messages.distribution import ASSUMED_DISTRIBUTION_VARIABLE
 from linkwright.packages import PackageFinder, use_finder
 from linkwright.shell.programs import PROGRAMS, append_programs_to_path, set_ros_variables
 
@@ -366,7 +366,13 @@ class TestPrograms:
         set_ros_variables(unsourced)
         set_ros_variables(sourced)
         of_ros = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
-        assert unsourced == {"A": "b", **of_ros, ASSUMED: "1", "GZ_SIM_RESOURCE_PATH": "", "LD_LIBRARY_PATH": ""}
+        assert unsourced == {
+            "A": "b",
+            **of_ros,
+            ASSUMED_DISTRIBUTION_VARIABLE: "1",
+            "GZ_SIM_RESOURCE_PATH": "",
+            "LD_LIBRARY_PATH": "",
+        }
         assert sourced == {"ROS_DISTRO": "jazzy"}
         models = {"GZ_SIM_RESOURCE_PATH": "/models"}
         set_ros_variables(models)

@@ -30,7 +30,7 @@ from linkwright.messages import (
     serialize,
     shipped_packages,
 )
-from linkwright.messages.catalog import texts
+from linkwright.messages.catalog import read_texts
 from linkwright.messages.definitions.library import LIBRARY
 from linkwright.messages.definitions.slot_types import (
     Array,
@@ -274,10 +274,10 @@ def test_messages_are_not_hashable():
 def test_shipped_interfaces_can_be_instantiated():
     assert len(shipped_packages()) >= 28
     for package in shipped_packages():
-        for name in texts(package):
+        for name in read_texts(package):
             cls = get_interface(f"{package}/{name}")
             assert f"{package}/{name}" == cls.TYPE_NAME
-            assert definition_text(cls) == texts(package)[name]
+            assert definition_text(cls) == read_texts(package)[name]
             assert prototype(cls)
             assert cls is get_interface(f"{package}/{name}")
 

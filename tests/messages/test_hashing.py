@@ -74,7 +74,7 @@ def test_hash_of_iron_discovery_message_matches(monkeypatch):
         def has_message(self, type_name):
             return True
 
-        def hint_for(self, type_name):
+        def find_hint(self, type_name):
             return None
 
     texts = {
@@ -92,8 +92,8 @@ def test_hash_of_iron_discovery_message_matches(monkeypatch):
             return definitions[name]
 
     monkeypatch.setattr(hashing, "LIBRARY", Library())
-    described = hashing.type_description(definitions["rmw_dds_common/msg/ParticipantEntitiesInfo"])
-    assert hashing.hash_of(described) == "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"
+    described = hashing.make_type_description(definitions["rmw_dds_common/msg/ParticipantEntitiesInfo"])
+    assert hashing.compute_hash(described) == "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"
 
 
 def test_type_hash_rejects_unknown_name():

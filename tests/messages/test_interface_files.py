@@ -33,7 +33,7 @@ class Everything:
     def has_message(self, type_name):
         return True
 
-    def hint_for(self, type_name):
+    def find_hint(self, type_name):
         return None
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from linkwright.messages import get_interface
-from linkwright.messages.catalog import texts
+from linkwright.messages.catalog import read_texts
 from linkwright.messages.definitions.library import Library
 
 
 def interface_names_of(package: str) -> list[str]:
-    return sorted(texts(package))
+    return sorted(read_texts(package))
 
 
 class TestHumble:
@@ -19,12 +19,12 @@ class TestHumble:
         monkeypatch.setenv("ROS_DISTRO", "humble")
 
     def test_results_have_no_error_codes(self):
-        assert all("error_code" not in text for text in texts("nav2_msgs").values())
+        assert all("error_code" not in text for text in read_texts("nav2_msgs").values())
 
     def test_jazzy_interfaces_and_fields_are_missing(self):
         assert "action/DockRobot" not in interface_names_of("nav2_msgs")
-        assert "goal_checker_id" in texts("nav2_msgs")["action/FollowPath"]
-        assert "progress_checker_id" not in texts("nav2_msgs")["action/FollowPath"]
+        assert "goal_checker_id" in read_texts("nav2_msgs")["action/FollowPath"]
+        assert "progress_checker_id" not in read_texts("nav2_msgs")["action/FollowPath"]
 
 
 class TestJazzy:
@@ -33,7 +33,7 @@ class TestJazzy:
         monkeypatch.setenv("ROS_DISTRO", "jazzy")
 
     def test_results_of_actions_have_error_codes(self):
-        interface_texts = texts("nav2_msgs")
+        interface_texts = read_texts("nav2_msgs")
         assert all("error_code" in text for name, text in interface_texts.items() if name.startswith("action/"))
         assert "progress_checker_id" in interface_texts["action/FollowPath"]
 
@@ -48,7 +48,7 @@ class TestJazzy:
 def test_interfaces_are_well_formed(monkeypatch, package, distribution):
     monkeypatch.setenv("ROS_DISTRO", distribution)
     library = Library()
-    for name in texts(package):
+    for name in read_texts(package):
         assert library.definition(f"{package}/{name}").type_name == f"{package}/{name}"
 
 

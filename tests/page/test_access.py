@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.page.access import Gate, new_token, security_headers
+from linkwright.page.access import Gate, create_token, make_security_headers
 
 
 @pytest.fixture
 def gate():
-    return Gate("127.0.0.1", new_token())
+    return Gate("127.0.0.1", create_token())
 
 
 def is_admitted(gate, *, host="127.0.0.1:7447", origin=None):
-    return gate.refusal({"Host": host} | ({"Origin": origin} if origin is not None else {})) is None
+    return gate.find_refusal_reason({"Host": host} | ({"Origin": origin} if origin is not None else {})) is None
 
 
 def test_token_in_query_is_accepted(gate):
@@ -33,7 +33,7 @@ def test_wrong_or_missing_token_is_rejected(gate, token):
 
 
 def test_servers_have_different_tokens(gate):
-    other = Gate("127.0.0.1", new_token())
+    other = Gate("127.0.0.1", create_token())
     assert gate.token != other.token
 
 
@@ -65,7 +65,7 @@ def test_other_host_names_are_rejected(gate, host):
 
 
 def test_bound_host_name_is_accepted():
-    assert is_admitted(Gate("robot.lan", new_token()), host="robot.lan")
+    assert is_admitted(Gate("robot.lan", create_token()), host="robot.lan")
 
 
 @pytest.mark.parametrize(
@@ -89,11 +89,13 @@ def test_only_pages_of_same_origin_are_accepted(gate, origin, may):
 
 @given(st.text(), st.text())
 def test_malformed_headers_are_rejected(host, origin):
-    assert Gate("127.0.0.1", new_token()).refusal({"Host": host, "Origin": origin})
+    assert Gate("127.0.0.1", create_token()).find_refusal_reason({"Host": host, "Origin": origin})
 
 
 def test_security_policy_allows_scripts_of_server_only():
-    policy = dict(part.split(" ", 1) for part in security_headers("127.0.0.1:1")["Content-Security-Policy"].split("; "))
+    policy = dict(
+        part.split(" ", 1) for part in make_security_headers("127.0.0.1:1")["Content-Security-Policy"].split("; ")
+    )
     assert policy["script-src"] == "'self' 'unsafe-eval'"
     assert policy["default-src"] == "'none'"
     assert "ws://127.0.0.1:1" in policy["connect-src"]
@@ -102,7 +104,7 @@ def test_security_policy_allows_scripts_of_server_only():
 def test_proof_is_hmac_of_nonce_and_token(gate):
     nonce = "0123456789abcdef" * 2
     assert gate.proof(nonce) == hmac.new(gate.token.encode(), nonce.encode(), "sha256").hexdigest()
-    assert gate.proof(nonce) != Gate("127.0.0.1", new_token()).proof(nonce)
+    assert gate.proof(nonce) != Gate("127.0.0.1", create_token()).proof(nonce)
 
 
 @pytest.mark.parametrize("nonce", ["", "0" * 31, "0" * 33, "x" * 32, "0" * 31 + "\n", "é" * 32])

@@ -9,7 +9,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.page import page_server
 from linkwright.page.page_server import listen
-from linkwright.page.server import url_of
+from linkwright.page.server import make_url
 
 
 @pytest.fixture
@@ -57,7 +57,7 @@ def test_address_of_another_machine_is_rejected():
 
 def test_url_of_wildcard_address_is_loopback():
     with listen("0.0.0.0", 0) as listener:
-        assert url_of(listener) == f"http://127.0.0.1:{listener.getsockname()[1]}/"
+        assert make_url(listener) == f"http://127.0.0.1:{listener.getsockname()[1]}/"
 
 
 @pytest.mark.skipif(not socket.has_ipv6, reason="this machine has no IPv6")
@@ -67,4 +67,4 @@ def test_ipv6_url_has_brackets():
     except LinkwrightError:
         pytest.skip("IPv6 is disabled on this machine")
     with listener:
-        assert url_of(listener).startswith("http://[::1]:")
+        assert make_url(listener).startswith("http://[::1]:")

@@ -50,7 +50,7 @@ async def start_program_server() -> AsyncIterator[PageServer]:
 
 def program_environment(world: World) -> dict[str, str]:
     origin = world.viewer.url.partition("/?")[0]
-    return world.viewer._server.program_pages.variables(origin)
+    return world.viewer._server.program_pages.make_variables(origin)
 
 
 async def content_security_policy(server: PageServer) -> str:

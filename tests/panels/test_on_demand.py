@@ -7,11 +7,11 @@ from importlib import import_module
 import pytest
 
 from linkwright.loading.extensions import extensions
-from linkwright.page.protocol.message import import_path_of
-from linkwright.panels.page_feature import ON_DEMAND_GROUP
+from linkwright.page.protocol.message import get_import_path
+from linkwright.panels.page_feature import ON_DEMAND_ENTRY_POINT_GROUP
 from tests.imports import loaded_by
 
-DECLARED = [feature for entry in extensions(ON_DEMAND_GROUP).values() for feature in entry.load().ON_DEMAND]
+DECLARED = [feature for entry in extensions(ON_DEMAND_ENTRY_POINT_GROUP).values() for feature in entry.load().ON_DEMAND]
 PROTOCOL = "linkwright.page.protocol.navigation"
 PROGRAM = f"""
 from linkwright.page.protocol.message import BadMessageError, decode, define_later
@@ -32,7 +32,7 @@ except BadMessageError as error:
 @pytest.mark.parametrize("address", [message for feature in DECLARED for message in feature.receives])
 def test_message_address_matches_class(address: str):
     module, _, name = address.partition(":")
-    assert import_path_of(getattr(import_module(module), name)) == address
+    assert get_import_path(getattr(import_module(module), name)) == address
 
 
 @pytest.mark.parametrize(("sent", "defined"), [("", False), (SUCCESS_CHECK, True), (FAILURE_CHECK, True)])

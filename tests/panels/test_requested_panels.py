@@ -6,7 +6,7 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.panels.panel_request import PanelRequest
-from linkwright.panels.plotted_fields import numeric_fields, split_fields, split_topic
+from linkwright.panels.plotted_fields import find_numeric_fields, split_fields, split_topic
 from linkwright.panels.requested_panels import RequestedPanelsFeature
 from linkwright.rviz import RvizConfig
 from tests.viewer.scene import World, open_page, open_world
@@ -49,11 +49,11 @@ def test_longest_existing_topic_is_the_topic_of_a_field():
 
 
 def test_numbers_directly_in_a_message_are_plotted():
-    assert list(numeric_fields("twist.twist.linear.x", ODOMETRY)) == ["twist.twist.linear.x"]
+    assert list(find_numeric_fields("twist.twist.linear.x", ODOMETRY)) == ["twist.twist.linear.x"]
     linear = "twist.twist.linear"
-    assert list(numeric_fields(linear, ODOMETRY)) == [f"{linear}.x", f"{linear}.y", f"{linear}.z"]
-    assert list(numeric_fields("", FLOAT)) == ["data"]
-    assert list(numeric_fields("speed", ODOMETRY)) == ["speed"], "the plot shows the reason"
+    assert list(find_numeric_fields(linear, ODOMETRY)) == [f"{linear}.x", f"{linear}.y", f"{linear}.z"]
+    assert list(find_numeric_fields("", FLOAT)) == ["data"]
+    assert list(find_numeric_fields("speed", ODOMETRY)) == ["speed"], "the plot shows the reason"
 
 
 async def test_fields_are_plotted_as_soon_as_their_topics_exist():

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.descriptions import examine
 from linkwright.panels.description_details import describe
-from linkwright.panels.text_editor import element_at
+from linkwright.panels.text_editor import find_element_at
 
 ARM = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:macro name="wheel" params="side">
@@ -43,5 +43,5 @@ def test_element_at_cursor_line_is_found(tmp_path: Path, line: int, element: tup
     description = examine(file)
     assert description.robot is not None
     details = describe(description.robot, description.text, [], display="d", revision=1, prefix="")
-    assert element_at(details, file, line) == element
-    assert element_at(details, tmp_path / "other.xacro", line) is None
+    assert find_element_at(details, file, line) == element
+    assert find_element_at(details, tmp_path / "other.xacro", line) is None

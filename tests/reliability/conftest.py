@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.messages.distribution import ASSUMED
+from linkwright.messages.distribution import ASSUMED_DISTRIBUTION_VARIABLE
 from linkwright.wire import dds
 from tests.domains import own_domain
 from tests.reliability.running import Machine
@@ -17,7 +17,7 @@ ROS_VARIABLES = (
     "ROS_AUTOMATIC_DISCOVERY_RANGE",
     "ROS_STATIC_PEERS",
     "ROS_DISTRO",
-    ASSUMED,
+    ASSUMED_DISTRIBUTION_VARIABLE,
     "CYCLONEDDS_URI",
     "LINKWRIGHT_DDS",
     "PYTHONDONTWRITEBYTECODE",

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.messages.distribution import ASSUMED
+from linkwright.messages.distribution import ASSUMED_DISTRIBUTION_VARIABLE
 from linkwright.standins import process
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
@@ -60,7 +60,9 @@ class TestHumble:
         assert humble["CameraInfo.k made of numpy of rows"] == "The 'k' numpy.ndarray() must have the shape (9,)"
 
 
-@pytest.mark.parametrize("variables", [{}, {"ROS_DISTRO": "humble", ASSUMED: "1"}, {"ROS_DISTRO": "jazzy"}])
+@pytest.mark.parametrize(
+    "variables", [{}, {"ROS_DISTRO": "humble", ASSUMED_DISTRIBUTION_VARIABLE: "1"}, {"ROS_DISTRO": "jazzy"}]
+)
 def test_numpy_arrays_are_accepted_unless_ros_distro_is_set_to_humble(variables):
     outcome = run_assignments(**variables)
     assert outcome["Image.data set of numpy of rows"] == ["array", list(range(12))]

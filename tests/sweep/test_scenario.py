@@ -3,8 +3,8 @@
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.sweep.plan import compute_fingerprint, plan_runs, replace_values
 from linkwright.sweep.execution import run_once
+from linkwright.sweep.plan import compute_fingerprint, plan_runs, replace_values
 from linkwright.sweep.scenario import load_scenario
 from tests.sweep.scenarios import HEAD, SQUARES, load_scenario_text, write_scenario
 

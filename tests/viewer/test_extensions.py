@@ -61,12 +61,12 @@ def extension_package(tmp_path, monkeypatch):
     (facts / "entry_points.txt").write_text(ENTRY_POINTS)
     monkeypatch.syspath_prepend(str(tmp_path))
     extensions._read_all_groups.cache_clear()
-    catalog._display_class.cache_clear()
+    catalog._load_display_class.cache_clear()
     yield
     monkeypatch.undo()
     sys.modules.pop("brought_to_linkwright", None)
     extensions._read_all_groups.cache_clear()
-    catalog._display_class.cache_clear()
+    catalog._load_display_class.cache_clear()
 
 
 def make_config(cls: str) -> RvizConfig:

@@ -11,11 +11,16 @@ import pytest
 from linkwright.graph import Graph, LogRecord
 from linkwright.graph.executors import SingleThreadedExecutor
 from linkwright.graph.log.logger import LogLevel
-from linkwright.messages.distribution import ASSUMED
+from linkwright.messages.distribution import ASSUMED_DISTRIBUTION_VARIABLE
 from linkwright.wire import dds, zenoh
 from linkwright.wire.background import BackgroundTransport
-from linkwright.wire.unsupported_settings import DISCOVERY_SERVERS, SECURITY
-from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES, ROUTER_FILE, SESSION_FILE
+from linkwright.wire.unsupported_settings import DISCOVERY_SERVER_VARIABLES, SECURITY_VARIABLES
+from linkwright.wire.zenoh.settings import (
+    ATTEMPTS_VARIABLE,
+    OVERRIDES_VARIABLE,
+    ROUTER_FILE_VARIABLE,
+    SESSION_FILE_VARIABLE,
+)
 from tests.domains import own_domain
 from tests.waiting import TIMEOUT_S
 from tests.wire.programs import Program
@@ -25,12 +30,12 @@ ROS_VARIABLES = (
     "ROS_AUTOMATIC_DISCOVERY_RANGE",
     "ROS_STATIC_PEERS",
     "ROS_DISTRO",
-    ASSUMED,
+    ASSUMED_DISTRIBUTION_VARIABLE,
     "CYCLONEDDS_URI",
     "LINKWRIGHT_DDS",
     "RMW_IMPLEMENTATION",
-    *SECURITY,
-    *DISCOVERY_SERVERS,
+    *SECURITY_VARIABLES,
+    *DISCOVERY_SERVER_VARIABLES,
 )
 JOINS = {"dds": dds.join, "zenoh": zenoh.join}
 PACKAGES = {"dds": "cyclonedds", "zenoh": "zenoh"}
@@ -66,10 +71,10 @@ def router_port() -> int:
 @pytest.fixture
 def zenoh_variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: int) -> None:
     """Select Zenoh, with a router at a port of the test's own."""
-    for name in (ATTEMPTS, ROUTER_FILE, SESSION_FILE):
+    for name in (ATTEMPTS_VARIABLE, ROUTER_FILE_VARIABLE, SESSION_FILE_VARIABLE):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")
-    monkeypatch.setenv(OVERRIDES, f'connect/endpoints=["tcp/localhost:{router_port}"]')
+    monkeypatch.setenv(OVERRIDES_VARIABLE, f'connect/endpoints=["tcp/localhost:{router_port}"]')
 
 
 class Process:

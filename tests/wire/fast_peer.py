@@ -12,12 +12,12 @@ import threading
 from typing import Any
 
 from linkwright.messages import deserialize, get_service, serialize
-from linkwright.wire.dds.local_sockets import multicast_port
-from linkwright.wire.dds.names import Role, dds_topic
+from linkwright.wire.dds.local_sockets import compute_multicast_port
+from linkwright.wire.dds.names import Role, to_dds_topic
 from linkwright.wire.dds.rtps import values
 
 # This is the other side: it announces itself as Fast DDS does, and talks only to Linkwright.
-values.VENDOR, values.FAST_DDS = values.FAST_DDS, values.VENDOR
+values.OWN_VENDOR, values.FAST_DDS_VENDOR = values.FAST_DDS_VENDOR, values.OWN_VENDOR
 
 from linkwright.wire.dds.rtps.messages import Data  # noqa: E402 - the constants must be swapped first
 from linkwright.wire.dds.rtps.network import Network  # noqa: E402 - see above
@@ -36,7 +36,7 @@ class KnownPort(socket.socket):
     """
 
     def bind(self, address: Any) -> None:
-        super().bind((address[0], multicast_port(read_settings().domain_id) + 10 + 2 * 60))
+        super().bind((address[0], compute_multicast_port(read_settings().domain_id) + 10 + 2 * 60))
 
 
 class FastPeer:
@@ -46,23 +46,23 @@ class FastPeer:
         self.reply_received = threading.Event()
         self.answers: dict[int, str] = {}
         add_reader, add_writer = self.participant.add_reader, self.participant.add_writer
-        self.requests = add_reader(dds_topic(Role.REQUEST, "/fast_echo"), TYPES[0], b"", self._on_request)
-        self.replies = add_writer(dds_topic(Role.REPLY, "/fast_echo"), TYPES[1], b"")
-        self.client_requests = add_writer(dds_topic(Role.REQUEST, "/linkwright_echo"), TYPES[0], b"")
-        self.client_replies = add_reader(dds_topic(Role.REPLY, "/linkwright_echo"), TYPES[1], b"", self._on_reply)
+        self.requests = add_reader(to_dds_topic(Role.REQUEST, "/fast_echo"), TYPES[0], b"", self._on_request)
+        self.replies = add_writer(to_dds_topic(Role.REPLY, "/fast_echo"), TYPES[1], b"")
+        self.client_requests = add_writer(to_dds_topic(Role.REQUEST, "/linkwright_echo"), TYPES[0], b"")
+        self.client_replies = add_reader(to_dds_topic(Role.REPLY, "/linkwright_echo"), TYPES[1], b"", self._on_reply)
         self.participant.expect({b"whoever there is"})
 
     def is_matched(self) -> bool:
         return bool(
-            self.participant.matched_readers(self.client_requests)
-            and self.participant.matched_writers(self.client_replies)
+            self.participant.find_matched_readers(self.client_requests)
+            and self.participant.find_matched_writers(self.client_replies)
         )
 
     def call(self, text: str) -> str:
         """Call ``/linkwright_echo``, and return its answer."""
         request = SetCameraInfo.Request()
         request.camera_info.distortion_model = text
-        identity = values.related_identity(self.client_replies.reader.guid, values.NO_NUMBER)
+        identity = values.encode_related_identity(self.client_replies.reader.guid, values.NO_NUMBER)
         self.reply_received.clear()
         number = self.participant.write(self.client_requests, serialize(request), inline=identity)
         assert self.reply_received.wait(60)
@@ -73,7 +73,9 @@ class FastPeer:
         client, _ = values.read_related_identity(sample.inline, sample.order)
         for guid, answer in ((os.urandom(16), "for another client"), (client, text)):
             reply = serialize(SetCameraInfo.Response(success=True, status_message=answer))
-            self.participant.write(self.replies, reply, inline=values.related_identity(guid, sample.sequence_number))
+            self.participant.write(
+                self.replies, reply, inline=values.encode_related_identity(guid, sample.sequence_number)
+            )
 
     def _on_reply(self, sample: Data) -> None:
         guid, number = values.read_related_identity(sample.inline, sample.order)

@@ -14,7 +14,7 @@ import pytest
 
 from linkwright.graph import Graph
 from linkwright.wire.dds import join, open_domains
-from linkwright.wire.dds.settings import own_addresses
+from linkwright.wire.dds.settings import find_own_addresses
 from tests.waiting import TIMEOUT_S
 
 pytestmark = pytest.mark.skipif(
@@ -45,7 +45,7 @@ def join_network() -> Graph:
 
 def test_interfaces_accept_announcements_of_own_address_only():
     graph = join_network()
-    assert memberships() >= set(own_addresses())
+    assert memberships() >= set(find_own_addresses())
     asyncio.run(graph.close())
 
 
@@ -54,14 +54,14 @@ def test_only_loopback_is_used_if_memberships_fail(monkeypatch):
         raise OSError("no buffer space")
 
     interfaces = []
-    first_taken = open_domains._first_taken
+    first_taken = open_domains._create_with_first_accepted
 
     def note(number, configurations):
         interfaces.extend(configurations)
         return first_taken(number, configurations)
 
-    monkeypatch.setattr(open_domains, "confine", refuse)
-    monkeypatch.setattr(open_domains, "_first_taken", note)
+    monkeypatch.setattr(open_domains, "confine_announcements", refuse)
+    monkeypatch.setattr(open_domains, "_create_with_first_accepted", note)
     asyncio.run(join_network().close())
     assert interfaces
     assert not any("autodetermine" in configuration for configuration in interfaces)

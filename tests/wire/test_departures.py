@@ -13,7 +13,7 @@ from linkwright.wire.dds import departures
 from linkwright.wire.dds.departures import GRACE_S, WITHDRAWAL_TIMEOUT_S, DdsDepartureMonitor
 from linkwright.wire.dds.discovery_info import NodeEntities, ParticipantEntities
 from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant
-from linkwright.wire.engine import ends_by_error
+from linkwright.wire.engine import is_ending_by_error
 
 PARTICIPANT, WRITER, OTHER = b"p" * 16, b"w" * 16, b"o" * 16
 
@@ -142,4 +142,4 @@ def test_program_that_ends_with_uncaught_exception_is_lost(processes, monkeypatc
 )
 def test_ends_by_error_distinguishes_exceptions(monkeypatch, error, is_one):
     monkeypatch.setattr(sys, "last_value", error, raising=False)
-    assert ends_by_error() is is_one
+    assert is_ending_by_error() is is_one

@@ -72,7 +72,7 @@ def test_wait_for_discovery_ends_when_all_processes_are_discovered(programs, nev
 def test_unanswered_process_is_waited_for(observer, monkeypatch):
     _, transport = observer
     process_count = 1
-    monkeypatch.setattr(module, "other_processes", lambda _domain: process_count)
+    monkeypatch.setattr(module, "count_other_processes", lambda _domain: process_count)
     assert not transport._knows_all_processes()
     process_count = 0
     assert transport._knows_all_processes()
@@ -80,7 +80,7 @@ def test_unanswered_process_is_waited_for(observer, monkeypatch):
 
 def test_process_count_is_inconclusive_with_several_participants(observer, processes, monkeypatch):
     _, transport = observer
-    monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
+    monkeypatch.setattr(module, "count_other_processes", lambda _domain: 0)
     assert transport._knows_all_processes()
     processes("beside")
     wait_until(transport.remote_nodes)
@@ -90,7 +90,7 @@ def test_process_count_is_inconclusive_with_several_participants(observer, proce
 @pytest.mark.parametrize("range_name", ["SUBNET", "LOCALHOST"])
 def test_process_count_is_inconclusive_beyond_own_machine(range_name, monkeypatch):
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range_name)
-    monkeypatch.setattr(module, "other_processes", lambda _domain: 0)
+    monkeypatch.setattr(module, "count_other_processes", lambda _domain: 0)
     graph = Graph(threads=True)
     transport = join(graph, discovers_only=True)
     assert transport is not None

@@ -84,7 +84,7 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
 
     monkeypatch.setattr(other.transport._remote, "on_entities_announced", listen)
     monkeypatch.setattr(engine, "Engine", Late)
-    monkeypatch.setattr(engine, "_FIRST_ANNOUNCE_SPAN", float("inf"))
+    monkeypatch.setattr(engine, "_FIRST_ANNOUNCE_SPAN_S", float("inf"))
     process = processes("ours", join_now=False)
     publishers = [process.node.create_publisher(String, f"topic_{number}", 10) for number in range(50)]
     transport = join(process.graph)  # this requests all publishers before the transport joins
@@ -112,7 +112,7 @@ def test_killed_process_and_its_successor_are_listed_once(processes, programs):
 def test_local_process_is_recognized_by_host_name_and_machine_id(monkeypatch):
     """Fast DDS 3 announces the machine ID, Fast DDS 2 and Cyclone the host name."""
     host_name = socket.gethostname()
-    monkeypatch.setattr(discovery, "machine_id", lambda: "3d12")
+    monkeypatch.setattr(discovery, "read_machine_id", lambda: "3d12")
     for text in ("3d12", f"{host_name}:0", host_name):
         properties = {"fastdds.physical_data.host": text, "fastdds.physical_data.process": "42"}
         assert next(discovery.announced_processes(lambda name, text=properties: text.get(name, ""))) == (

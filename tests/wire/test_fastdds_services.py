@@ -14,7 +14,7 @@ import pytest
 from linkwright.messages import get_service, serialize
 from linkwright.wire.dds.fastdds_services import EarlyRequest, FastClient, FastServer
 from linkwright.wire.dds.rtps.messages import Data
-from linkwright.wire.dds.rtps.values import read_parameters, related_identity
+from linkwright.wire.dds.rtps.values import encode_related_identity, read_parameters
 from tests.wire.test_failures import FailsOnce, warnings_of
 
 SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
@@ -98,10 +98,10 @@ class _Participant:
         self.deliver = on_data
         return "reader"
 
-    def matched_writers(self, _):
+    def find_matched_writers(self, _):
         return {b"w" * 16: self.discovered_at}
 
-    def last_of(self, *_):
+    def get_last_number(self, *_):
         return self.last
 
 
@@ -129,13 +129,13 @@ def test_early_requests_get_numbers_before_first_received(monkeypatch):
     assert service.requests == []
     participant.discovered_at = now
     server.write_pending_replies()
-    assert server.has_more_to_do
+    assert server.has_pending_work
     now += 0.2
     server.write_pending_replies()
     assert service.requests == [("six", 6), ("seven", 7)]
-    assert not server.has_more_to_do
+    assert not server.has_pending_work
     server.on_early_request(EarlyRequest(b"w" * 16, serialize(camera_request("eight")), 9_000_000, now))
-    assert not server.has_more_to_do  # requests are numbered from now on
+    assert not server.has_pending_work  # requests are numbered from now on
 
 
 def test_early_request_repeated_with_number_is_executed_once(monkeypatch):
@@ -154,7 +154,7 @@ def test_early_request_repeated_with_number_is_executed_once(monkeypatch):
 
 def test_replies_to_others_during_client_creation_are_ignored():
     """A server may know the new reader before the client has it."""
-    inline, _ = read_parameters(related_identity(b"o" * 16, 1), 0, "<")
+    inline, _ = read_parameters(encode_related_identity(b"o" * 16, 1), 0, "<")
     reply = Data(b"s" * 12, b"r" * 4, b"s" * 16, 1, "<", inline, b"")
 
     class EarlyReplyParticipant:
@@ -171,7 +171,9 @@ def test_replies_to_others_during_client_creation_are_ignored():
     client = FastClient(CLIENT, EarlyReplyParticipant(), lambda _: False)
     responses = []
     client.send(camera_request("hej"), responses.append)
-    client._on_data(replace(reply, inline=read_parameters(related_identity(b"r" * 16, 1), 0, "<")[0], payload=ANSWER))
+    client._on_data(
+        replace(reply, inline=read_parameters(encode_related_identity(b"r" * 16, 1), 0, "<")[0], payload=ANSWER)
+    )
     assert [response.status_message for response in responses] == ["hej"]
 
 

@@ -8,10 +8,10 @@ import sys
 
 import pytest
 
-from linkwright.wire.dds.local_sockets import multicast_port, other_processes, waiting_bytes
+from linkwright.wire.dds.local_sockets import compute_multicast_port, count_other_processes, count_waiting_bytes
 
 DOMAIN_ID = 7
-FIRST = multicast_port(DOMAIN_ID)
+FIRST = compute_multicast_port(DOMAIN_ID)
 
 on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the test reads /proc")
 
@@ -46,34 +46,34 @@ def write_tables(tmp_path):
     ],
 )
 def test_processes_are_counted_by_their_ports(write_tables, ports, count):
-    assert other_processes(DOMAIN_ID, write_tables(*ports)) == count
+    assert count_other_processes(DOMAIN_ID, write_tables(*ports)) == count
 
 
 @on_linux
 def test_sockets_of_this_process_are_not_counted(write_tables):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own_socket:
         inode = os.fstat(own_socket.fileno()).st_ino
-        assert other_processes(DOMAIN_ID, write_tables(FIRST, **{f"p{FIRST}": inode})) == 0
+        assert count_other_processes(DOMAIN_ID, write_tables(FIRST, **{f"p{FIRST}": inode})) == 0
 
 
 def test_count_is_unknown_without_socket_tables(tmp_path):
-    assert other_processes(DOMAIN_ID, tmp_path) is None
+    assert count_other_processes(DOMAIN_ID, tmp_path) is None
 
 
 @on_linux
 def test_malformed_socket_table_gives_no_count(tmp_path):
     (tmp_path / "udp").write_text("sl\nsomething else\n")
     (tmp_path / "udp6").write_text("sl\n")
-    assert other_processes(DOMAIN_ID, tmp_path) is None
+    assert count_other_processes(DOMAIN_ID, tmp_path) is None
 
 
 @on_linux
 def test_other_process_is_counted_by_system_tables(processes, programs, domain):
-    assert other_processes(domain) == 0
+    assert count_other_processes(domain) == 0
     programs("linkwright_program", "one")
-    assert other_processes(domain) == 1
+    assert count_other_processes(domain) == 1
     processes("ours")  # this process has sockets too
-    assert other_processes(domain) == 1
+    assert count_other_processes(domain) == 1
 
 
 @on_linux
@@ -83,15 +83,15 @@ def test_waiting_bytes_are_reported_until_received():
     with sending, receiving:
         receiving.bind(("127.0.0.1", 0))
         port = receiving.getsockname()[1]
-        assert waiting_bytes(port) == 0
+        assert count_waiting_bytes(port) == 0
         sending.sendto(bytes(50_000), ("127.0.0.1", port))
-        waiting = waiting_bytes(port)
+        waiting = count_waiting_bytes(port)
         assert waiting is not None
         assert waiting >= 50_000
         receiving.recv(50_000)
-        assert waiting_bytes(port) == 0
-    assert waiting_bytes(port) == 0
+        assert count_waiting_bytes(port) == 0
+    assert count_waiting_bytes(port) == 0
 
 
 def test_waiting_bytes_are_unknown_without_socket_tables(tmp_path):
-    assert waiting_bytes(7411, tmp_path) is None
+    assert count_waiting_bytes(7411, tmp_path) is None

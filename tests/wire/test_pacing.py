@@ -74,7 +74,7 @@ def test_paced_sample_has_guid_of_writer():
     reader.bind(("127.0.0.1", 0))
     reader.settimeout(60)
     pacer = Pacer(lambda _: reader.getsockname())
-    places = pacer.addresses_of([READER])
+    places = pacer.find_addresses([READER])
     pacer.send(WRITER, 7, LARGE, 5_000_000_000, places)
     packets = [reader.recv(0x1_0000) for _ in range(3)]
     pacer.stop(0.0)
@@ -102,7 +102,7 @@ class Sender:
         self.log.append(("written", sample[0], published is None))
         return self.works
 
-    def addresses_of(self, readers):
+    def find_addresses(self, readers):
         return {reader[:12]: ADDRESS for reader in readers}
 
     def add(self, _):
@@ -176,8 +176,8 @@ def test_image_is_sent_packet_by_packet_before_cyclone(processes, monkeypatch):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
         listening.bind(("127.0.0.1", 0))
         listening.settimeout(60)
-        monkeypatch.setattr("linkwright.wire.dds.remote._FAST_DDS", b"\x01\x10")
-        monkeypatch.setattr(Engine, "_fast_address", lambda *_: listening.getsockname())
+        monkeypatch.setattr("linkwright.wire.dds.remote._FAST_DDS_VENDOR", b"\x01\x10")
+        monkeypatch.setattr(Engine, "_find_fast_address", lambda *_: listening.getsockname())
         process, peer = processes("ours"), processes("theirs")
         messages = []
         subscription = peer.node.create_subscription(Image, "/picture", messages.append, QoSProfile(depth=10))

@@ -14,7 +14,7 @@ import sys
 import pytest
 
 from linkwright.standins.process import create_environment
-from linkwright.wire.zenoh.settings import OVERRIDES
+from linkwright.wire.zenoh.settings import OVERRIDES_VARIABLE
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
@@ -31,7 +31,7 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 @pytest.fixture(autouse=True)
 def local_zenoh(monkeypatch):
     """Let Zenoh's sessions find each other on this machine, without a router."""
-    monkeypatch.setenv(OVERRIDES, 'connect/endpoints=[];listen/endpoints=["tcp/localhost:0"]')
+    monkeypatch.setenv(OVERRIDES_VARIABLE, 'connect/endpoints=[];listen/endpoints=["tcp/localhost:0"]')
 
 
 class Bridge:

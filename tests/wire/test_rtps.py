@@ -8,15 +8,15 @@ import pytest
 
 from linkwright.wire.dds.rtps import discovery_data, values
 from linkwright.wire.dds.rtps.messages import (
-    FRAGMENT,
+    FRAGMENT_SIZE,
     AckNack,
     Data,
     Gap,
     Heartbeat,
     NackFrag,
     acknack,
+    build_message,
     data,
-    message,
     parse,
 )
 from linkwright.wire.dds.rtps.reader import Reader
@@ -48,21 +48,21 @@ def test_fast_dds_request_is_parsed():
 
 
 def test_reply_identity_uses_both_fast_dds_parameters():
-    inline = values.related_identity(READER, (3 << 32) + 5)
+    inline = values.encode_related_identity(READER, (3 << 32) + 5)
     identity = READER + bytes.fromhex("0300000005000000")
     assert inline == b"\x83\0\x18\0" + identity + b"\x0f\x80\x18\0" + identity + b"\1\0\0\0"
 
 
 def test_acknack_lists_missing_samples():
-    packet = message(FAST_DDS_PREFIX, acknack(READER[12:], WRITER[12:], 40, [41, 72], 1), to=LINKWRIGHT_PREFIX)
+    packet = build_message(FAST_DDS_PREFIX, acknack(READER[12:], WRITER[12:], 40, [41, 72], 1), to=LINKWRIGHT_PREFIX)
     (parsed,) = parse(packet, LINKWRIGHT_PREFIX)
     assert parsed == AckNack(FAST_DDS_PREFIX, READER, WRITER[12:], 40, [41, 72], final=True)
 
 
 @pytest.mark.parametrize("cut", range(4, 100, 3))
 def test_truncated_packet_is_not_misread(cut):
-    packet = message(
-        FAST_DDS_PREFIX, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1))
+    packet = build_message(
+        FAST_DDS_PREFIX, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.encode_related_identity(READER, 1))
     )
     for text in parse(packet[:cut], LINKWRIGHT_PREFIX):
         assert isinstance(text, Data)
@@ -70,8 +70,8 @@ def test_truncated_packet_is_not_misread(cut):
 
 def test_corrupted_packets_do_not_raise():
     noise = random.Random(5)
-    complete_packet = message(
-        FAST_DDS_PREFIX, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1))
+    complete_packet = build_message(
+        FAST_DDS_PREFIX, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.encode_related_identity(READER, 1))
     )
     for _ in range(2000):
         packet = bytearray(complete_packet)
@@ -81,7 +81,7 @@ def test_corrupted_packets_do_not_raise():
 
 
 def test_messages_for_other_participants_are_ignored():
-    packet = message(FAST_DDS_PREFIX, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0"), to=b"somebody els")
+    packet = build_message(FAST_DDS_PREFIX, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0"), to=b"somebody els")
     assert list(parse(packet, LINKWRIGHT_PREFIX)) == []
 
 
@@ -93,7 +93,7 @@ def test_endpoint_data_round_trips():
     )
     spdp = discovery_data.describe_participant(LINKWRIGHT_PREFIX, "us", 10.0, list(AT))
     assert discovery_data.read_participant(spdp) == discovery_data.ParticipantData(
-        LINKWRIGHT_PREFIX, values.VENDOR, 10.0, AT, AT
+        LINKWRIGHT_PREFIX, values.OWN_VENDOR, 10.0, AT, AT
     )
 
 
@@ -153,8 +153,8 @@ def test_samples_arrive_once_despite_loss(loss):
 @pytest.mark.parametrize("loss", [0.0, 0.3])
 def test_fragments_are_reassembled(loss):
     line = _LossyLink(loss)
-    payload = random.Random(2).randbytes(FRAGMENT * 7 + 12)
-    line.carry(line.writer.write(payload, inline=values.related_identity(READER, 9)))
+    payload = random.Random(2).randbytes(FRAGMENT_SIZE * 7 + 12)
+    line.carry(line.writer.write(payload, inline=values.encode_related_identity(READER, 9)))
     line.settle()
     assert line.received == [(1, payload)]
 

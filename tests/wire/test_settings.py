@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.wire.dds.discovery_info import GID_SIZE, OLD_GID_SIZE
-from linkwright.wire.dds.settings import Range, own_addresses, read_settings
+from linkwright.wire.dds.settings import Range, find_own_addresses, read_settings
 
 
 def configuration_elements(settings):
@@ -31,11 +31,11 @@ def test_default_range_is_own_machine():
     assert document["General/MulticastTimeToLive"] == ["0"]
     assert document["General/MulticastRecvNetworkInterfaceAddresses"] == ["127.0.0.1"]
     peers = [peer["address"] for peer in document["Discovery/Peers/Peer"]]
-    assert peers == ["127.0.0.1", *own_addresses()[:3]]
+    assert peers == ["127.0.0.1", *find_own_addresses()[:3]]
 
 
 def test_machine_without_network_uses_loopback(monkeypatch):
-    monkeypatch.setattr("linkwright.wire.dds.settings.own_addresses", list)
+    monkeypatch.setattr("linkwright.wire.dds.settings.find_own_addresses", list)
     settings = configuration_elements(read_settings({}))
     assert settings["General/Interfaces/NetworkInterface"] == [{"address": "127.0.0.1", "multicast": "true"}]
 

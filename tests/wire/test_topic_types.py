@@ -17,7 +17,7 @@ from linkwright.messages import String, get_message
 from linkwright.wire.dds import open_domains as opened
 from linkwright.wire.dds.cyclone import CycloneError
 from linkwright.wire.dds.topic_types import _table_without_descriptions
-from linkwright.wire.dds.type_descriptions import empty_type_data
+from linkwright.wire.dds.type_descriptions import encode_empty_type
 
 make_idl_struct = pytest.importorskip("cyclonedds.idl", reason="cyclonedds is not installed").make_idl_struct
 Point = get_message("geometry_msgs/msg/Point")
@@ -183,4 +183,4 @@ def test_empty_type_data_matches_cyclonedds(name):
     type_name = f"some_interfaces::msg::dds_::{name}"
     description = make_idl_struct(name, type_name.replace("::", "."), {}, dataclassify=False)
     description.__idl__.fill_type_data()
-    assert empty_type_data(type_name) == description.__idl__._xt_bytedata
+    assert encode_empty_type(type_name) == description.__idl__._xt_bytedata

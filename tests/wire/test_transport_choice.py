@@ -9,7 +9,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError, install_hint
 from linkwright.graph import Graph
 from linkwright.wire.dds import DdsTransport
-from linkwright.wire.joining import check_settings, is_available, join, middleware, unavailable_reason
+from linkwright.wire.joining import check_settings, is_available, join, select_middleware, unavailable_reason
 from linkwright.wire.unsupported_settings import CYCLONE, ZENOH
 from linkwright.wire.zenoh import ZenohTransport
 
@@ -48,7 +48,7 @@ def test_rmw_implementation_selects_transport_before_installed_packages(
     install_only, packages, variables, chosen, is_installed
 ):
     install_only(*packages)
-    assert middleware(variables) == chosen
+    assert select_middleware(variables) == chosen
     assert is_available(variables) is is_installed
 
 

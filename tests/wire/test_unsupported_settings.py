@@ -10,7 +10,7 @@ from linkwright.graph import Graph
 from linkwright.graph.faults import RclError
 from linkwright.standins.rclpy_api.context import Context
 from linkwright.wire.joining import check_security, is_available, join
-from linkwright.wire.unsupported_settings import new_unsupported_settings, unsupported_settings
+from linkwright.wire.unsupported_settings import find_new_unsupported_settings, find_unsupported_settings
 from tests.domains import own_domain
 
 SECURE = {"ROS_SECURITY_ENABLE": "true"}
@@ -21,7 +21,7 @@ with_network = pytest.mark.skipif(not is_available(), reason="neither DDS nor Ze
 
 
 def diagnostic_codes(variables):
-    return [setting.code for setting in unsupported_settings(variables)]
+    return [setting.code for setting in find_unsupported_settings(variables)]
 
 
 @pytest.mark.parametrize(
@@ -68,8 +68,8 @@ def test_join_is_rejected_if_security_is_enforced():
 
 def test_setting_is_reported_once_per_process(monkeypatch):
     monkeypatch.setattr("linkwright.wire.unsupported_settings._reported", set())
-    assert [setting.code for setting in new_unsupported_settings(SERVER)] == ["DDS123"]
-    assert [setting.code for setting in new_unsupported_settings({**SERVER, **SECURE})] == ["DDS122"]
+    assert [setting.code for setting in find_new_unsupported_settings(SERVER)] == ["DDS123"]
+    assert [setting.code for setting in find_new_unsupported_settings({**SERVER, **SECURE})] == ["DDS122"]
 
 
 @with_network

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 MAGIC = b"\x89MCAP0\r\n"
-HEAD = struct.Struct("<BQ")
+RECORD_HEAD = struct.Struct("<BQ")
 """The head of a record: its type, and the length of its content."""
 FOOTER_BODY = struct.Struct("<QQI")
 
@@ -29,21 +29,21 @@ def find_patches(path: Path) -> dict[int, bytes]:
     Each offset in the file is mapped to the bytes that replace those at the offset.
     """
     with path.open("rb") as file:
-        patches = header_patch(file)
-        file.seek(-HEAD.size - FOOTER_BODY.size - len(MAGIC), 2)
+        patches = make_header_patch(file)
+        file.seek(-RECORD_HEAD.size - FOOTER_BODY.size - len(MAGIC), 2)
         end = file.tell()
-        (offset, *_) = FOOTER_BODY.unpack_from(file.read(), HEAD.size)
-        while offset + HEAD.size <= end:
+        (offset, *_) = FOOTER_BODY.unpack_from(file.read(), RECORD_HEAD.size)
+        while offset + RECORD_HEAD.size <= end:
             file.seek(offset)
-            record_type, length = HEAD.unpack(file.read(HEAD.size))
-            offset += HEAD.size
+            record_type, length = RECORD_HEAD.unpack(file.read(RECORD_HEAD.size))
+            offset += RECORD_HEAD.size
             if record_type == _SCHEMA_TYPE:
-                patches |= schema_patch(offset, file.read(length))
+                patches |= make_schema_patch(offset, file.read(length))
             offset += length
     return patches
 
 
-def header_patch(file: BinaryIO) -> dict[int, bytes]:
+def make_header_patch(file: BinaryIO) -> dict[int, bytes]:
     """Return the patch that sets the profile to ``ros2``.
 
     The result is empty if no patch is needed.
@@ -51,20 +51,20 @@ def header_patch(file: BinaryIO) -> dict[int, bytes]:
     The profile takes bytes from the name of the program that wrote the file.
     """
     file.seek(len(MAGIC))
-    head = file.read(HEAD.size)
-    if len(head) < HEAD.size:
+    head = file.read(RECORD_HEAD.size)
+    if len(head) < RECORD_HEAD.size:
         return {}
-    record_type, length = HEAD.unpack(head)
+    record_type, length = RECORD_HEAD.unpack(head)
     profile_and_library = _read_strings(file.read(min(length, 1 << 16)), 0, 2)
     if record_type != _HEADER_TYPE or profile_and_library is None or profile_and_library[0] == _PROFILE:
         return {}
     library = b"".join(profile_and_library)[: -len(_PROFILE)]
     if len(library) + len(_PROFILE) != sum(map(len, profile_and_library)):
         return {}
-    return {len(MAGIC) + HEAD.size: _text(_PROFILE) + _text(library)}
+    return {len(MAGIC) + RECORD_HEAD.size: _encode_text(_PROFILE) + _encode_text(library)}
 
 
-def schema_patch(offset: int, content: bytes) -> dict[int, bytes]:
+def make_schema_patch(offset: int, content: bytes) -> dict[int, bytes]:
     """Return the patch that empties a schema if ROS 2 does not use its language.
 
     The result is empty for any other schema.
@@ -79,12 +79,14 @@ def schema_patch(offset: int, content: bytes) -> dict[int, bytes]:
     if fields is None or fields[1] in _ROS_LANGUAGES:
         return {}
     name, language, text = fields
-    return {offset + _ID_SIZE: _text(name) + _text(b"") + _text(b" " * (len(language) + len(text)))}
+    return {
+        offset + _ID_SIZE: _encode_text(name) + _encode_text(b"") + _encode_text(b" " * (len(language) + len(text)))
+    }
 
 
-def readable_schema(content: bytes) -> bytes:
+def make_schema_readable(content: bytes) -> bytes:
     """Return the content of a schema record, patched if the library could not read it."""
-    return content[:_ID_SIZE] + schema_patch(0, content).get(_ID_SIZE, content[_ID_SIZE:])
+    return content[:_ID_SIZE] + make_schema_patch(0, content).get(_ID_SIZE, content[_ID_SIZE:])
 
 
 def _read_strings(content: bytes, offset: int, count: int) -> list[bytes] | None:
@@ -102,5 +104,5 @@ def _read_strings(content: bytes, offset: int, count: int) -> list[bytes] | None
     return strings
 
 
-def _text(text: bytes) -> bytes:
+def _encode_text(text: bytes) -> bytes:
     return _LENGTH.pack(len(text)) + text

@@ -22,7 +22,7 @@ from queue import SimpleQueue
 from typing import Any, Generic, TypeVar
 
 from linkwright.bag.names import STATIC_TRANSFORMS, TRANSFORMS, TRANSFORMS_NS, Recorded
-from linkwright.bag.stillness import Content, clock_between
+from linkwright.bag.stillness import Content, interpolate_clock
 from linkwright.graph.simulated_time import CLOCK_TOPIC
 from linkwright.messages import TFMessage, deserialize
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -30,7 +30,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 _MIN_BYTES = 16_384
 """The minimum size of a message to compress."""
 
-_MAX_RATIO = 0.8
+_MAX_COMPRESSION_RATIO = 0.8
 """The maximum size of a compressed message, as a share of its size: decompression also takes time."""
 
 _MAX_QUEUED_BYTES = 64_000_000
@@ -41,14 +41,14 @@ _COMPRESSION_LEVEL = 1
 K = TypeVar("K")
 
 
-class Packed(bytes):
+class CompressedMessage(bytes):
     """The bytes of a compressed message."""
 
     __slots__ = ()
 
 
 @cache
-def _zstd() -> Any:
+def _import_zstd() -> Any:
     """Return the compression library, or None if the extra `bag` is not installed."""
     if sys.version_info >= (3, 14):
         from compression import zstd
@@ -60,9 +60,9 @@ def _zstd() -> Any:
     return zstd
 
 
-def uncompressed_bytes(data: bytes) -> bytes:
-    """Return a serialized message, decompressed if it is `Packed`."""
-    return bytes(_zstd().decompress(data)) if type(data) is Packed else data
+def decompress(data: bytes) -> bytes:
+    """Return a serialized message, decompressed if it is `CompressedMessage`."""
+    return bytes(_import_zstd().decompress(data)) if type(data) is CompressedMessage else data
 
 
 class Shrinker(Generic[K]):
@@ -74,7 +74,7 @@ class Shrinker(Generic[K]):
         done: called in that thread with the key of a message and its compressed form.
     """
 
-    def __init__(self, done: Callable[[K, Packed], object]) -> None:
+    def __init__(self, done: Callable[[K, CompressedMessage], object]) -> None:
         self._done = done
         self._queue: SimpleQueue[tuple[K, bytes] | None] = SimpleQueue()
         self._thread: threading.Thread | None = None
@@ -83,7 +83,7 @@ class Shrinker(Generic[K]):
 
     def offer(self, key: K, data: bytes) -> None:
         """Queue a message for compression if it is large and there is room in the queue."""
-        if len(data) < _MIN_BYTES or _zstd() is None:
+        if len(data) < _MIN_BYTES or _import_zstd() is None:
             return
         with self._lock:
             if self._waiting + len(data) > _MAX_QUEUED_BYTES:
@@ -101,9 +101,9 @@ class Shrinker(Generic[K]):
     def _run(self) -> None:
         while (item := self._queue.get()) is not None:
             key, data = item
-            packed = _zstd().compress(data, _COMPRESSION_LEVEL)
-            if len(packed) < _MAX_RATIO * len(data):
-                self._done(key, Packed(packed))
+            packed = _import_zstd().compress(data, _COMPRESSION_LEVEL)
+            if len(packed) < _MAX_COMPRESSION_RATIO * len(data):
+                self._done(key, CompressedMessage(packed))
             with self._lock:
                 self._waiting -= len(data)
 
@@ -169,7 +169,7 @@ class _Track:
     def append(self, stamp_ns: int, number: int, data: bytes) -> None:
         """Append a message."""
         self.entries.append((stamp_ns, number, data))
-        self.size += _stored_size(data)
+        self.size += _compute_stored_size(data)
 
     def repeat(self, stamp_ns: int, number: int, data: bytes, content: Content) -> int | None:
         """Replace an earlier message with equal content by a new one.
@@ -186,7 +186,7 @@ class _Track:
         if run is None or not run.content.is_repeated_by(content) or stamp_ns - run.since_ns >= _MAX_REPEAT_NS:
             self._runs[content.child_frames] = _Run(stamp_ns, content)
             return None
-        index = None if run.second is None else self._index_of(run.second)
+        index = None if run.second is None else self._find_index(run.second)
         is_clock = content.clock_ns is not None
         if index is None or (is_clock and index != len(self.entries) - 1):
             run.second = number
@@ -202,29 +202,25 @@ class _Track:
         oldest = self.entries[self.first_index]
         self.entries[self.first_index] = (oldest[0], oldest[1], b"")
         self.first_index += 1
-        self.size -= _stored_size(oldest[2])
+        self.size -= _compute_stored_size(oldest[2])
         self._repeated_numbers.discard(oldest[1])
         if self.first_index >= _MAX_UNUSED:
             del self.entries[: self.first_index]
             self.first_index = 0
         if self.name == TRANSFORMS:
-            return _stored_size(
+            return _compute_stored_size(
                 oldest[2]
             )  # dropped transforms are not stored, because only the last seconds are useful
-        key = (
-            deserialize(uncompressed_bytes(oldest[2]), TFMessage).batch.children
-            if self.name == STATIC_TRANSFORMS
-            else None
-        )
+        key = deserialize(decompress(oldest[2]), TFMessage).batch.children if self.name == STATIC_TRANSFORMS else None
         replaced_entry = self.before.pop(key, None)
         self.before[key] = oldest
-        return 0 if replaced_entry is None else _stored_size(replaced_entry[2])
+        return 0 if replaced_entry is None else _compute_stored_size(replaced_entry[2])
 
-    def thin(self, wanted_bytes: int) -> int:
+    def thin(self, bytes_to_free: int) -> int:
         """Drop messages that are close to their neighbors in relation to their age.
 
         Args:
-            wanted_bytes: the number of bytes to free.
+            bytes_to_free: the number of bytes to free.
 
         Returns:
             The number of freed bytes.
@@ -240,20 +236,20 @@ class _Track:
         dropped: set[int] = set()
         freed = 0
         for _, place in sorted(gaps):
-            if freed >= wanted_bytes:
+            if freed >= bytes_to_free:
                 break
             if place - 1 not in dropped and place + 1 not in dropped:
                 dropped.add(place)
-                freed += _stored_size(kept_entries[place][2])
+                freed += _compute_stored_size(kept_entries[place][2])
         self._repeated_numbers.difference_update(kept_entries[place][1] for place in dropped)
         self.entries = [entry for place, entry in enumerate(kept_entries) if place not in dropped]
         self.first_index = 0
         self.size -= freed
         return freed
 
-    def replace(self, number: int, packed: Packed) -> int:
+    def replace(self, number: int, packed: CompressedMessage) -> int:
         """Replace a message with its compressed form, and return the number of freed bytes."""
-        index = self._index_of(number)
+        index = self._find_index(number)
         if index is None:
             return 0  # the message was dropped in the meantime
         stamp_ns, _, data = self.entries[index]
@@ -261,7 +257,7 @@ class _Track:
         self.size -= len(data) - len(packed)
         return len(data) - len(packed)
 
-    def _index_of(self, number: int) -> int | None:
+    def _find_index(self, number: int) -> int | None:
         """Return the index of the message with a number, or None if it was dropped."""
         index = bisect_left(self.entries, number, lo=self.first_index, key=lambda item: item[1])
         return index if index < len(self.entries) and self.entries[index][1] == number else None
@@ -297,7 +293,7 @@ class _Track:
         if not entries or next_index == len(self.entries) or self.entries[next_index][1] not in self._repeated_numbers:
             return entries
         (start_ns, number, earlier), (end_ns, _, later) = entries[0], self.entries[next_index]
-        return [(at_ns, number, clock_between(earlier, later, (at_ns - start_ns) / (end_ns - start_ns)))]
+        return [(at_ns, number, interpolate_clock(earlier, later, (at_ns - start_ns) / (end_ns - start_ns)))]
 
     def between(self, start_ns: int, end_ns: int) -> list[_Entry]:
         """Return the messages from one time to another, both inclusive."""
@@ -362,7 +358,7 @@ class History:
             content: the content of the message (see `stillness`), so that a message that only repeats earlier ones
                 needs no additional memory; None if the content is not compared.
         """
-        size = _stored_size(data)
+        size = _compute_stored_size(data)
         if size > self.max_bytes:
             return
         with self.lock:
@@ -371,7 +367,7 @@ class History:
             if track is None:
                 track = self._tracks[topic] = _Track(topic)
             if content is not None and content.clock_ns is not None:
-                content = self._comparable_clock(content, content.clock_ns)
+                content = self._make_comparable_clock(content, content.clock_ns)
             added_bytes = None if content is None else track.repeat(self._newest_ns, self.count, data, content)
             if added_bytes is not None:
                 self.size += added_bytes
@@ -396,8 +392,10 @@ class History:
         """
         self._shrinker.close()
 
-    def _comparable_clock(self, content: Content, clock_ns: int) -> Content:
-        """Return the content of a clock message, with the state that decides whether it repeats an earlier one.
+    def _make_comparable_clock(self, content: Content, clock_ns: int) -> Content:
+        """Return the content of a clock message for comparison with earlier ones.
+
+        The state in it decides whether the message repeats an earlier one.
 
         Clock messages count as repeated while no other message arrives and the clock is not reset.
         """
@@ -416,7 +414,7 @@ class History:
             freed = largest.thin(self.max_bytes // _FREED_DIVISOR)
             self.size -= freed
             return freed > 0
-        oldest = self._first()
+        oldest = self._find_oldest_track()
         if oldest is None:
             return False
         self.size -= oldest.drop()
@@ -431,7 +429,7 @@ class History:
             track.is_queued = True
             heappush(self._queue_by_oldest, (track.entries[track.first_index][1], track.name, track))
 
-    def _first(self) -> _Track | None:
+    def _find_oldest_track(self) -> _Track | None:
         """Return the track with the oldest message, or None if there are no messages."""
         while self._queue_by_oldest:
             number, _, track = self._queue_by_oldest[0]
@@ -442,7 +440,7 @@ class History:
             self._queue(track)
         return None
 
-    def _replace(self, key: tuple[_Track, int], packed: Packed) -> None:
+    def _replace(self, key: tuple[_Track, int], packed: CompressedMessage) -> None:
         track, number = key
         with self.lock:
             self.size -= track.replace(number, packed)
@@ -454,7 +452,7 @@ class History:
         If there is no message, this is the current time.
         """
         with self.lock:
-            oldest = self._first()
+            oldest = self._find_oldest_track()
             return self.end_ns if oldest is None else oldest.entries[oldest.first_index][0]
 
     @property
@@ -494,7 +492,7 @@ class History:
                         entries = dropped_states + entries
                     entries = entries or dropped_states
                 target = static if name == STATIC_TRANSFORMS else recent
-                target += [(name, stamp, uncompressed_bytes(data)) for stamp, _, data in entries]
+                target += [(name, stamp, decompress(data)) for stamp, _, data in entries]
         return static + sorted(recent, key=lambda item: item[1])
 
     def time_before(self, topics: Collection[str], at_ns: int) -> int | None:
@@ -511,7 +509,7 @@ class History:
 
         The result begins with the state at the start (see `state_at`); the times of its messages are set to the
         start. It ends with the messages that are still repeated at the end. Compressed messages stay
-        compressed, because together they could be too large (see `uncompressed_bytes`).
+        compressed, because together they could be too large (see `decompress`).
         """
         with self.lock:
             initial_state = self.state_at(list(self._tracks), start_ns - 1)
@@ -545,7 +543,7 @@ class History:
         if best is None:
             return None
         (stamp, found_number, data), name = best
-        return found_number, (name, stamp, uncompressed_bytes(data))
+        return found_number, (name, stamp, decompress(data))
 
 
 class _LiveIterator(Iterator[Recorded]):
@@ -569,5 +567,5 @@ class _LiveIterator(Iterator[Recorded]):
         return recorded
 
 
-def _stored_size(data: bytes) -> int:
+def _compute_stored_size(data: bytes) -> int:
     return len(data) + _OVERHEAD_BYTES

@@ -48,20 +48,25 @@ class McapLookup:
         self._cached_chunks: OrderedDict[int, bytes] = OrderedDict()
 
     def latest(self, channels: Collection[int], at_ns: int) -> tuple[int, bytes] | None:
-        """Return the time in nanoseconds and the data of the last message of some channels up to a time, or None."""
+        """Return the time and the data of the last message of some channels up to a time.
+
+        The time is in nanoseconds. Returns None if there is no message.
+        """
         best: tuple[int, ChunkInfo, int] | None = None
         for channel in channels:
-            for chunk, latest_end in self._channel_chunks(channel).iterate_backwards(at_ns):
+            for chunk, latest_end in self._get_channel_chunks(channel).iterate_backwards(at_ns):
                 if best is not None and latest_end <= best[0]:
                     break
-                entries = self._entries(chunk, channel)
+                entries = self._read_entries(chunk, channel)
                 index = bisect_right(entries, (at_ns, 1 << 64)) - 1
                 if index >= 0 and (best is None or entries[index][0] > best[0]):
                     best = entries[index][0], chunk, entries[index][1]
         return None if best is None else (best[0], self._read_message(best[1], best[2]))
 
     def between(self, channels: Collection[int], start_ns: int, end_ns: int) -> list[tuple[int, bytes]]:
-        """Return the times in nanoseconds and the data of the messages from one time to another, ordered by time.
+        """Return the times and the data of the messages from one time to another.
+
+        The messages are ordered by time, and the times are in nanoseconds.
 
         Both limits are inclusive.
         """
@@ -69,7 +74,7 @@ class McapLookup:
         for channel in channels:
             chunks = [
                 chunk
-                for chunk, _ in self._channel_chunks(channel).iterate_backwards(end_ns)
+                for chunk, _ in self._get_channel_chunks(channel).iterate_backwards(end_ns)
                 if chunk.message_end_time >= start_ns
             ]
             if len(chunks) > _MAX_CHUNKS:
@@ -77,7 +82,7 @@ class McapLookup:
             for chunk in chunks:
                 locations += [
                     (stamp, chunk, offset)
-                    for stamp, offset in self._entries(chunk, channel)
+                    for stamp, offset in self._read_entries(chunk, channel)
                     if start_ns <= stamp <= end_ns
                 ]
         locations.sort(key=lambda item: (item[0], item[1].chunk_start_offset, item[2]))
@@ -92,19 +97,19 @@ class McapLookup:
             channel: the number of the channel.
             exact: whether to yield an interval for each message instead of each chunk.
         """
-        for chunk in self._channel_chunks(channel).chunks:
+        for chunk in self._get_channel_chunks(channel).chunks:
             if exact:
-                yield from ((stamp_ns, stamp_ns, 1) for stamp_ns, _ in self._entries(chunk, channel))
+                yield from ((stamp_ns, stamp_ns, 1) for stamp_ns, _ in self._read_entries(chunk, channel))
             else:
                 yield chunk.message_start_time, chunk.message_end_time, chunk.channel_count.get(channel, 0)
 
-    def _channel_chunks(self, channel: int) -> _ChannelChunks:
+    def _get_channel_chunks(self, channel: int) -> _ChannelChunks:
         if channel not in self._chunks_by_channel:
             chunks_of_channel = [chunk for chunk in self._storage.chunks if channel in chunk.message_index_offsets]
             self._chunks_by_channel[channel] = _ChannelChunks(chunks_of_channel)
         return self._chunks_by_channel[channel]
 
-    def _entries(self, chunk: ChunkInfo, channel: int) -> list[tuple[int, int]]:
+    def _read_entries(self, chunk: ChunkInfo, channel: int) -> list[tuple[int, int]]:
         """Return the times and offsets of a channel's messages in a chunk, in order of time."""
         file: Any = self._storage.bio
         file.seek(chunk.message_index_offsets[channel])
@@ -112,11 +117,11 @@ class McapLookup:
         return sorted(_ENTRY.iter_unpack(file.read(size)))
 
     def _read_message(self, chunk: ChunkInfo, offset: int) -> bytes:
-        data = self._data(chunk)
+        data = self._read_chunk(chunk)
         length = _MESSAGE_HEAD.unpack_from(data, offset)[1]
         return data[offset + _MESSAGE_HEAD.size : offset + 9 + length]
 
-    def _data(self, chunk: ChunkInfo) -> bytes:
+    def _read_chunk(self, chunk: ChunkInfo) -> bytes:
         offset = chunk.chunk_start_offset
         if offset in self._cached_chunks:
             self._cached_chunks.move_to_end(offset)

@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.bag.names import PACKED
+from linkwright.bag.names import COMPRESSED_SUFFIX
 
 if TYPE_CHECKING:
     from rosbags.rosbag2 import Reader
@@ -36,7 +36,7 @@ def decompress_file(path: Path, folder: Path) -> Path:
         zstd.ZstdError: the file is not compressed with zstd.
         OSError: the result cannot be written.
     """
-    target_path = folder / path.name.removesuffix(PACKED)
+    target_path = folder / path.name.removesuffix(COMPRESSED_SUFFIX)
     with zstd.open(path, "rb") as source, target_path.open("wb") as target, suppress(EOFError):
         shutil.copyfileobj(source, target)
     return target_path

@@ -11,20 +11,20 @@ import yaml
 from rosbags.interfaces import Qos
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
-from linkwright.bag.names import METADATA, SUFFIXES
+from linkwright.bag.names import METADATA_FILE, SUFFIXES
 from linkwright.files import whole_files
 from linkwright.files.scratch_folders import ScratchFolder
 
 VERSION: Literal[8] = 8
 """The version of the metadata. Humble reads versions up to 8, except for unknown fields. Jazzy writes 9."""
 
-INFORMATION = "rosbag2_bagfile_information"
+INFORMATION_KEY = "rosbag2_bagfile_information"
 """The top-level key of ``metadata.yaml``."""
 
 _Metadata = dict[str, Any]
 
 
-class Part:
+class RecordingFile:
     """A file of a recording that is being written.
 
     Args:
@@ -93,10 +93,10 @@ class Part:
     def close(self) -> _Metadata:
         """Write the index, close the file, and return the metadata of this file."""
         with ScratchFolder("bag") as folder:  # the library writes the metadata into this folder
-            self._writer.metapath = Path(folder) / METADATA
+            self._writer.metapath = Path(folder) / METADATA_FILE
             self._writer.close()
             document = yaml.safe_load(self._writer.metapath.read_text(encoding="utf-8"))
-        information: _Metadata = document[INFORMATION]
+        information: _Metadata = document[INFORMATION_KEY]
         self.path = self.path.with_name(information["relative_file_paths"][0])
         return information
 
@@ -117,8 +117,8 @@ def write_metadata(folder: Path, file_metadata: Sequence[_Metadata]) -> None:
 
 def write_information(folder: Path, information: _Metadata) -> None:
     """Write metadata to the ``metadata.yaml`` in a folder."""
-    text = yaml.safe_dump({INFORMATION: information}, sort_keys=False, allow_unicode=True)
-    whole_files.write_whole_file(folder / METADATA, text)
+    text = yaml.safe_dump({INFORMATION_KEY: information}, sort_keys=False, allow_unicode=True)
+    whole_files.write_whole_file(folder / METADATA_FILE, text)
 
 
 def _combine(file_metadata: Sequence[_Metadata]) -> _Metadata:

@@ -29,10 +29,10 @@ class PlayOptions:
     Attributes:
         rate: the playback speed; 2.0 is twice the speed of the recording.
         topics: the topics to play; empty for all.
-        without: the topics that are not played.
+        excluded_topics: the topics that are not played.
         pattern: a regular expression; if `topics` is empty, only topics with a match in their names are played.
         without_pattern: a regular expression; topics with a match in their names are not played.
-        loop: whether to restart at the end again and again.
+        loop: whether to repeat the recording until stopped.
         clock_hz: the rate at which the recording's time is published on ``/clock``, in Hz; 0 to publish no clock.
         clock_topics: topics whose messages are each preceded by a clock message.
         clock_before_all: whether every message is preceded by a clock message.
@@ -46,7 +46,7 @@ class PlayOptions:
 
     rate: float = 1.0
     topics: Sequence[str] = ()
-    without: Sequence[str] = ()
+    excluded_topics: Sequence[str] = ()
     pattern: str = ""
     without_pattern: str = ""
     loop: bool = False
@@ -163,7 +163,7 @@ class Player:
         while (
             self._is_paused
             and self._next_message is not None
-            and not self._is_beyond_end()
+            and not self._is_next_beyond_end()
             and (published < count or not count)
         ):
             self._position_ns = max(self._position_ns, self._next_message[1])
@@ -212,7 +212,7 @@ class Player:
             return
         now = self.now_ns()
         for _ in range(_MAX_BATCH):
-            if self._next_message is None or self._next_message[1] > now or self._is_beyond_end():
+            if self._next_message is None or self._next_message[1] > now or self._is_next_beyond_end():
                 break
             self._publish_next()
         self._end_or_schedule()
@@ -227,14 +227,14 @@ class Player:
         self._next_message = next(self._stream, None)
 
     def _end_or_schedule(self) -> None:
-        if self._next_message is not None and not self._is_beyond_end():
+        if self._next_message is not None and not self._is_next_beyond_end():
             self._schedule()
         elif self._options.loop and self.message_count:
             self._begin(self._reference_ns + _MIN_ROUND_NS)
         else:
             self.close()
 
-    def _is_beyond_end(self) -> bool:
+    def _is_next_beyond_end(self) -> bool:
         return self._end_ns is not None and self._next_message is not None and self._next_message[1] > self._end_ns
 
     def _schedule(self) -> None:
@@ -262,13 +262,13 @@ class Player:
         topics = {topic.name: topic for topic in self._bag.topics}
         self._bag.messages(list(options.topics))  # report unknown topics before playback starts
         selection = TopicSelection(
-            everything=not options.pattern,
+            all_topics=not options.pattern,
             names=options.topics,
             pattern=options.pattern,
-            without_names=options.without,
+            without_names=options.excluded_topics,
             without_pattern=options.without_pattern,
-            hidden=True,
-            every_service=not options.pattern,
+            include_hidden=True,
+            all_services=not options.pattern,
         )
         named_topics = [topics[name] for name in options.topics or topics]
         selected_topics = [topic for topic in named_topics if selection.selects(topic.name, topic.type_name)]

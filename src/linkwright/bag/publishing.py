@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from linkwright.bag.names import STATIC_TRANSFORMS, TRANSFORMS
-from linkwright.bag.qos import profile_for_playing
+from linkwright.bag.qos import choose_playing_profile
 from linkwright.bag.reading import BagReader, BagTopic
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 from linkwright.graph import TF_QOS, DurabilityPolicy, Node, Publisher, QoSProfile
@@ -41,12 +41,12 @@ def make_publishers(
         except LinkwrightError as error:
             node.get_logger().warning(f"Topic '{topic.name}' is not played: {error}")
             continue
-        qos = (overrides or {}).get(topic.name) or profile_for_playing(topic.offered_qos)
+        qos = (overrides or {}).get(topic.name) or choose_playing_profile(topic.offered_qos)
         publishers[topic.name] = node.create_publisher(message_class, topic.name, qos)
     return publishers
 
 
-def missing_type_findings(bag: BagReader) -> list[Diagnostic]:
+def find_missing_types(bag: BagReader) -> list[Diagnostic]:
     """Return the diagnostic BAG114 if topics cannot be played because their types are missing.
 
     Otherwise return an empty list.

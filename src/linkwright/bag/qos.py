@@ -95,7 +95,7 @@ def from_text(text: Any) -> list[QoSProfile]:
     return [from_library(profile) for profile in parse_qos(text)]
 
 
-def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
+def choose_recording_profile(offered: Sequence[QoSProfile]) -> QoSProfile:
     """Return a profile for a subscription that is compatible with all publishers of a topic.
 
     The subscription requests reliable or transient local only if all publishers offer it.
@@ -112,18 +112,18 @@ def profile_for_recording(offered: Sequence[QoSProfile]) -> QoSProfile:
     )
 
 
-def profile_for_playing(recorded: Sequence[QoSProfile]) -> QoSProfile:
-    """Return the recorded profile if all publishers offered equivalent profiles, or the default.
+def choose_playing_profile(recorded: Sequence[QoSProfile]) -> QoSProfile:
+    """Return the recorded profile if all publishers offered equivalent ones, or the default.
 
     Depth and lifespan may differ. The largest depth is then used, because one publisher now represents all of them.
     rosbag2 always uses a depth of 10 messages.
     """
-    if recorded and len({_compatibility_key(qos) for qos in recorded}) == 1:
+    if recorded and len({_make_compatibility_key(qos) for qos in recorded}) == 1:
         return max(recorded, key=lambda qos: (qos.history is HistoryPolicy.KEEP_ALL, qos.depth))
     return QoSProfile(depth=_PLAYING_DEPTH)
 
 
-def _compatibility_key(qos: QoSProfile) -> tuple[object, ...]:
+def _make_compatibility_key(qos: QoSProfile) -> tuple[object, ...]:
     """Return the policies of a profile that decide which subscriptions are compatible."""
     durations = (qos.deadline.nanoseconds, qos.liveliness_lease_duration.nanoseconds)
     return (qos.reliability, qos.durability, qos.liveliness, *durations)

@@ -10,9 +10,9 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from linkwright.bag.moments import StateLookup
-from linkwright.bag.names import METADATA, PACKED, Recorded, belong_together, storage_format
+from linkwright.bag.names import COMPRESSED_SUFFIX, METADATA_FILE, Recorded, belong_together, find_storage_format
 from linkwright.bag.qos import from_library
-from linkwright.bag.scratch import scratch_folder
+from linkwright.bag.scratch import create_scratch_folder
 from linkwright.bag.unfinished import is_unfinished, make_readable
 from linkwright.bag.unreadable import diagnose
 from linkwright.diagnostics import (
@@ -85,27 +85,29 @@ class BagReader:
         self._display_name = display_path(self.path) if display_name is None else display_name
         self._open = ExitStack()
         self._is_truncated = False
-        self._targets = list(files) or _storage_targets(self.path, self._display_name)
+        self._targets = list(files) or _find_storage_targets(self.path, self._display_name)
         try:
             self._reader = self._open_reader(self._targets)
         except BaseException:
             self._open.close()
             raise
-        self.storage = _target_storage(self._targets[0])
+        self.storage = _find_target_storage(self._targets[0])
         self._state_lookup = StateLookup(self._reader)
         self._register_types()
         self._other_formats = {
             connection.topic: serialization_format or "?"
             for connection in self._reader.connections
-            if (serialization_format := _serialization_format(connection)) != _ROS_FORMAT
+            if (serialization_format := _get_serialization_format(connection)) != _ROS_FORMAT
         }
         self.topics = [
             BagTopic(
                 name,
                 info.msgtype or "",
                 info.msgcount,
-                _serialization_format(info.connections[0]),
-                tuple(from_library(qos) for connection in info.connections for qos in _offered_profiles(connection)),
+                _get_serialization_format(info.connections[0]),
+                tuple(
+                    from_library(qos) for connection in info.connections for qos in _get_offered_profiles(connection)
+                ),
             )
             for name, info in self._reader.topics.items()
             if name not in self._other_formats
@@ -113,7 +115,9 @@ class BagReader:
         if self._other_formats and not self.topics:
             self.close()
             message = phrase(
-                "'{path}' is not a ROS 2 recording: {topics}", path=self._display_name, topics=self._describe_others()
+                "'{path}' is not a ROS 2 recording: {topics}",
+                path=self._display_name,
+                topics=self._describe_other_formats(),
             )
             raise LinkwrightError(
                 Diagnostic("BAG102", message, hint=phrase("the encoding of each topic's messages is in brackets"))
@@ -133,7 +137,7 @@ class BagReader:
         from rosbags.rosbag2 import Reader
 
         try:
-            reader = Reader(self._readable_target(target))
+            reader = Reader(self._make_readable(target))
             reader.open()
             self._open.callback(reader.close)
             if hasattr(reader.storage, "storages"):
@@ -146,15 +150,15 @@ class BagReader:
             raise _unreadable_error(path, display_name, error) from error
         return reader
 
-    def _readable_target(self, target: Path) -> Any:
+    def _make_readable(self, target: Path) -> Any:
         """Return a target that the library can open: the path, or an indexed file in memory.
 
         Data that the library would reject are removed from the file in memory.
         """
-        if target.is_file() and target.suffix == PACKED:
+        if target.is_file() and target.suffix == COMPRESSED_SUFFIX:
             from linkwright.bag.packed import decompress_file
 
-            target = decompress_file(target, Path(self._open.enter_context(scratch_folder())))
+            target = decompress_file(target, Path(self._open.enter_context(create_scratch_folder())))
         files = sorted(target.glob("*.mcap")) if target.is_dir() else [target]
         if len(files) != 1 or files[0].suffix != ".mcap":
             return target
@@ -193,12 +197,12 @@ class BagReader:
             message = phrase(
                 "topics of '{path}' are left out because their messages are not ROS 2 messages: {topics}",
                 path=self._display_name,
-                topics=self._describe_others(),
+                topics=self._describe_other_formats(),
             )
             diagnostics.append(Diagnostic("BAG112", message, severity=Severity.WARNING))
         return diagnostics
 
-    def _describe_others(self) -> str:
+    def _describe_other_formats(self) -> str:
         return ", ".join(
             f"{name} ({serialization_format})" for name, serialization_format in sorted(self._other_formats.items())
         )
@@ -208,12 +212,12 @@ class BagReader:
         """The files that contain the messages."""
         if self._targets[0].is_file():
             return self._targets
-        return _recording_files(self.path)
+        return _find_recording_files(self.path)
 
     @property
     def compression(self) -> str:
         """The unit of compression besides chunks: ``file``, ``message``, or empty for none."""
-        return "file" if self._targets[0].suffix == PACKED else str(self._reader.compression_mode or "")
+        return "file" if self._targets[0].suffix == COMPRESSED_SUFFIX else str(self._reader.compression_mode or "")
 
     @property
     def start_ns(self) -> int:
@@ -361,19 +365,19 @@ def _ignore_profiles_of_files(storage: Any) -> None:
             file.connections[index] = connection._replace(ext=listed_connection.ext, digest=listed_connection.digest)
 
 
-def _storage_targets(path: Path, display_name: str) -> list[Path]:
+def _find_storage_targets(path: Path, display_name: str) -> list[Path]:
     """Return the paths that the library opens.
 
     These are the folder, or its files if the metadata is missing.
     """
     if not path.exists():
         raise LinkwrightError(Diagnostic("BAG101", phrase("there is no recording '{path}'", path=display_name)))
-    if path.is_file() or ((path / METADATA).exists() and not _has_unfinished_file(path)):
+    if path.is_file() or ((path / METADATA_FILE).exists() and not _has_unfinished_file(path)):
         return [path]
     if not path.is_dir():
         message = phrase("'{path}' is not a recording: it is neither a file nor a folder", path=display_name)
         raise LinkwrightError(Diagnostic("BAG102", message))
-    files = _recording_files(path)
+    files = _find_recording_files(path)
     if len(files) == 1 or belong_together(files):
         return files
     if not files:
@@ -397,21 +401,21 @@ def _has_unfinished_file(folder: Path) -> bool:
     return len(files) > 1 and belong_together(files) and any(is_unfinished(file) for file in files)
 
 
-def _target_storage(target: Path) -> str:
+def _find_target_storage(target: Path) -> str:
     if target.is_file():
-        return storage_format(target) or target.suffix.lstrip(".")
-    return next((name for path in _recording_files(target) if (name := storage_format(path)) is not None), "")
+        return find_storage_format(target) or target.suffix.lstrip(".")
+    return next((name for path in _find_recording_files(target) if (name := find_storage_format(path)) is not None), "")
 
 
-def _recording_files(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.iterdir() if storage_format(path) is not None)
+def _find_recording_files(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.iterdir() if find_storage_format(path) is not None)
 
 
-def _serialization_format(connection: Any) -> str:
+def _get_serialization_format(connection: Any) -> str:
     return str(getattr(connection.ext, "serialization_format", _ROS_FORMAT))
 
 
-def _offered_profiles(connection: Any) -> list[Any]:
+def _get_offered_profiles(connection: Any) -> list[Any]:
     return list(getattr(connection.ext, "offered_qos_profiles", ()))
 
 

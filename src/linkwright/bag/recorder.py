@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from linkwright.bag.qos import profile_for_recording
+from linkwright.bag.qos import choose_recording_profile
 from linkwright.bag.robot_description import (
     DESCRIPTION_TOPIC,
     DESCRIPTION_TYPE,
     HASH_ENTRY,
-    description_of_message,
-    hash_of_description,
+    description_from_message,
+    hash_description,
 )
 from linkwright.bag.selection import TopicSelection
 from linkwright.bag.writing import BagWriter
@@ -20,8 +20,8 @@ from linkwright.graph import Node, QoSProfile
 from linkwright.graph.endpoints.base import MessageInfo
 from linkwright.messages import get_message
 
-_FLUSH_S = 1.0
-_POLL_S = 0.1
+_FLUSH_PERIOD_S = 1.0
+_POLL_PERIOD_S = 0.1
 
 
 class Recorder:
@@ -53,7 +53,7 @@ class Recorder:
         *,
         overrides: Mapping[str, QoSProfile] | None = None,
         discover: bool = True,
-        polling_seconds: float = _POLL_S,
+        polling_seconds: float = _POLL_PERIOD_S,
         without_publishers: bool = False,
         without_subscriptions: bool = True,
         paused: bool = False,
@@ -76,7 +76,7 @@ class Recorder:
         self._discovery_timer = (
             node.create_timer(polling_seconds, wrap_callback(self._subscribe_to_new_topics)) if discover else None
         )
-        self._flush_timer = node.create_timer(_FLUSH_S, wrap_callback(writer.flush))
+        self._flush_timer = node.create_timer(_FLUSH_PERIOD_S, wrap_callback(writer.flush))
         self._subscribe_to_new_topics()
 
     @property
@@ -115,7 +115,7 @@ class Recorder:
                 self._reject(name, f"Topic '{name}' has several types: {', '.join(types)}. It is not recorded.")
             elif self._selection.selects(name, types[0]):
                 self._subscribe(name, types[0])
-        requested = self._selection.is_complete_with
+        requested = self._selection.required_topics
         if self._discovery_timer is not None and requested is not None and requested <= set(self._writer.topics):
             self._discovery_timer.cancel()
             self._discovery_timer = None
@@ -137,7 +137,7 @@ class Recorder:
             message_class,
             name,
             lambda data, info: self._receive(name, data, info),
-            self._overrides.get(name) or profile_for_recording(offered),
+            self._overrides.get(name) or choose_recording_profile(offered),
             raw=True,
         )
         self._logger.info(f"Subscribed to topic '{name}'")
@@ -148,13 +148,13 @@ class Recorder:
         if not offered:
             return
         self._watches_description = True
-        profile = profile_for_recording(offered)
+        profile = choose_recording_profile(offered)
         self._node.create_subscription(
             get_message(DESCRIPTION_TYPE), DESCRIPTION_TOPIC, self._note_description, profile, raw=True
         )
 
     def _note_description(self, data: bytes | memoryview) -> None:
-        self._writer.set_custom_data(HASH_ENTRY, hash_of_description(description_of_message(data)))
+        self._writer.set_custom_data(HASH_ENTRY, hash_description(description_from_message(data)))
 
     def _reject(self, name: str, reason: str) -> None:
         self._rejected.add(name)

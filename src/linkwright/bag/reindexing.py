@@ -1,11 +1,11 @@
-"""Rebuild the ``metadata.yaml`` of a recording from its files, as ``ros2 bag reindex`` does."""
+"""Rebuild the ``metadata.yaml`` of a recording, as ``ros2 bag reindex`` does."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
-from linkwright.bag.names import belong_together, in_order, storage_format
+from linkwright.bag.names import belong_together, find_storage_format, sort_by_number
 from linkwright.bag.qos import to_text
 from linkwright.bag.reading import BagReader
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
@@ -25,15 +25,15 @@ def reindex(folder: Path) -> None:
     """
     from linkwright.bag.parts import write_metadata
 
-    files = [path for path in folder.iterdir() if storage_format(path) is not None] if folder.is_dir() else []
+    files = [path for path in folder.iterdir() if find_storage_format(path) is not None] if folder.is_dir() else []
     if len(files) != 1 and not belong_together(files):
         message = phrase("there are no files of a recording in '{path}'", path=display_path(folder))
         hint = phrase("pass a folder whose file names end with a number and .mcap or .db3, such as drive_0.mcap")
         raise LinkwrightError(Diagnostic("BAG117", message, hint=hint))
     file_metadata = []
-    for file in in_order(files):
+    for file in sort_by_number(files):
         with BagReader(file) as bag:
-            file_metadata.append(_file_metadata(bag, file))
+            file_metadata.append(_make_file_metadata(bag, file))
     try:
         write_metadata(folder, file_metadata)
     except OSError as error:
@@ -42,7 +42,7 @@ def reindex(folder: Path) -> None:
         raise LinkwrightError(Diagnostic("BAG105", message)) from error
 
 
-def _file_metadata(bag: BagReader, file: Path) -> dict[str, Any]:
+def _make_file_metadata(bag: BagReader, file: Path) -> dict[str, Any]:
     """Return the metadata of one file of a recording."""
     from linkwright.bag.parts import VERSION
 

@@ -1,4 +1,4 @@
-"""Rewrite recordings into other files, with other topics or another compression, as ``ros2 bag convert`` does.
+"""Rewrite recordings with other topics or compression, as ``ros2 bag convert`` does.
 
 The keys of the options file, in YAML, are those of rosbag2's ``StorageOptions`` and ``RecordOptions``. Keys that
 only affect rosbag2's performance are ignored.
@@ -34,7 +34,7 @@ def rewrite(sources: Sequence[str | Path], options_file: str | Path) -> list[Pat
     Raises:
         LinkwrightError: BAG115, the options cannot be read; see also `BagReader` and `BagWriter`.
     """
-    outputs = [_Output(entry, str(options_file)) for entry in _entries(options_file)]
+    outputs = [_Output(entry, str(options_file)) for entry in _read_entries(options_file)]
     with ExitStack() as stack:
         bags = [stack.enter_context(BagReader(source)) for source in sources]
         writers = [stack.enter_context(output.open_writer(bags)) for output in outputs]
@@ -63,22 +63,22 @@ class _Output:
         self._storage = self._read_choice("storage_id", STORAGES)
         compression = str(entry.get("compression_mode") or "none").lower()
         self._compression = self._check_choice("compression_mode", compression, COMPRESSIONS)
-        self._max_size = self._number("max_bagfile_size", 0)
-        self._max_seconds = self._number("max_bagfile_duration", 0)
-        start_ns, end_ns = self._number("start_time_ns", -1), self._number("end_time_ns", -1)
+        self._max_size = self._read_number("max_bagfile_size", 0)
+        self._max_seconds = self._read_number("max_bagfile_duration", 0)
+        start_ns, end_ns = self._read_number("start_time_ns", -1), self._read_number("end_time_ns", -1)
         self.begin_ns = max(start_ns, 0)
         self.end_ns = end_ns if end_ns >= 0 else 2**63 - 1
         record_all = bool(entry.get("all"))
         self._selection = TopicSelection(
-            everything=record_all or bool(entry.get("all_topics")),
+            all_topics=record_all or bool(entry.get("all_topics")),
             names=entry.get("topics", []),
             types=entry.get("topic_types", []),
             pattern=str(entry.get("regex", "")),
             without_names=entry.get("exclude_topics", []),
             without_types=entry.get("exclude_topic_types", []),
             without_pattern=str(entry.get("exclude_regex", entry.get("exclude", ""))),
-            hidden=bool(entry.get("include_hidden_topics")),
-            every_service=record_all or bool(entry.get("all_services")),
+            include_hidden=bool(entry.get("include_hidden_topics")),
+            all_services=record_all or bool(entry.get("all_services")),
             services=entry.get("services", []),
             without_services=entry.get("exclude_services", []),
         )
@@ -107,7 +107,7 @@ class _Output:
                 writer.add_topic(name, type_name, profiles[name])
         return writer
 
-    def _number(self, name: str, default: int) -> int:
+    def _read_number(self, name: str, default: int) -> int:
         value = self._entry.get(name, default)
         if type(value) is not int:
             raise self._options_error(phrase("'{name}' must be an integer", name=name))
@@ -125,10 +125,10 @@ class _Output:
         return value
 
     def _options_error(self, reason: Phrase) -> LinkwrightError:
-        return _unusable_options(self._file, reason)
+        return _unusable_options_error(self._file, reason)
 
 
-def _entries(path: str | Path) -> list[Mapping[str, Any]]:
+def _read_entries(path: str | Path) -> list[Mapping[str, Any]]:
     import yaml
 
     from linkwright.files.input_files import read_text
@@ -137,20 +137,20 @@ def _entries(path: str | Path) -> list[Mapping[str, Any]]:
         document = yaml.safe_load(read_text(path))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise _unusable_options(str(path), foreign(reason or str(error))) from error
+        raise _unusable_options_error(str(path), foreign(reason or str(error))) from error
     entries = document.get("output_bags") if isinstance(document, dict) else None
     if not isinstance(entries, list) or not entries:
-        raise _unusable_options(
+        raise _unusable_options_error(
             str(path), phrase("the file must have the key 'output_bags' with a list of the recordings to write")
         )
     for entry in entries:
         if not isinstance(entry, dict) or not isinstance(entry.get("uri"), str):
-            raise _unusable_options(
+            raise _unusable_options_error(
                 str(path), phrase("each entry of 'output_bags' must have the key 'uri' with the folder to create")
             )
     return entries
 
 
-def _unusable_options(path: str, reason: Phrase) -> LinkwrightError:
+def _unusable_options_error(path: str, reason: Phrase) -> LinkwrightError:
     message = phrase("the recording options in '{path}' cannot be used: {reason}", path=path, reason=reason)
     return LinkwrightError(Diagnostic("BAG115", message))

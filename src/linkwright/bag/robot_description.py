@@ -6,8 +6,8 @@ import hashlib
 
 import yaml
 
-from linkwright.bag.names import METADATA
-from linkwright.bag.parts import INFORMATION
+from linkwright.bag.names import METADATA_FILE
+from linkwright.bag.parts import INFORMATION_KEY
 from linkwright.bag.reading import BagReader
 from linkwright.messages import deserialize, get_message
 
@@ -17,17 +17,17 @@ HASH_ENTRY = "robot_description_sha256"
 """The entry of a recording's metadata with the hash."""
 
 
-def hash_of_description(text: str) -> str:
+def hash_description(text: str) -> str:
     """Return the SHA-256 hash of a description's text in hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def description_of_message(data: bytes | memoryview) -> str:
+def description_from_message(data: bytes | memoryview) -> str:
     """Return the description in a serialized message of `DESCRIPTION_TOPIC`."""
     return str(deserialize(data, get_message(DESCRIPTION_TYPE)).data)
 
 
-def recorded_description(bag: BagReader) -> str | None:
+def find_recorded_description(bag: BagReader) -> str | None:
     """Return the last description in a recording, or None if its topic was not recorded.
 
     Raises:
@@ -39,22 +39,22 @@ def recorded_description(bag: BagReader) -> str | None:
         return None
     text = None
     for _, _, data in bag.messages([DESCRIPTION_TOPIC]):
-        text = description_of_message(data)
+        text = description_from_message(data)
     return text
 
 
-def recorded_hash(bag: BagReader) -> str | None:
-    """Return the hash of the description with which a recording was made, or None if it is not known.
+def find_recorded_hash(bag: BagReader) -> str | None:
+    """Return the hash of the description of a recording, or None if it is not known.
 
     Raises:
         LinkwrightError: BAG102, the messages cannot be read.
     """
-    text = recorded_description(bag)
+    text = find_recorded_description(bag)
     if text is not None:
-        return hash_of_description(text)
-    path = bag.path / METADATA
+        return hash_description(text)
+    path = bag.path / METADATA_FILE
     try:
-        information = yaml.safe_load(path.read_text(encoding="utf-8"))[INFORMATION]
+        information = yaml.safe_load(path.read_text(encoding="utf-8"))[INFORMATION_KEY]
         value = (information.get("custom_data") or {}).get(HASH_ENTRY)
     except (OSError, ValueError, LookupError, TypeError, AttributeError, yaml.YAMLError):
         return None

@@ -31,7 +31,10 @@ class RowLookup:
         self._interval_ns = storage.metadata.duration // _INTERVALS + 1
 
     def latest(self, topics: Collection[int], at_ns: int) -> tuple[int, bytes] | None:
-        """Return the time in nanoseconds and the data of the last message of some topics up to a time, or None."""
+        """Return the time and the data of the last message of some topics up to a time.
+
+        The time is in nanoseconds. Returns None if there is no message.
+        """
         best = max((item for topic in topics for item in self._latest(topic, at_ns)), default=None)
         if best is None:
             return None
@@ -39,14 +42,16 @@ class RowLookup:
         return best[0], data
 
     def between(self, topics: Collection[int], start_ns: int, end_ns: int) -> list[tuple[int, bytes]]:
-        """Return the times in nanoseconds and the data of the messages from one time to another, ordered by time.
+        """Return the times and the data of the messages from one time to another.
+
+        The messages are ordered by time, and the times are in nanoseconds.
 
         Both limits are inclusive.
         """
         query = "SELECT timestamp, data FROM messages WHERE timestamp BETWEEN ? AND ? AND topic_id = ?"
         messages = []
         for topic in topics:
-            for first_ns, last_ns in self._sections(topic, start_ns, end_ns):
+            for first_ns, last_ns in self._find_sections(topic, start_ns, end_ns):
                 messages += self._query(f"{query} ORDER BY timestamp, id", first_ns, last_ns, topic)
         return sorted(messages, key=lambda row: row[0])
 
@@ -65,7 +70,7 @@ class RowLookup:
                 yield stamp_ns, stamp_ns, 1
             return
         for interval, count in self._counts_by_topic.get(topic, {}).items():
-            start_ns = self._interval_start(interval)
+            start_ns = self._compute_interval_start(interval)
             yield start_ns, start_ns + self._interval_ns - 1, count
 
     def _latest(self, topic: int, at_ns: int) -> Iterator[tuple[int, int]]:
@@ -73,21 +78,21 @@ class RowLookup:
         query = "SELECT timestamp, id FROM messages WHERE timestamp BETWEEN ? AND ? AND topic_id = ?"
         intervals = list(self._counts_by_topic.get(topic, {}))
         for interval in reversed(intervals[: bisect_right(intervals, (at_ns - self._start_ns) // self._interval_ns)]):
-            interval_start_ns = self._interval_start(interval)
+            interval_start_ns = self._compute_interval_start(interval)
             last_ns = min(at_ns, interval_start_ns + self._interval_ns - 1)
             rows = self._query(f"{query} ORDER BY timestamp DESC, id DESC LIMIT 1", interval_start_ns, last_ns, topic)
             if rows:
                 yield rows[0]
                 return
 
-    def _sections(self, topic: int, start_ns: int, end_ns: int) -> list[tuple[int, int]]:
+    def _find_sections(self, topic: int, start_ns: int, end_ns: int) -> list[tuple[int, int]]:
         """Return the parts of a time interval that can contain messages of a topic.
 
         The bounds are in ns. Adjacent parts are merged.
         """
         sections: list[tuple[int, int]] = []
         for interval in self._counts_by_topic.get(topic, {}):
-            interval_start_ns = self._interval_start(interval)
+            interval_start_ns = self._compute_interval_start(interval)
             first_ns, last_ns = max(interval_start_ns, start_ns), min(interval_start_ns + self._interval_ns - 1, end_ns)
             if first_ns > last_ns:
                 continue
@@ -96,7 +101,7 @@ class RowLookup:
             sections.append((first_ns, last_ns))
         return sections
 
-    def _interval_start(self, interval: int) -> int:
+    def _compute_interval_start(self, interval: int) -> int:
         return self._start_ns + interval * self._interval_ns
 
     @cached_property

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.bag.history import uncompressed_bytes
+from linkwright.bag.history import decompress
 from linkwright.bag.names import Recorded
 from linkwright.bag.writing import BagWriter
 from linkwright.graph import QoSProfile
@@ -49,12 +49,12 @@ def save_messages(
         for index, (name, stamp_ns, data) in enumerate(messages):
             if name not in writer.topics:
                 writer.add_topic(name, topics[name].type_name, topics[name].offered)
-            writer.write(name, stamp_ns, uncompressed_bytes(data))
+            writer.write(name, stamp_ns, decompress(data))
             if index % _PROGRESS_STEP == 0:
                 on_progress(index / len(messages))
 
 
-def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
+def find_last_reset_ns(messages: Sequence[Recorded]) -> int | None:
     """Return the reception time of the message with which ``/clock`` last jumped back, or None.
 
     The time is in nanoseconds since the epoch.
@@ -62,7 +62,7 @@ def last_reset_ns(messages: Sequence[Recorded]) -> int | None:
     reset_ns, clock_ns = None, None
     for name, stamp_ns, data in messages:
         if name == CLOCK_TOPIC:
-            stamp = _clock_ns(data)
+            stamp = _read_clock_ns(data)
             if clock_ns is not None and stamp < clock_ns:
                 reset_ns = stamp_ns
             clock_ns = stamp
@@ -75,17 +75,17 @@ def to_simulated_time(messages: Sequence[Recorded]) -> list[Recorded]:
     Messages before the first clock message get the time of that message. Without ``/clock``, all messages keep their
     times.
     """
-    clock_ns = next((_clock_ns(data) for name, _, data in messages if name == CLOCK_TOPIC), None)
+    clock_ns = next((_read_clock_ns(data) for name, _, data in messages if name == CLOCK_TOPIC), None)
     if clock_ns is None:
         return list(messages)
     converted = []
     for name, _, data in messages:
         if name == CLOCK_TOPIC:
-            clock_ns = _clock_ns(data)
+            clock_ns = _read_clock_ns(data)
         converted.append((name, clock_ns, data))
     return converted
 
 
-def _clock_ns(data: bytes) -> int:
+def _read_clock_ns(data: bytes) -> int:
     clock = deserialize(data, get_message("rosgraph_msgs/msg/Clock")).clock
     return int(clock.sec) * NANOSECONDS_PER_SECOND + int(clock.nanosec)

@@ -15,16 +15,16 @@ class TopicSelection:
     """The options of ``bag record`` and ``bag play`` that select topics.
 
     Attributes:
-        everything: whether to select all topics that are not hidden.
+        all_topics: whether to select all topics that are not hidden.
         names: the absolute names of topics to select.
         types: the types whose topics are selected.
         pattern: a regular expression; topics and services whose names contain a match are selected.
         without_names: the absolute names of topics to exclude, even if another option selects them.
         without_types: the types whose topics are excluded.
         without_pattern: a regular expression; topics and services whose names contain a match are excluded.
-        hidden: whether to treat hidden topics, whose names have a part that begins with an underscore, like other
-            topics.
-        every_service: whether to select the events of all services that publish them (service introspection).
+        include_hidden: whether to treat hidden topics like other topics; a part of their names begins with an
+            underscore.
+        all_services: whether to select the events of all services that publish them (service introspection).
         services: the absolute names of services whose events are selected.
         without_services: the absolute names of services to exclude.
 
@@ -32,23 +32,23 @@ class TopicSelection:
         LinkwrightError: BAG104, a regular expression is not valid.
     """
 
-    everything: bool = False
+    all_topics: bool = False
     names: Sequence[str] = ()
     types: Sequence[str] = ()
     pattern: str = ""
     without_names: Sequence[str] = ()
     without_types: Sequence[str] = ()
     without_pattern: str = ""
-    hidden: bool = False
-    every_service: bool = False
+    include_hidden: bool = False
+    all_services: bool = False
     services: Sequence[str] = ()
     without_services: Sequence[str] = ()
     _compiled_pattern: re.Pattern[str] | None = field(init=False, repr=False, compare=False)
-    _unwanted: re.Pattern[str] | None = field(init=False, repr=False, compare=False)
+    _compiled_without_pattern: re.Pattern[str] | None = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_compiled_pattern", _compile(self.pattern))
-        object.__setattr__(self, "_unwanted", _compile(self.without_pattern))
+        object.__setattr__(self, "_compiled_without_pattern", _compile(self.without_pattern))
 
     @property
     def is_empty(self) -> bool:
@@ -56,8 +56,8 @@ class TopicSelection:
         return not (self._accepts_unnamed or self.names or self.services)
 
     @property
-    def is_complete_with(self) -> frozenset[str] | None:
-        """The topics whose discovery completes the search, or None if any new topic may be selected."""
+    def required_topics(self) -> frozenset[str] | None:
+        """The topics whose discovery completes the search, or None if any topic may be selected."""
         return None if self._accepts_unnamed else self.selected_names
 
     @property
@@ -67,7 +67,7 @@ class TopicSelection:
 
     @property
     def _accepts_unnamed(self) -> bool:
-        return bool(self.everything or self.every_service or self.types or self.pattern)
+        return bool(self.all_topics or self.all_services or self.types or self.pattern)
 
     def selects(self, name: str, type_name: str) -> bool:
         """Return whether a topic is selected.
@@ -81,21 +81,21 @@ class TopicSelection:
         if name in self.names:
             return True
         if name.endswith(EVENT_TOPIC_SUFFIX):
-            return self._takes_service(name.removesuffix(EVENT_TOPIC_SUFFIX), type_name)
-        if not self.hidden and any(part.startswith("_") for part in name.split("/")):
+            return self._selects_service(name.removesuffix(EVENT_TOPIC_SUFFIX), type_name)
+        if not self.include_hidden and any(part.startswith("_") for part in name.split("/")):
             return False
-        return self.everything or type_name in self.types or self._is_wanted(name)
+        return self.all_topics or type_name in self.types or self._is_wanted(name)
 
-    def _takes_service(self, service: str, type_name: str) -> bool:
+    def _selects_service(self, service: str, type_name: str) -> bool:
         if service in self.without_services or self._is_unwanted(service):
             return False
-        return self.every_service or service in self.services or type_name in self.types or self._is_wanted(service)
+        return self.all_services or service in self.services or type_name in self.types or self._is_wanted(service)
 
     def _is_wanted(self, name: str) -> bool:
         return self._compiled_pattern is not None and self._compiled_pattern.search(name) is not None
 
     def _is_unwanted(self, name: str) -> bool:
-        return self._unwanted is not None and self._unwanted.search(name) is not None
+        return self._compiled_without_pattern is not None and self._compiled_without_pattern.search(name) is not None
 
 
 def _compile(pattern: str) -> re.Pattern[str] | None:

@@ -1,4 +1,4 @@
-"""Read the files of a recording without ``metadata.yaml`` as one recording, ordered by time."""
+"""Read the files of a recording without ``metadata.yaml`` as one, ordered by time."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ class _Storages:
         self._readers = readers
         merged_connections: dict[tuple[str, str], Connection] = {}
         for entry in (connection for reader in readers for connection in reader.connections):
-            merged = merged_connections.get(_key(entry))
+            merged = merged_connections.get(_make_key(entry))
             count = entry.msgcount if merged is None else merged.msgcount + entry.msgcount
-            merged_connections[_key(entry)] = (merged or entry)._replace(
+            merged_connections[_make_key(entry)] = (merged or entry)._replace(
                 id=merged.id if merged else len(merged_connections) + 1, msgcount=count
             )
         self.connections = list(merged_connections.values())
@@ -76,7 +76,7 @@ class _Storages:
 
         A file is opened only when its first message is due.
         """
-        connection_by_key = {_key(connection): connection for connection in connections}
+        connection_by_key = {_make_key(connection): connection for connection in connections}
         unopened = [
             reader for reader in self._readers if reader.message_count and (start is None or reader.end_time > start)
         ]
@@ -86,7 +86,7 @@ class _Storages:
         while streams or unopened:
             next_ns = streams[0][0] if streams else _MAX_NS
             if unopened and (not streams or unopened[-1].start_time <= next_ns):
-                stream = self._stream(unopened.pop(), connection_by_key, start, stop)
+                stream = self._iterate_messages(unopened.pop(), connection_by_key, start, stop)
             else:
                 _, _, message, stream = heapq.heappop(streams)
                 yield message
@@ -96,13 +96,15 @@ class _Storages:
                 heapq.heappush(streams, (first[1], sequence, first, stream))
 
     @staticmethod
-    def _stream(
+    def _iterate_messages(
         reader: Reader, connection_by_key: dict[tuple[str, str], Connection], start: int | None, stop: int | None
     ) -> Iterator[_Message]:
-        file_connections = [connection for connection in reader.connections if _key(connection) in connection_by_key]
+        file_connections = [
+            connection for connection in reader.connections if _make_key(connection) in connection_by_key
+        ]
         for connection, stamp_ns, data in reader.messages(file_connections, start, stop) if file_connections else ():
-            yield connection_by_key[_key(connection)], stamp_ns, data
+            yield connection_by_key[_make_key(connection)], stamp_ns, data
 
 
-def _key(connection: Connection) -> tuple[str, str]:
+def _make_key(connection: Connection) -> tuple[str, str]:
     return connection.topic, connection.msgtype

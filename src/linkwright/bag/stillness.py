@@ -56,7 +56,7 @@ class Content(NamedTuple):
         return bool((differences <= _TOLERANCE).all())
 
 
-def content_of(type_name: str, data: bytes) -> Content | None:
+def extract_content(type_name: str, data: bytes) -> Content | None:
     """Return the content of a message that has a header or contains transforms or a clock.
 
     Return None for other messages.
@@ -64,15 +64,15 @@ def content_of(type_name: str, data: bytes) -> Content | None:
     A message without a stamp reports an event: two equal messages report two events.
     """
     if type_name == _TRANSFORMS:
-        return _content_of_transforms(data)
+        return _extract_transforms_content(data)
     if type_name == _CLOCK:
-        return _content_of_clock(data)
+        return _extract_clock_content(data)
     if not _begins_with_header(type_name):
         return None
     return Content("", data[:_ENCAPSULATION_SIZE] + data[_ENCAPSULATION_SIZE + _STAMP_SIZE :])
 
 
-def clock_between(earlier: bytes, later: bytes, fraction: float) -> bytes:
+def interpolate_clock(earlier: bytes, later: bytes, fraction: float) -> bytes:
     """Return a clock message with a time interpolated linearly between two clock messages.
 
     Args:
@@ -80,13 +80,15 @@ def clock_between(earlier: bytes, later: bytes, fraction: float) -> bytes:
         later: the data of the second message.
         fraction: the position between the messages, from 0 for the first to 1 for the second.
     """
-    (first_ns, last_ns) = (content.clock_ns or 0 for content in map(_content_of_clock, (earlier, later)) if content)
+    (first_ns, last_ns) = (
+        content.clock_ns or 0 for content in map(_extract_clock_content, (earlier, later)) if content
+    )
     return earlier[:_ENCAPSULATION_SIZE] + _TIME.pack(
         *divmod(first_ns + round(fraction * (last_ns - first_ns)), NANOSECONDS_PER_SECOND)
     )
 
 
-def _content_of_clock(data: bytes) -> Content | None:
+def _extract_clock_content(data: bytes) -> Content | None:
     if len(data) < _ENCAPSULATION_SIZE + _TIME.size or data[1] != _LITTLE_ENDIAN:
         return None
     seconds, nanoseconds = _TIME.unpack_from(data, _ENCAPSULATION_SIZE)
@@ -125,7 +127,7 @@ Parsing the names of 500 frames takes longer than all other work.
 """
 
 
-def _content_of_transforms(data: bytes) -> Content | None:
+def _extract_transforms_content(data: bytes) -> Content | None:
     """Return the content of transforms, or None if the data is big-endian or truncated."""
     if len(data) < 2 * _ENCAPSULATION_SIZE or data[1] != _LITTLE_ENDIAN:
         return None

@@ -18,7 +18,15 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, cast
 
-from linkwright.bag.foreign import FOOTER_BODY, HEAD, MAGIC, find_patches, header_patch, readable_schema, schema_patch
+from linkwright.bag.foreign import (
+    FOOTER_BODY,
+    MAGIC,
+    RECORD_HEAD,
+    find_patches,
+    make_header_patch,
+    make_schema_patch,
+    make_schema_readable,
+)
 
 if TYPE_CHECKING:
     from typing_extensions import Buffer
@@ -55,13 +63,13 @@ def is_unfinished(path: Path) -> bool:
 
 def has_index(path: Path) -> bool:
     """Return whether a complete MCAP file has a summary."""
-    length = HEAD.size + FOOTER_BODY.size
+    length = RECORD_HEAD.size + FOOTER_BODY.size
     with path.open("rb") as file:
         if path.stat().st_size < length + 2 * len(MAGIC):
             return False
         file.seek(-length - len(MAGIC), 2)
         footer = file.read(length)
-    return bool(FOOTER_BODY.unpack_from(footer, HEAD.size)[0])
+    return bool(FOOTER_BODY.unpack_from(footer, RECORD_HEAD.size)[0])
 
 
 def make_readable(path: Path) -> ReadableFile | None:
@@ -75,7 +83,7 @@ def make_readable(path: Path) -> ReadableFile | None:
     with path.open("rb") as file:
         scan = _scan(file, path.stat().st_size)
         tail = _make_summary(scan, file)
-        return ReadableFile(path, scan.end, tail, header_patch(file) | scan.patches)
+        return ReadableFile(path, scan.end, tail, make_header_patch(file) | scan.patches)
 
 
 class ReadableFile:
@@ -191,7 +199,7 @@ class _Scan:
     def declare(self, kind: int, content: bytes) -> None:
         """Add a schema or channel, unless its number is already in use."""
         records = self.schemas if kind == _SCHEMA else self.channels
-        readable = readable_schema(content) if kind == _SCHEMA else content
+        readable = make_schema_readable(content) if kind == _SCHEMA else content
         records.setdefault(_UINT16.unpack_from(content)[0], _pack_record(kind, readable))
 
 
@@ -212,28 +220,28 @@ def _scan(file: BinaryIO, size: int) -> _Scan:
     scan = _Scan()
     while True:
         file.seek(scan.end)
-        header = file.read(HEAD.size)
-        if len(header) < HEAD.size:
+        header = file.read(RECORD_HEAD.size)
+        if len(header) < RECORD_HEAD.size:
             return scan
-        record_type, length = HEAD.unpack(header)
-        if record_type == 0 or record_type in _SUMMARY_TYPES or scan.end + HEAD.size + length > size:
+        record_type, length = RECORD_HEAD.unpack(header)
+        if record_type == 0 or record_type in _SUMMARY_TYPES or scan.end + RECORD_HEAD.size + length > size:
             return scan
         if record_type == _CHUNK and length >= _CHUNK_HEAD.size:
-            scan.chunks.append(_read_chunk_head(file, scan.end, HEAD.size + length))
+            scan.chunks.append(_read_chunk_head(file, scan.end, RECORD_HEAD.size + length))
         elif record_type == _MESSAGE_INDEX and scan.chunks:
             channel, entries = _UINT16.unpack(file.read(2))[0], _UINT32.unpack(file.read(4))[0]
             chunk = scan.chunks[-1]
             if entries:
                 chunk.indexes[channel], chunk.counts[channel] = scan.end, entries // _ENTRY.size
-            chunk.indexes_end = scan.end + HEAD.size + length
+            chunk.indexes_end = scan.end + RECORD_HEAD.size + length
         elif record_type in (_SCHEMA, _CHANNEL):
             content = file.read(length)
             scan.declare(record_type, content)
             if record_type == _SCHEMA:
-                scan.patches |= schema_patch(scan.end + HEAD.size, content)
+                scan.patches |= make_schema_patch(scan.end + RECORD_HEAD.size, content)
         elif record_type == _MESSAGE:
             scan.has_messages_outside_chunks = True
-        scan.end += HEAD.size + length
+        scan.end += RECORD_HEAD.size + length
 
 
 def _read_chunk_head(file: BinaryIO, offset: int, length: int) -> _Chunk:
@@ -254,7 +262,7 @@ def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, message_indexes: byt
     data = decompress(file.read(chunk.compressed_size), chunk.compression.decode(), chunk.size, 0)
     entries: dict[int, list[bytes]] = defaultdict(list)
     for record_type, offset, length in _read_records(data):
-        content = data[offset + HEAD.size : offset + HEAD.size + length]
+        content = data[offset + RECORD_HEAD.size : offset + RECORD_HEAD.size + length]
         if record_type in (_SCHEMA, _CHANNEL):
             scan.declare(record_type, content)
         elif record_type == _MESSAGE:
@@ -272,10 +280,10 @@ def _scan_chunk(file: BinaryIO, chunk: _Chunk, scan: _Scan, message_indexes: byt
 def _read_records(data: bytes) -> Iterator[tuple[int, int, int]]:
     """Yield the type, position and content length of each record in a decompressed chunk."""
     offset = 0
-    while offset + HEAD.size <= len(data):
-        record_type, length = HEAD.unpack_from(data, offset)
+    while offset + RECORD_HEAD.size <= len(data):
+        record_type, length = RECORD_HEAD.unpack_from(data, offset)
         yield record_type, offset, length
-        offset += HEAD.size + length
+        offset += RECORD_HEAD.size + length
 
 
 def _make_tail(scan: _Scan, message_indexes: bytes) -> bytes:
@@ -300,7 +308,7 @@ def _make_tail(scan: _Scan, message_indexes: bytes) -> bytes:
         (
             *scan.schemas.values(),
             *scan.channels.values(),
-            *(_pack_record(_CHUNK_INDEX, _chunk_index(chunk)) for chunk in chunks),
+            *(_pack_record(_CHUNK_INDEX, _make_chunk_index(chunk)) for chunk in chunks),
             _pack_record(_STATISTICS, statistics + _UINT32.pack(len(counts)) + counts),
         )
     )
@@ -308,7 +316,7 @@ def _make_tail(scan: _Scan, message_indexes: bytes) -> bytes:
     return data_end + summary + footer + MAGIC
 
 
-def _chunk_index(chunk: _Chunk) -> bytes:
+def _make_chunk_index(chunk: _Chunk) -> bytes:
     offsets = b"".join(_UINT16_UINT64.pack(*item) for item in chunk.indexes.items())
     return b"".join(
         (
@@ -325,4 +333,4 @@ def _chunk_index(chunk: _Chunk) -> bytes:
 
 
 def _pack_record(kind: int, content: bytes) -> bytes:
-    return HEAD.pack(kind, len(content)) + content
+    return RECORD_HEAD.pack(kind, len(content)) + content

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.bag.names import SUFFIXES, numbered_path
+from linkwright.bag.names import SUFFIXES, make_numbered_path
 from linkwright.bag.qos import to_library
 from linkwright.bag.snapshots import LatestMessages
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, missing_extra, phrase
@@ -21,7 +21,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-    from linkwright.bag.parts import Part
+    from linkwright.bag.parts import RecordingFile
     from linkwright.graph import QoSProfile
 
 STORAGES = ("mcap", "sqlite3")
@@ -98,7 +98,7 @@ class BagWriter:
         self._is_ending = False
         if 0 < max_size < _MIN_SPLIT_SIZES[storage]:
             raise _split_size_error(max_size, _MIN_SPLIT_SIZES[storage])
-        self._part: Part | None = self._open_first_file()
+        self._part: RecordingFile | None = self._open_first_file()
         unfinished.register_unfinished(self)
 
     @property
@@ -248,13 +248,15 @@ class BagWriter:
         finally:
             self._lock.release()
 
-    def _open_first_file(self) -> Part:
+    def _open_first_file(self) -> RecordingFile:
         folder = self.path.parent if self._is_single_file else self.path
         try:
             if self.path.exists():
                 raise FileExistsError
             folder.mkdir(mode=0o755, parents=True, exist_ok=self._is_single_file)
-            return self._open_file(self.path if self._is_single_file else numbered_path(self.path, 0, self._suffix))
+            return self._open_file(
+                self.path if self._is_single_file else make_numbered_path(self.path, 0, self._suffix)
+            )
         except OSError as error:
             reason = "it exists already" if self.path.exists() else str(error)
             raise LinkwrightError(
@@ -269,10 +271,10 @@ class BagWriter:
                 )
             ) from error
 
-    def _open_file(self, path: Path) -> Part:
-        from linkwright.bag.parts import Part
+    def _open_file(self, path: Path) -> RecordingFile:
+        from linkwright.bag.parts import RecordingFile
 
-        file = Part(path, self._compression, self._custom_data)
+        file = RecordingFile(path, self._compression, self._custom_data)
         for name, topic_entry in self._topics.items():
             file.add_topic(name, *topic_entry)
         return file
@@ -290,7 +292,7 @@ class BagWriter:
             return
         old_file = self._part
         self._file_metadata.append(old_file.close())
-        self._part = self._open_file(numbered_path(self.path, len(self._file_metadata), self._suffix))
+        self._part = self._open_file(make_numbered_path(self.path, len(self._file_metadata), self._suffix))
         self.on_split(str(old_file.path), str(self._part.path))
 
     def _stop_with(self, error: Exception) -> LinkwrightError:

@@ -32,7 +32,7 @@ _UNSETTLED_S = 3.0
 _BRIDGE_LOGGERS = ("wire", "dds", "zenoh", "bridge")
 
 
-def new_bridge_id() -> str:
+def create_bridge_id() -> str:
     """Return a new, unique bridge id."""
     return f"b{secrets.token_hex(4)}"
 
@@ -52,7 +52,7 @@ async def run_bridge(
     Raises:
         LinkwrightError: a network cannot be joined.
     """
-    sink = _without_mirrored_nodes(log)
+    sink = _drop_mirrored_nodes(log)
     first = await networks[0].join(bridge_id, sink)
     try:
         second = await networks[1].join(bridge_id, sink)
@@ -61,7 +61,7 @@ async def run_bridge(
             on_ready()
             directions = (Direction(first, second, names, logger), Direction(second, first, names, logger))
             try:
-                await _carry(first, second, directions)
+                await _forward_traffic(first, second, directions)
             finally:
                 for direction in directions:
                     direction.close()
@@ -71,7 +71,9 @@ async def run_bridge(
         await first.graph.close()
 
 
-async def _carry(first: BridgedNetwork, second: BridgedNetwork, directions: tuple[Direction, Direction]) -> None:
+async def _forward_traffic(
+    first: BridgedNetwork, second: BridgedNetwork, directions: tuple[Direction, Direction]
+) -> None:
     loop = asyncio.get_running_loop()
     change_event = asyncio.Event()
 
@@ -105,7 +107,7 @@ async def _carry(first: BridgedNetwork, second: BridgedNetwork, directions: tupl
             wait_task.cancel()
 
 
-def _without_mirrored_nodes(log: LogSink) -> LogSink:
+def _drop_mirrored_nodes(log: LogSink) -> LogSink:
     """Return a log sink that drops the records of mirrored nodes, except errors.
 
     Mirrored nodes warn about a quality of service that they did not choose.

@@ -15,10 +15,11 @@ from linkwright.wire.background import BackgroundTransport
 ENCLAVE = "/linkwright_bridge"
 """The prefix of the enclave of a bridge's nodes, ``/linkwright_bridge/<id of the bridge>``.
 
-Other bridges use the enclave to distinguish these nodes from the network's own nodes. Otherwise only security uses it.
+Other bridges use the enclave to distinguish these nodes from the network's own nodes. The enclave has no other use
+without security.
 """
 
-Provision = tuple[str, EndpointKind, str, str]
+EndpointKey = tuple[str, EndpointKind, str, str]
 """The node, kind, name and type of a publisher or service."""
 
 
@@ -41,7 +42,7 @@ class Snapshot:
     endpoints: list[EndpointInfo] = field(default_factory=list)
     subscriptions: dict[str, list[EndpointInfo]] = field(default_factory=dict)
     services_with_server: set[str] = field(default_factory=set)
-    mirrored_endpoints: set[Provision] = field(default_factory=set)
+    mirrored_endpoints: set[EndpointKey] = field(default_factory=set)
     mirrored_nodes: set[str] = field(default_factory=set)
     bridge_gids: set[bytes] = field(default_factory=set)
 
@@ -103,7 +104,7 @@ class BridgedNetwork:
         """Update `snapshot` to the nodes and endpoints that are known now."""
         snapshot = Snapshot()
         for node in self._transport.remote_nodes():
-            other_bridge_id = _owning_bridge(node)
+            other_bridge_id = _find_owning_bridge(node)
             if not other_bridge_id:
                 snapshot.nodes.append(node)
             elif other_bridge_id < self._bridge_id:
@@ -111,11 +112,11 @@ class BridgedNetwork:
         for endpoint in self._transport.remote_endpoints():
             if endpoint.node is None:
                 continue
-            other_bridge_id = _owning_bridge(endpoint.node)
+            other_bridge_id = _find_owning_bridge(endpoint.node)
             if other_bridge_id:
                 snapshot.bridge_gids.add(endpoint.gid)
                 if other_bridge_id < self._bridge_id:
-                    snapshot.mirrored_endpoints.add(endpoint_provision(endpoint))
+                    snapshot.mirrored_endpoints.add(make_endpoint_key(endpoint))
                 continue
             snapshot.endpoints.append(endpoint)
             if endpoint.kind is EndpointKind.SUBSCRIPTION:
@@ -125,13 +126,13 @@ class BridgedNetwork:
         self.snapshot = snapshot
 
 
-def endpoint_provision(endpoint: EndpointInfo) -> Provision:
+def make_endpoint_key(endpoint: EndpointInfo) -> EndpointKey:
     """Return an identity of an endpoint that does not depend on its GID."""
     assert endpoint.node is not None
     return endpoint.node.full_name, endpoint.kind, endpoint.name, endpoint.type_name
 
 
-def _owning_bridge(node: NodeIdentity) -> str:
-    """Return the ID of the bridge that a node belongs to, or an empty string for any other node."""
+def _find_owning_bridge(node: NodeIdentity) -> str:
+    """Return the ID of the bridge that a node belongs to, or an empty string if it has none."""
     root, slash, bridge_id = node.enclave.rpartition("/")
     return bridge_id if slash and root == ENCLAVE else ""

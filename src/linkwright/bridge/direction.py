@@ -6,10 +6,10 @@ import time
 from collections import deque
 from typing import NamedTuple
 
-from linkwright.bridge.bridged_network import BridgedNetwork, endpoint_provision
+from linkwright.bridge.bridged_network import BridgedNetwork, make_endpoint_key
 from linkwright.bridge.filters import NameFilter
 from linkwright.bridge.mirrors import MATCH_TIMEOUT_S, MirroredPublisher, MirroredService, Tap
-from linkwright.bridge.streams import Stream, awaited_streams, can_receive, endpoint_hash, publisher_stream
+from linkwright.bridge.streams import Stream, can_receive, find_awaited_streams, find_type_hash, get_stream
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo, Presence
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.loop.node_handle import NodeHandle
@@ -106,7 +106,7 @@ class Direction:
                 self._nodes[name] = self._target.open_node(node)
         for gid, info in self._selected_publishers.items():
             if gid not in self._publishers:
-                stream = publisher_stream(info, is_keyed=self._source.needs_hashes)
+                stream = get_stream(info, is_keyed=self._source.needs_hashes)
                 self._publishers[gid] = MirroredPublisher(self._mirror_node(info), info, stream)
             if self._publishers[gid].has_queued_messages:
                 self._publishers[gid].expects_listeners = self._is_expected(info)
@@ -205,7 +205,7 @@ class Direction:
             if info.node is None or not self._names.passes(info.name):
                 continue
             hidden.discard(info.node.full_name)
-            if endpoint_provision(info) in target_snapshot.mirrored_endpoints:
+            if make_endpoint_key(info) in target_snapshot.mirrored_endpoints:
                 continue
             if info.kind is EndpointKind.PUBLISHER and self._can_carry(info):
                 self._selected_publishers[info.gid] = info
@@ -228,8 +228,8 @@ class Direction:
             for info in target_snapshot.endpoints
             if info.kind is EndpointKind.SUBSCRIPTION
             and self._names.passes(info.name)
-            and endpoint_provision(info) not in source_snapshot.mirrored_endpoints
-            for stream in awaited_streams(info, is_keyed=self._source.needs_hashes)
+            and make_endpoint_key(info) not in source_snapshot.mirrored_endpoints
+            for stream in find_awaited_streams(info, is_keyed=self._source.needs_hashes)
         }
 
     def _is_expected(self, publisher: EndpointInfo) -> bool:
@@ -242,7 +242,7 @@ class Direction:
 
         If it cannot, warn once.
         """
-        if not self._target.needs_hashes or endpoint_hash(info):
+        if not self._target.needs_hashes or find_type_hash(info):
             return True
         if info.name not in self._warned_names:
             self._warned_names.add(info.name)
@@ -286,7 +286,7 @@ class Direction:
         """
         if not info.is_remote:
             return
-        publisher = self._publisher(info.publisher_gid)
+        publisher = self._find_publisher(info.publisher_gid)
         if publisher is not None:
             if publisher.stream == tap.stream:
                 self._publish_early()
@@ -305,18 +305,18 @@ class Direction:
             message = self._early_messages.popleft()
             if message.tap is not self._taps.get(message.tap.stream):
                 continue  # another bridge now carries the stream
-            publisher = self._publisher(message.gid)
+            publisher = self._find_publisher(message.gid)
             if publisher is None and now < message.expires_at:
                 self._early_messages.append(message)
                 continue
-            publisher = publisher or self._any_publisher_for(message)
+            publisher = publisher or self._assign_publisher(message)
             if publisher is not None and publisher.stream == message.tap.stream:
                 publisher.put(message.data)
 
-    def _publisher(self, gid: bytes) -> MirroredPublisher | None:
+    def _find_publisher(self, gid: bytes) -> MirroredPublisher | None:
         return self._publishers.get(self._aliases.get(gid, gid))
 
-    def _any_publisher_for(self, message: EarlyMessage) -> MirroredPublisher | None:
+    def _assign_publisher(self, message: EarlyMessage) -> MirroredPublisher | None:
         """Return any mirror of the message's stream, and assign the message's GID to it.
 
         Return None if the stream has no mirror.

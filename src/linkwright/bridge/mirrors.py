@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 from linkwright.bridge.outlet import Outlet
-from linkwright.bridge.streams import HISTORY_DEPTH, Stream, offered_profile
+from linkwright.bridge.streams import HISTORY_DEPTH, Stream, make_offered_profile
 from linkwright.graph.endpoints.base import EndpointInfo, MessageInfo
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Client, Service
@@ -64,7 +64,7 @@ class Tap:
 
 
 class MirroredPublisher:
-    """A publisher in one network that forwards the messages of a publisher in the other network.
+    """A publisher in one network that forwards the messages of a publisher in the other.
 
     Messages are queued until a subscription is matched, because existing subscriptions have not discovered the
     publisher yet.
@@ -81,7 +81,7 @@ class MirroredPublisher:
     def __init__(self, node: NodeHandle, info: EndpointInfo, stream: Stream) -> None:
         self.info = info
         self.stream = stream
-        publisher: Publisher[Any] = Publisher(node, info.type_name, info.name, offered_profile(info.qos))
+        publisher: Publisher[Any] = Publisher(node, info.type_name, info.name, make_offered_profile(info.qos))
         publisher.type_hash = info.type_hash
         publisher.raw = True
         self._waiting: deque[bytes] | None = deque(maxlen=HISTORY_DEPTH)

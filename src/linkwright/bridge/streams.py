@@ -49,7 +49,7 @@ class Stream(NamedTuple):
         return self.durability is DurabilityPolicy.TRANSIENT_LOCAL
 
 
-def publisher_stream(publisher: EndpointInfo, *, is_keyed: bool) -> Stream:
+def get_stream(publisher: EndpointInfo, *, is_keyed: bool) -> Stream:
     """Return the stream that a publisher is part of.
 
     Args:
@@ -57,27 +57,27 @@ def publisher_stream(publisher: EndpointInfo, *, is_keyed: bool) -> Stream:
         is_keyed: whether topics are separated by the hash of their type, and endpoints are not separated by quality of
             service, as over Zenoh.
     """
-    qos = offered_profile(publisher.qos)
+    qos = make_offered_profile(publisher.qos)
     reliability = ReliabilityPolicy.RELIABLE if is_keyed else qos.reliability
-    return _stream(publisher, reliability, qos.durability, qos.history, is_keyed=is_keyed)
+    return _make_stream(publisher, reliability, qos.durability, qos.history, is_keyed=is_keyed)
 
 
-def awaited_streams(subscription: EndpointInfo, *, is_keyed: bool) -> set[Stream]:
+def find_awaited_streams(subscription: EndpointInfo, *, is_keyed: bool) -> set[Stream]:
     """Return the streams of volatile publishers that may still appear and reach a subscription.
 
     Streams with history are subscribed to only after their publishers have appeared.
 
     Args:
         subscription: the subscription.
-        is_keyed: see `publisher_stream`; if false, few subscriptions announce their history.
+        is_keyed: see `get_stream`; if false, few subscriptions announce their history.
     """
     volatile, keep_last = DurabilityPolicy.VOLATILE, HistoryPolicy.KEEP_LAST
     reliable = ReliabilityPolicy.RELIABLE
-    streams = {_stream(subscription, reliable, volatile, keep_last, is_keyed=is_keyed)}
+    streams = {_make_stream(subscription, reliable, volatile, keep_last, is_keyed=is_keyed)}
     if is_keyed or subscription.qos.history is HistoryPolicy.KEEP_ALL:
-        streams.add(_stream(subscription, reliable, volatile, HistoryPolicy.KEEP_ALL, is_keyed=is_keyed))
+        streams.add(_make_stream(subscription, reliable, volatile, HistoryPolicy.KEEP_ALL, is_keyed=is_keyed))
     if not is_keyed and subscription.qos.reliability is not reliable:
-        streams.add(_stream(subscription, ReliabilityPolicy.BEST_EFFORT, volatile, keep_last, is_keyed=is_keyed))
+        streams.add(_make_stream(subscription, ReliabilityPolicy.BEST_EFFORT, volatile, keep_last, is_keyed=is_keyed))
     return streams
 
 
@@ -87,31 +87,31 @@ def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, is_keyed
     Args:
         subscription: the subscription, in the target network.
         publisher: the publisher in the source network, whose offered profile the mirror has.
-        is_keyed: see `publisher_stream`, for the target network.
+        is_keyed: see `get_stream`, for the target network.
     """
     if subscription.type_name != publisher.type_name:
         return False
     if is_keyed:
-        return len({endpoint_hash(subscription), endpoint_hash(publisher)} - {""}) <= 1
-    return not find_incompatible_policies(offered_profile(publisher.qos), subscription.qos)
+        return len({find_type_hash(subscription), find_type_hash(publisher)} - {""}) <= 1
+    return not find_incompatible_policies(make_offered_profile(publisher.qos), subscription.qos)
 
 
-def endpoint_hash(endpoint: EndpointInfo) -> str:
+def find_type_hash(endpoint: EndpointInfo) -> str:
     """Return the hash of an endpoint's type, or an empty string if it is unknown.
 
     The hash is the announced hash, or the hash of the local definition.
     """
-    return endpoint.type_hash or _local_hash(endpoint)
+    return endpoint.type_hash or _find_local_hash(endpoint)
 
 
-def _local_hash(endpoint: EndpointInfo) -> str:
+def _find_local_hash(endpoint: EndpointInfo) -> str:
     try:
         return type_hash(endpoint.type_name)
     except InterfaceNotFoundError:
         return ""
 
 
-def _stream(
+def _make_stream(
     endpoint: EndpointInfo,
     reliability: ReliabilityPolicy,
     durability: DurabilityPolicy,
@@ -120,11 +120,11 @@ def _stream(
     is_keyed: bool,
 ) -> Stream:
     # An endpoint whose type is unknown here may not announce the hash, but still receives from publishers of its type.
-    stream_hash = endpoint_hash(endpoint) if is_keyed and _local_hash(endpoint) else ""
+    stream_hash = find_type_hash(endpoint) if is_keyed and _find_local_hash(endpoint) else ""
     return Stream(endpoint.name, endpoint.type_name, stream_hash, reliability, durability, history)
 
 
-def offered_profile(qos: QoSProfile) -> QoSProfile:
+def make_offered_profile(qos: QoSProfile) -> QoSProfile:
     """Return the profile that a publisher offers.
 
     Values that discovery does not provide are ROS's defaults.

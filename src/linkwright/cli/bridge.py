@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
         LinkwrightError: CLI451 to CLI454, an argument is malformed or a network cannot be joined; DDS101 to DDS112, a
             setting is malformed.
     """
-    from linkwright.bridge.bridge import new_bridge_id, run_bridge
+    from linkwright.bridge.bridge import create_bridge_id, run_bridge
     from linkwright.bridge.filters import NameFilter
     from linkwright.bridge.networks import read_network
     from linkwright.graph.log.console import print_to_console
@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"Bridging {first.label} and {second.label}. Press Ctrl-C to stop", file=sys.stderr)
 
     async def main() -> int:
-        await run_bridge((first, second), names, new_bridge_id(), print_to_console, report)
+        await run_bridge((first, second), names, create_bridge_id(), print_to_console, report)
         return 0
 
     with ExitOnSigterm():

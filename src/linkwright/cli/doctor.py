@@ -70,11 +70,11 @@ def run(arguments: argparse.Namespace) -> int:
     """
     if "run_verb" in arguments:
         return run_nested(arguments)
-    from linkwright.doctor import examine, examine_parameter_files, observe, report
-    from linkwright.wire.unsupported_settings import new_unsupported_settings
+    from linkwright.doctor import examine, examine_parameter_files, make_report, observe
+    from linkwright.wire.unsupported_settings import find_new_unsupported_settings
 
     frames = _parse_fixed_frames(arguments)
-    settings = new_unsupported_settings()  # reported as findings, not when joining the graph
+    settings = find_new_unsupported_settings()  # reported as findings, not when joining the graph
 
     async def job(session: Session) -> int:
         if arguments.format == "text":
@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
         diagnostics = [*settings, *examine(observation), *examine_parameter_files(observation, arguments.params_file)]
         failed = any(diagnostic.severity is not Severity.INFO for diagnostic in diagnostics)
         if arguments.report or (arguments.report_failed and failed):
-            print(report(observation))
+            print(make_report(observation))
         if arguments.format == "text":
             print_diagnostics(diagnostics, sys.stderr)
             print(_format_summary(observation, len(diagnostics)))

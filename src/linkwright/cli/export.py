@@ -42,11 +42,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the export, and print its name."""
-    from linkwright.panels.export.feature import FORMATS, format_of
+    from linkwright.panels.export.feature import FORMATS, find_format
 
-    if format_of(arguments.out) is None:
+    if find_format(arguments.out) is None:
         extensions = " or ".join(f".{ending}" for ending in FORMATS)
-        order_hint = "; the file to write comes first" if format_of(arguments.file) is not None else ""
+        order_hint = "; the file to write comes first" if find_format(arguments.file) is not None else ""
         print(f"linkwright export: '{arguments.out}' should end with {extensions}{order_hint}", file=sys.stderr)
         return 2
     with ExitStack() as stack:

@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 async def _greet(session: Session, arguments: argparse.Namespace) -> int:
-    from linkwright.doctor.hello import Greetings, greeting
+    from linkwright.doctor.hello import Greetings, make_greeting
     from linkwright.messages import String
     from linkwright.wire import multicast
 
@@ -65,9 +65,9 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
         transport, _ = await session.loop.create_datagram_endpoint(lambda: _Listener(counts), sock=receiver)
 
         def send_greetings() -> None:
-            publisher.publish(String(data=greeting(host)))
+            publisher.publish(String(data=make_greeting(host)))
             counts.published_count += 1
-            multicast.send(sender, greeting(host).encode())
+            multicast.send(sender, make_greeting(host).encode())
             counts.sent_count += 1
 
         def print_table() -> None:
@@ -99,10 +99,10 @@ class _Listener(asyncio.DatagramProtocol):
 def _warn_if_local_only() -> None:
     """Print a warning if the topic stays on this computer, as it does by default."""
     from linkwright.wire.dds.settings import Range, read_settings
-    from linkwright.wire.joining import middleware
+    from linkwright.wire.joining import select_middleware
     from linkwright.wire.unsupported_settings import CYCLONE
 
-    if middleware() == CYCLONE and read_settings().range in (Range.MACHINE, Range.LOCALHOST, Range.OFF):
+    if select_middleware() == CYCLONE and read_settings().range in (Range.MACHINE, Range.LOCALHOST, Range.OFF):
         text = phrase(
             "the topic is only visible on this computer: set ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET "
             "on each computer to reach others"

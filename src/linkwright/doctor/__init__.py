@@ -9,28 +9,28 @@ from linkwright.doctor.record import (
     FixedFrame,
     Observation,
     ObservedClock,
+    ObservedCommanders,
     ObservedDescription,
-    ObservedDrivers,
     ObservedFrame,
     ObservedJoint,
     ObservedStamp,
     ObservedTransform,
 )
-from linkwright.doctor.report import report
+from linkwright.doctor.report import make_report
 from linkwright.doctor.watching import observe
 
 __all__ = [
     "FixedFrame",
     "Observation",
     "ObservedClock",
+    "ObservedCommanders",
     "ObservedDescription",
-    "ObservedDrivers",
     "ObservedFrame",
     "ObservedJoint",
     "ObservedStamp",
     "ObservedTransform",
     "examine",
     "examine_parameter_files",
+    "make_report",
     "observe",
-    "report",
 ]

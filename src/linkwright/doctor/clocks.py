@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
-from linkwright.doctor.record import Observation, ObservedStamp, listed, nodes_of
+from linkwright.doctor.record import Observation, ObservedStamp, format_names, list_node_names
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _MAX_DIFFERENCE_NS = 5 * NANOSECONDS_PER_SECOND
@@ -29,7 +29,7 @@ def _is_hidden(node: str) -> bool:
 def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
     simulated_nodes = sorted(node for node, value in observation.sim_time.items() if value)
     other_nodes = sorted(node for node, value in observation.sim_time.items() if not value)
-    senders = nodes_of(observation.publishers_of(_CLOCK_TOPIC))
+    senders = list_node_names(observation.find_publishers(_CLOCK_TOPIC))
     # a node that publishes /clock may itself use system time
     other_nodes = [node for node in other_nodes if node not in senders and not _is_hidden(node)]
     if simulated_nodes and not senders:
@@ -38,21 +38,21 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
             phrase(
                 "use_sim_time is true for {simulated_nodes}, but no node publishes /clock, "
                 "so their time does not advance",
-                simulated_nodes=listed(simulated_nodes),
+                simulated_nodes=format_names(simulated_nodes),
             ),
             hint=phrase("start the simulation or play the bag with --clock, or set use_sim_time to false"),
         )
     elif (
         simulated_nodes
         and observation.clock is not None
-        and observation.clock.ticks > 1
+        and observation.clock.message_count > 1
         and observation.clock.first_ns == observation.clock.last_ns
     ):
         yield Diagnostic(
             "DOC603",
             phrase("/clock stays at {last_ns:.3f} s", last_ns=observation.clock.last_ns / NANOSECONDS_PER_SECOND),
             severity=Severity.WARNING,
-            notes=(Note(phrase("published by {senders}", senders=listed(senders))),),
+            notes=(Note(phrase("published by {senders}", senders=format_names(senders))),),
             hint=phrase("check whether the simulation is paused"),
         )
     elif simulated_nodes and observation.clock is None and observation.seconds:
@@ -60,7 +60,7 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
             "DOC603",
             phrase("no message was received on /clock in {seconds:g} s", seconds=observation.seconds),
             severity=Severity.WARNING,
-            notes=(Note(phrase("published by {senders}", senders=listed(senders))),),
+            notes=(Note(phrase("published by {senders}", senders=format_names(senders))),),
             hint=phrase("check whether the simulation is paused or has not been started"),
         )
     if simulated_nodes and other_nodes:
@@ -68,8 +68,8 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
             "DOC601",
             phrase(
                 "use_sim_time is true for {simulated_nodes}, but false for {other_nodes}",
-                simulated_nodes=listed(simulated_nodes),
-                other_nodes=listed(other_nodes),
+                simulated_nodes=format_names(simulated_nodes),
+                other_nodes=format_names(other_nodes),
             ),
             severity=Severity.WARNING,
             notes=(Note(phrase("the stamps of these nodes are far apart, so transforms and messages do not match")),),
@@ -78,7 +78,7 @@ def _examine_simulated_time(observation: Observation) -> Iterator[Diagnostic]:
     if len(senders) > 1:
         yield Diagnostic(
             "DOC604",
-            phrase("{count} nodes publish /clock: {senders}", count=len(senders), senders=listed(senders)),
+            phrase("{count} nodes publish /clock: {senders}", count=len(senders), senders=format_names(senders)),
             notes=(
                 Note(phrase("the time jumps between the clocks, and each jump back clears the buffers of transforms")),
             ),
@@ -92,13 +92,15 @@ def _examine_stamps(observation: Observation) -> Iterator[Diagnostic]:
     for stamp in observation.stamps:
         if stamp.is_zero:
             unset_topics.setdefault(stamp.sender, []).append(stamp.topic)
-        elif abs(stamp.behind_ns) > _MAX_DIFFERENCE_NS:
+        elif abs(stamp.age_ns) > _MAX_DIFFERENCE_NS:
             wrong_stamps.setdefault(stamp.sender, []).append(stamp)
     for sender, topics in sorted(unset_topics.items()):
         yield Diagnostic(
             "DOC606",
             phrase(
-                "the messages of '{sender}' on {topics} have no stamp", sender=sender, topics=listed(sorted(topics))
+                "the messages of '{sender}' on {topics} have no stamp",
+                sender=sender,
+                topics=format_names(sorted(topics)),
             ),
             severity=Severity.WARNING,
             notes=(
@@ -107,30 +109,30 @@ def _examine_stamps(observation: Observation) -> Iterator[Diagnostic]:
             hint=phrase("set header.stamp to the node's time: node.get_clock().now().to_msg()"),
         )
     for sender, stamps in sorted(wrong_stamps.items()):
-        farthest = max(stamps, key=lambda stamp: abs(stamp.behind_ns))
-        topics_text = listed(sorted({stamp.topic for stamp in stamps}))
+        farthest = max(stamps, key=lambda stamp: abs(stamp.age_ns))
+        topics_text = format_names(sorted({stamp.topic for stamp in stamps}))
         yield Diagnostic(
             "DOC605",
             phrase(
                 "the stamps of '{sender}' on {topics} are {seconds:.1f} s behind the clock here",
                 sender=sender,
                 topics=topics_text,
-                seconds=farthest.behind_ns / NANOSECONDS_PER_SECOND,
+                seconds=farthest.age_ns / NANOSECONDS_PER_SECOND,
             )
-            if farthest.behind_ns > 0
+            if farthest.age_ns > 0
             else phrase(
                 "the stamps of '{sender}' on {topics} are {seconds:.1f} s ahead of the clock here",
                 sender=sender,
                 topics=topics_text,
-                seconds=-farthest.behind_ns / NANOSECONDS_PER_SECOND,
+                seconds=-farthest.age_ns / NANOSECONDS_PER_SECOND,
             ),
             severity=Severity.WARNING,
-            notes=_notes(sender, observation),
+            notes=_make_notes(sender, observation),
             hint=phrase("synchronize the computers' clocks (chrony, timedatectl), or set use_sim_time for all nodes"),
         )
 
 
-def _notes(sender: str, observation: Observation) -> tuple[Note, ...]:
+def _make_notes(sender: str, observation: Observation) -> tuple[Note, ...]:
     if observation.sim_time.get(sender):
         return (Note(phrase("'{sender}' uses simulated time", sender=sender)),)
     return ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, did_you_mean, foreign, phrase
-from linkwright.doctor.record import Observation, ObservedTransform, listed, nodes_of
+from linkwright.doctor.record import Observation, ObservedTransform, format_names, list_node_names
 from linkwright.doctor.robots import MOVING_TYPES, ObservedRobot
 from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.urdf import Joint
@@ -50,7 +50,7 @@ def _examine_contradictions(observation: Observation) -> Iterator[Diagnostic]:
                 Note(
                     phrase(
                         "its parent is '{parent}' according to {senders}",
-                        senders=listed(transform.senders),
+                        senders=format_names(transform.senders),
                         parent=transform.parent,
                     )
                 )
@@ -62,7 +62,7 @@ def _examine_contradictions(observation: Observation) -> Iterator[Diagnostic]:
                     "frame '{child}' has {count} parents, {parents}, and jumps between them",
                     child=child,
                     count=len(parents),
-                    parents=listed(parents),
+                    parents=format_names(parents),
                 ),
                 notes=notes,
                 hint=phrase("remove one of the publishers, or invert one transform: a frame has only one parent"),
@@ -76,7 +76,7 @@ def _examine_contradictions(observation: Observation) -> Iterator[Diagnostic]:
                 "{count} nodes publish the transform of {frames}: {senders}",
                 count=len(senders),
                 frames=_format_frames(children),
-                senders=listed(senders),
+                senders=format_names(senders),
             ),
             notes=(Note(phrase("the frames jump between the published poses")),),
             hint=phrase(
@@ -94,7 +94,7 @@ def _examine_numbers(observation: Observation) -> Iterator[Diagnostic]:
                     "the transform of frame '{child}' has numbers that are not finite, or a rotation of length zero",
                     child=transform.child,
                 ),
-                notes=(Note(phrase("published by {senders}", senders=listed(transform.senders))),),
+                notes=(Note(phrase("published by {senders}", senders=format_names(transform.senders))),),
                 hint=phrase(
                     "check the joint positions and origins from which it is computed; the identity rotation is w: 1"
                 ),
@@ -102,7 +102,7 @@ def _examine_numbers(observation: Observation) -> Iterator[Diagnostic]:
 
 
 def _find_cycle(transforms: Sequence[ObservedTransform]) -> list[str]:
-    """Return the frames of a cycle in the tree of frames, or an empty list if there is no cycle.
+    """Return the frames of a cycle in the tree of frames, or an empty list.
 
     The first frame is repeated as the last one.
     """
@@ -160,18 +160,18 @@ def _examine_missing(observation: Observation, robot: ObservedRobot) -> Iterator
         joint for joint in missing_joints if joint.type in MOVING_TYPES and _has_state(observation, robot, joint)
     ]
     if fixed_joints:
-        yield _missing_static_finding(robot, fixed_joints)
+        yield _make_missing_static_finding(robot, fixed_joints)
     if joints_without_state:
-        yield from _missing_state_findings(observation, robot, joints_without_state)
+        yield from _make_missing_state_findings(observation, robot, joints_without_state)
     if joints_with_state:
-        yield _unused_state_finding(observation, robot, joints_with_state)
+        yield _make_unused_state_finding(observation, robot, joints_with_state)
 
 
 def _has_state(observation: Observation, robot: ObservedRobot, joint: Joint) -> bool:
-    return robot.leader(joint) in {joint.name for joint in observation.joints}
+    return robot.find_leader(joint) in {joint.name for joint in observation.joints}
 
 
-def _missing_static_finding(robot: ObservedRobot, joints: Sequence[Joint]) -> Diagnostic:
+def _make_missing_static_finding(robot: ObservedRobot, joints: Sequence[Joint]) -> Diagnostic:
     frames = [robot.frame(joint.child) for joint in joints]
     return Diagnostic(
         "DOC304",
@@ -179,7 +179,7 @@ def _missing_static_finding(robot: ObservedRobot, joints: Sequence[Joint]) -> Di
             "there is no transform of {frames}, because no static transform was published",
             frames=_format_frames(frames),
         ),
-        notes=(Note(phrase("fixed joints: {joints}", joints=listed(joint.name for joint in joints))),),
+        notes=(Note(phrase("fixed joints: {joints}", joints=format_names(joint.name for joint in joints))),),
         hint=phrase(
             "check that robot_state_publisher runs with this description and that its publisher of /tf_static is "
             "transient local, because it publishes the transforms of fixed joints only once"
@@ -187,12 +187,12 @@ def _missing_static_finding(robot: ObservedRobot, joints: Sequence[Joint]) -> Di
     )
 
 
-def _missing_state_findings(
+def _make_missing_state_findings(
     observation: Observation, robot: ObservedRobot, joints: Sequence[Joint]
 ) -> Iterator[Diagnostic]:
-    names = list(dict.fromkeys(robot.leader(joint) for joint in joints))
+    names = list(dict.fromkeys(robot.find_leader(joint) for joint in joints))
     frames = [robot.frame(joint.child) for joint in joints]
-    senders = nodes_of(
+    senders = list_node_names(
         endpoint
         for endpoint in observation.endpoints_of_kind(EndpointKind.PUBLISHER)
         if endpoint.type_name == _JOINT_STATE
@@ -204,7 +204,7 @@ def _missing_state_findings(
             phrase(
                 "no node publishes joint states, so there is no transform of {frames}", frames=_format_frames(frames)
             ),
-            notes=(Note(phrase("joints of the robot that move: {names}", names=listed(names))),),
+            notes=(Note(phrase("joints of the robot that move: {names}", names=format_names(names))),),
             hint=phrase("start joint_state_publisher, joint_state_publisher_gui, or the robot's driver"),
         )
     elif not published_joints:
@@ -212,16 +212,16 @@ def _missing_state_findings(
             "DOC402",
             phrase(
                 "{senders} did not publish joint states in {seconds:g} s, so there is no transform of {frames}",
-                senders=listed(senders),
+                senders=format_names(senders),
                 seconds=observation.seconds,
                 frames=_format_frames(frames),
             ),
-            notes=(Note(phrase("joints of the robot that move: {names}", names=listed(names))),),
+            notes=(Note(phrase("joints of the robot that move: {names}", names=format_names(names))),),
             hint=phrase("check whether the publisher waits for a description, or for a controller that is not active"),
         )
     else:
         for name in names:
-            affected_frames = [robot.frame(joint.child) for joint in joints if robot.leader(joint) == name]
+            affected_frames = [robot.frame(joint.child) for joint in joints if robot.find_leader(joint) == name]
             suggestion = did_you_mean(
                 name, [candidate for candidate in published_joints if candidate not in robot.joint_names]
             )
@@ -236,8 +236,8 @@ def _missing_state_findings(
                     Note(
                         phrase(
                             "joint states of {published} are published by {senders}",
-                            senders=listed(senders),
-                            published=listed(published_joints),
+                            senders=format_names(senders),
+                            published=format_names(published_joints),
                         )
                     ),
                 ),
@@ -249,11 +249,11 @@ def _missing_state_findings(
             )
 
 
-def _unused_state_finding(observation: Observation, robot: ObservedRobot, joints: Sequence[Joint]) -> Diagnostic:
+def _make_unused_state_finding(observation: Observation, robot: ObservedRobot, joints: Sequence[Joint]) -> Diagnostic:
     frames = [robot.frame(joint.child) for joint in joints]
-    leader_names = {robot.leader(joint) for joint in joints}
+    leader_names = {robot.find_leader(joint) for joint in joints}
     topics = sorted({topic for joint in observation.joints if joint.name in leader_names for topic in joint.topics})
-    subscribers = nodes_of(
+    subscribers = list_node_names(
         endpoint
         for endpoint in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION)
         if endpoint.name in topics and endpoint.type_name == _JOINT_STATE
@@ -261,7 +261,7 @@ def _unused_state_finding(observation: Observation, robot: ObservedRobot, joints
     if not subscribers:
         hint = phrase(
             "no node subscribes to {topics}: remap joint_states of robot_state_publisher to this topic",
-            topics=listed(topics),
+            topics=format_names(topics),
         )
     else:
         hint = phrase(
@@ -272,18 +272,18 @@ def _unused_state_finding(observation: Observation, robot: ObservedRobot, joints
         "DOC305",
         phrase(
             "the state of joint {joints} is published, but there is no transform of {frames}",
-            joints=listed(joint.name for joint in joints),
+            joints=format_names(joint.name for joint in joints),
             frames=_format_frames(frames),
         ),
-        notes=(Note(phrase("published on {topics}", topics=listed(topics))),),
+        notes=(Note(phrase("published on {topics}", topics=format_names(topics))),),
         hint=hint,
     )
 
 
 def _format_frames(names: Sequence[str]) -> Phrase:
     if len(names) == 1:
-        return phrase("frame {names}", names=listed(names))
-    return phrase("{count} frames, {names}", count=len(names), names=listed(names))
+        return phrase("frame {names}", names=format_names(names))
+    return phrase("{count} frames, {names}", count=len(names), names=format_names(names))
 
 
 def _examine_trees(observation: Observation, robots: Sequence[ObservedRobot]) -> Iterator[Diagnostic]:
@@ -296,7 +296,7 @@ def _examine_trees(observation: Observation, robots: Sequence[ObservedRobot]) ->
     separate_roots = [root for root in roots if root not in reported_frames]
     if len(separate_roots) < 2:
         return
-    sizes = {root: _tree_size(root, observation.transforms) for root in separate_roots}
+    sizes = {root: _compute_tree_size(root, observation.transforms) for root in separate_roots}
     largest = max(separate_roots, key=lambda root: sizes[root])
     notes = tuple(
         Note(phrase("frames below '{root}': {sizes}", root=root, sizes=sizes[root])) for root in separate_roots
@@ -316,7 +316,7 @@ def _examine_trees(observation: Observation, robots: Sequence[ObservedRobot]) ->
     )
 
 
-def _tree_size(root: str, transforms: Sequence[ObservedTransform]) -> int:
+def _compute_tree_size(root: str, transforms: Sequence[ObservedTransform]) -> int:
     children_by_parent: dict[str, set[str]] = {}
     for transform in transforms:
         children_by_parent.setdefault(transform.parent, set()).add(transform.child)
@@ -332,7 +332,7 @@ def _tree_size(root: str, transforms: Sequence[ObservedTransform]) -> int:
 def _examine_fixed_frames(observation: Observation, robots: Sequence[ObservedRobot]) -> Iterator[Diagnostic]:
     known_frames = {name for transform in observation.transforms for name in (transform.parent, transform.child)}
     known_frames |= {robot.frame(robot.root) for robot in robots}
-    if observation.publishers_of(_WORLD_POSES):
+    if observation.find_publishers(_WORLD_POSES):
         known_frames.add(_WORLD)  # in the viewer, the frames of tf are in the world frame
     roots = sorted(
         {transform.parent for transform in observation.transforms}
@@ -342,7 +342,7 @@ def _examine_fixed_frames(observation: Observation, robots: Sequence[ObservedRob
         if frame.name in known_frames:
             continue
         known_note = (
-            phrase("known frames: {known}", known=listed(sorted(known_frames)))
+            phrase("known frames: {known}", known=format_names(sorted(known_frames)))
             if known_frames
             else phrase("there are no frames")
         )
@@ -355,7 +355,7 @@ def _examine_fixed_frames(observation: Observation, robots: Sequence[ObservedRob
                 source=foreign(frame.source),
             ),
             notes=(Note(known_note),),
-            hint=suggestion or _other_frame_hint(roots),
+            hint=suggestion or _make_other_frame_hint(roots),
         )
 
 
@@ -366,7 +366,7 @@ def _examine_message_frames(observation: Observation, robots: Sequence[ObservedR
     known_frames = {name for transform in observation.transforms for name in (transform.parent, transform.child)}
     robot_frames = {robot.frame(joint.child) for robot in robots for joint in robot.joints}
     robot_frames |= {robot.frame(robot.root) for robot in robots}
-    if observation.publishers_of(_WORLD_POSES):
+    if observation.find_publishers(_WORLD_POSES):
         known_frames.add(_WORLD)
     for frame in observation.frames:
         if frame.topic not in _WORLD_TOPICS and frame.frame not in known_frames | robot_frames:
@@ -375,10 +375,10 @@ def _examine_message_frames(observation: Observation, robots: Sequence[ObservedR
                 phrase(
                     "{sender} publishes '{topic}' in frame '{frame}', which does not exist",
                     topic=frame.topic,
-                    sender=listed([frame.sender]),
+                    sender=format_names([frame.sender]),
                     frame=frame.frame,
                 ),
-                notes=(Note(phrase("known frames: {known}", known=listed(sorted(known_frames)))),),
+                notes=(Note(phrase("known frames: {known}", known=format_names(sorted(known_frames)))),),
                 hint=did_you_mean(frame.frame, known_frames)
                 or phrase(
                     "publish a transform of the frame, for example with static_transform_publisher, or configure the "
@@ -387,10 +387,10 @@ def _examine_message_frames(observation: Observation, robots: Sequence[ObservedR
             )
 
 
-def _other_frame_hint(roots: Sequence[str]) -> Phrase:
+def _make_other_frame_hint(roots: Sequence[str]) -> Phrase:
     """Return a hint to choose another Fixed Frame, with the roots of the frame trees."""
     if not roots:
         return phrase("choose another Fixed Frame")
     if len(roots) == 1:
-        return phrase("choose another Fixed Frame; the root of all frames is {roots}", roots=listed(roots))
-    return phrase("choose another Fixed Frame; the roots of the trees of frames are {roots}", roots=listed(roots))
+        return phrase("choose another Fixed Frame; the root of all frames is {roots}", roots=format_names(roots))
+    return phrase("choose another Fixed Frame; the roots of the trees of frames are {roots}", roots=format_names(roots))

@@ -11,12 +11,12 @@ _GREETING = "hello, it's me "
 _SEPARATOR = "-" * 60
 
 
-def greeting(host: str) -> str:
+def make_greeting(host: str) -> str:
     """Return the greeting of a computer, in the format of ros2doctor."""
     return f"{_GREETING}{host}"
 
 
-def host_of(text: str) -> str:
+def parse_host(text: str) -> str:
     """Return the name of the computer that sent a greeting.
 
     The name is the last word of the greeting, or an empty string if the greeting is empty.
@@ -52,7 +52,7 @@ class Greetings:
         self._count(self.multicast_counts, text)
 
     def _count(self, counts: Counter[str], text: str) -> None:
-        host = host_of(text)
+        host = parse_host(text)
         if host and host != self.own_host:
             counts[host] += 1
 

@@ -65,18 +65,18 @@ class ObservedDescription:
 
 @dataclass(frozen=True, slots=True)
 class ObservedStamp:
-    """The stamps that were observed of a node on a topic.
+    """The observed stamps of a node's messages on a topic.
 
     Attributes:
         topic: the name of the topic.
         sender: the full name of the publishing node.
-        behind_ns: the clock at arrival minus the last stamp, in nanoseconds; negative if the stamp was in the future.
+        age_ns: the clock at arrival minus the last stamp, in nanoseconds; negative if the stamp was in the future.
         is_zero: whether the stamp was 0, so that it was probably never set.
     """
 
     topic: str
     sender: str
-    behind_ns: int
+    age_ns: int
     is_zero: bool = False
 
 
@@ -96,16 +96,16 @@ class ObservedFrame:
 
 
 @dataclass(frozen=True, slots=True)
-class ObservedDrivers:
+class ObservedCommanders:
     """The nodes that published contradictory velocities on a topic at the same time.
 
     Attributes:
         topic: the topic of the velocities, with the type Twist or TwistStamped.
-        drivers: the sorted full names of the nodes; a name occurs twice if two nodes share it.
+        commanders: the sorted full names of the nodes; a name occurs twice if two nodes share it.
     """
 
     topic: str
-    drivers: tuple[str, ...]
+    commanders: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,12 +113,12 @@ class ObservedClock:
     """The messages of ``/clock`` that were observed.
 
     Attributes:
-        ticks: the number of messages.
+        message_count: the number of messages.
         first_ns: the time in the first message, in nanoseconds.
         last_ns: the time in the last message, in nanoseconds.
     """
 
-    ticks: int
+    message_count: int
     first_ns: int
     last_ns: int
 
@@ -149,7 +149,7 @@ class Observation:
         descriptions: the published robot descriptions.
         stamps: the stamps of messages with a header.
         frames: the frames of messages with a header.
-        disputed: the topics on which several nodes published contradictory velocities.
+        contradictory_velocities: the topics on which several nodes published contradictory velocities.
         clock: the messages of ``/clock``; None if there were none.
         sim_time: the values of ``use_sim_time`` by the full names of the nodes that responded.
         lifecycle: the states of the managed nodes, by full name.
@@ -167,7 +167,7 @@ class Observation:
     descriptions: tuple[ObservedDescription, ...] = ()
     stamps: tuple[ObservedStamp, ...] = ()
     frames: tuple[ObservedFrame, ...] = ()
-    disputed: tuple[ObservedDrivers, ...] = ()
+    contradictory_velocities: tuple[ObservedCommanders, ...] = ()
     clock: ObservedClock | None = None
     sim_time: Mapping[str, bool] = field(default_factory=dict)
     lifecycle: Mapping[str, str] = field(default_factory=dict)
@@ -179,22 +179,22 @@ class Observation:
         """Return the endpoints of the given kind."""
         return [endpoint for endpoint in self.endpoints if endpoint.kind is kind]
 
-    def publishers_of(self, topic: str) -> list[EndpointInfo]:
+    def find_publishers(self, topic: str) -> list[EndpointInfo]:
         """Return the publishers of a topic that were observed."""
         return [endpoint for endpoint in self.endpoints_of_kind(EndpointKind.PUBLISHER) if endpoint.name == topic]
 
 
-def node_of(endpoint: EndpointInfo) -> str:
+def get_node_name(endpoint: EndpointInfo) -> str:
     """Return the full name of an endpoint's node."""
     return UNKNOWN_NODE if endpoint.node is None else join(endpoint.node.namespace, endpoint.node.name)
 
 
-def nodes_of(endpoints: Iterable[EndpointInfo]) -> list[str]:
+def list_node_names(endpoints: Iterable[EndpointInfo]) -> list[str]:
     """Return the sorted full names of the nodes of endpoints, without duplicates."""
-    return sorted({node_of(endpoint) for endpoint in endpoints})
+    return sorted({get_node_name(endpoint) for endpoint in endpoints})
 
 
-def listed(names: Iterable[str], limit: int = 6) -> Phrase:
+def format_names(names: Iterable[str], limit: int = 6) -> Phrase:
     """Return the names in quotation marks, separated by commas.
 
     If there are more than `limit` names, only the first ones are listed, with the number of the remaining ones.

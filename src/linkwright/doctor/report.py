@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import metadata
 
-from linkwright.doctor.record import Observation, node_of
+from linkwright.doctor.record import Observation, get_node_name
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.qos.compatibility import QoSCompatibility, qos_check_compatible
 
@@ -22,23 +22,23 @@ _UNIVERSAL_TOPICS = frozenset({"/parameter_events", "/rosout"})
 _PADDING = 4
 
 
-def report(observation: Observation) -> str:
+def make_report(observation: Observation) -> str:
     """Return the full report about the computer and an observed graph."""
-    return sections_text(
+    return format_sections(
         [
-            ("NETWORK CONFIGURATION", _network_rows()),
-            ("PACKAGE VERSIONS", _package_rows()),
-            ("PLATFORM INFORMATION", _platform_rows()),
-            ("QOS COMPATIBILITY LIST", _compatibility_rows(observation)),
-            ("RMW MIDDLEWARE", [("middleware name", _middleware_name())]),
-            ("ROS ENVIRONMENT", _environment_rows(os.environ)),
-            ("TOPIC LIST", _topic_rows(observation)),
+            ("NETWORK CONFIGURATION", _make_network_rows()),
+            ("PACKAGE VERSIONS", _make_package_rows()),
+            ("PLATFORM INFORMATION", _make_platform_rows()),
+            ("QOS COMPATIBILITY LIST", _make_compatibility_rows(observation)),
+            ("RMW MIDDLEWARE", [("middleware name", _find_middleware_name())]),
+            ("ROS ENVIRONMENT", _make_environment_rows(os.environ)),
+            ("TOPIC LIST", _make_topic_rows(observation)),
             ("NODE LIST", [("node", name) for name in observation.nodes] or [("node", "none")]),
         ]
     )
 
 
-def sections_text(sections: Iterable[Section]) -> str:
+def format_sections(sections: Iterable[Section]) -> str:
     """Return the text of a report's sections in the format of ``ros2 doctor``."""
     lines = []
     for title, items in sections:
@@ -48,7 +48,7 @@ def sections_text(sections: Iterable[Section]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _network_rows() -> list[tuple[str, str]]:
+def _make_network_rows() -> list[tuple[str, str]]:
     items = [("host", socket.gethostname())]
     try:
         names = [name for _, name in socket.if_nameindex()]
@@ -56,13 +56,13 @@ def _network_rows() -> list[tuple[str, str]]:
         names = []
     for name in names:
         items.append(("device", name))
-        address = _ipv4_address(name)
+        address = _find_ipv4_address(name)
         if address:
             items.append(("inet", address))
     return items
 
 
-def _ipv4_address(interface: str) -> str:
+def _find_ipv4_address(interface: str) -> str:
     """Return the IPv4 address of a network interface, or an empty string if it is unknown."""
     if not sys.platform.startswith("linux"):
         return ""
@@ -78,18 +78,18 @@ def _ipv4_address(interface: str) -> str:
     return socket.inet_ntoa(response[20:24])
 
 
-def _package_rows() -> list[tuple[str, str]]:
-    return [(name, _version(name)) for name in _REPORTED_PACKAGES]
+def _make_package_rows() -> list[tuple[str, str]]:
+    return [(name, _find_version(name)) for name in _REPORTED_PACKAGES]
 
 
-def _version(package: str) -> str:
+def _find_version(package: str) -> str:
     try:
         return metadata.version(package)
     except metadata.PackageNotFoundError:
         return "not installed"
 
 
-def _platform_rows() -> list[tuple[str, str]]:
+def _make_platform_rows() -> list[tuple[str, str]]:
     items = [
         ("system", platform.system()),
         ("platform info", platform.platform()),
@@ -101,46 +101,48 @@ def _platform_rows() -> list[tuple[str, str]]:
     return [*items, ("distribution name", distribution)] if distribution else items
 
 
-def _middleware_name() -> str:
-    from linkwright.wire.joining import is_available, middleware, unavailable_reason
+def _find_middleware_name() -> str:
+    from linkwright.wire.joining import is_available, select_middleware, unavailable_reason
     from linkwright.wire.unsupported_settings import ZENOH
 
     if not is_available():
         return f"none: {unavailable_reason()}"
     return (
-        "Eclipse Zenoh (as rmw_zenoh_cpp)" if middleware() == ZENOH else "Eclipse Cyclone DDS (as rmw_cyclonedds_cpp)"
+        "Eclipse Zenoh (as rmw_zenoh_cpp)"
+        if select_middleware() == ZENOH
+        else "Eclipse Cyclone DDS (as rmw_cyclonedds_cpp)"
     )
 
 
-def _environment_rows(variables: Mapping[str, str]) -> list[tuple[str, str]]:
+def _make_environment_rows(variables: Mapping[str, str]) -> list[tuple[str, str]]:
     names = sorted(name for name in variables if any(mark in name for mark in _VARIABLE_MARKS))
     return [(name, variables[name]) for name in names] or [("variables", "none")]
 
 
-def _compatibility_rows(observation: Observation) -> list[tuple[str, str]]:
+def _make_compatibility_rows(observation: Observation) -> list[tuple[str, str]]:
     items = []
     subscriptions = observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION)
-    for publisher in _reported_endpoints(observation.endpoints_of_kind(EndpointKind.PUBLISHER)):
+    for publisher in _select_reported_endpoints(observation.endpoints_of_kind(EndpointKind.PUBLISHER)):
         for subscription in subscriptions:
             if subscription.name == publisher.name:
                 compatibility, reason = qos_check_compatible(publisher.qos, subscription.qos)
                 status = "OK" if compatibility is QoSCompatibility.OK or observation.over_zenoh else reason
                 items += [
                     ("topic [type]", f"{publisher.name} [{publisher.type_name}]"),
-                    ("publisher node", node_of(publisher)),
-                    ("subscriber node", node_of(subscription)),
+                    ("publisher node", get_node_name(publisher)),
+                    ("subscriber node", get_node_name(subscription)),
                     ("compatibility status", status),
                 ]
     return items or [("compatibility status", "No publisher/subscriber pairs found")]
 
 
-def _topic_rows(observation: Observation) -> list[tuple[str, str]]:
+def _make_topic_rows(observation: Observation) -> list[tuple[str, str]]:
     publishers, subscriptions = (
         observation.endpoints_of_kind(EndpointKind.PUBLISHER),
         observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION),
     )
     items = []
-    for topic in sorted({endpoint.name for endpoint in _reported_endpoints([*publishers, *subscriptions])}):
+    for topic in sorted({endpoint.name for endpoint in _select_reported_endpoints([*publishers, *subscriptions])}):
         items += [
             ("topic", topic),
             ("publisher count", str(sum(publisher.name == topic for publisher in publishers))),
@@ -149,6 +151,6 @@ def _topic_rows(observation: Observation) -> list[tuple[str, str]]:
     return items or [("topic", "none")]
 
 
-def _reported_endpoints(endpoints: Iterable[EndpointInfo]) -> list[EndpointInfo]:
+def _select_reported_endpoints(endpoints: Iterable[EndpointInfo]) -> list[EndpointInfo]:
     reported = (endpoint for endpoint in endpoints if endpoint.name not in _UNIVERSAL_TOPICS)
-    return sorted(reported, key=lambda endpoint: (endpoint.name, node_of(endpoint)))
+    return sorted(reported, key=lambda endpoint: (endpoint.name, get_node_name(endpoint)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, foreign, phrase
-from linkwright.doctor.record import Observation, listed
+from linkwright.doctor.record import Observation, format_names
 from linkwright.urdf import Joint, Robot
 
 MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
@@ -55,7 +55,7 @@ class ObservedRobot:
         """Return the name of the frame that belongs to a link."""
         return f"{self.prefix}{link}"
 
-    def leader(self, joint: Joint) -> str:
+    def find_leader(self, joint: Joint) -> str:
         """Return the name of the joint whose state determines the position of a joint.
 
         For a mimic joint, the result is the joint that it mimics; for any other joint, the joint itself.
@@ -67,7 +67,7 @@ class ObservedRobot:
         return joint.name
 
 
-def robots_in(observation: Observation) -> tuple[list[ObservedRobot], list[Diagnostic]]:
+def find_robots(observation: Observation) -> tuple[list[ObservedRobot], list[Diagnostic]]:
     """Return the robots with an observed description, and findings about invalid descriptions.
 
     A description is invalid if it cannot be parsed.
@@ -77,7 +77,7 @@ def robots_in(observation: Observation) -> tuple[list[ObservedRobot], list[Diagn
     for description in observation.descriptions:
         read_description = DescriptionLibrary().read(description.text)
         if read_description.robot is not None:
-            prefix = _frame_prefix(read_description.robot, observation)
+            prefix = _find_frame_prefix(read_description.robot, observation)
             robots[description.topic, description.text] = ObservedRobot(
                 description.topic, description.sender, read_description.robot, prefix
             )
@@ -98,7 +98,7 @@ def robots_in(observation: Observation) -> tuple[list[ObservedRobot], list[Diagn
     return list(robots.values()), findings
 
 
-def _frame_prefix(robot: Robot, observation: Observation) -> str:
+def _find_frame_prefix(robot: Robot, observation: Observation) -> str:
     """Return the prefix with which most links of a robot occur in the observed transforms.
 
     The prefix is empty if the observed frames have none.
@@ -129,7 +129,10 @@ def _examine_descriptions(observation: Observation) -> Iterator[Diagnostic]:
         yield Diagnostic(
             "DOC502",
             phrase(
-                "{count} nodes publish '{topic}': {texts}", count=len(texts), topic=topic, texts=listed(sorted(texts))
+                "{count} nodes publish '{topic}': {texts}",
+                count=len(texts),
+                topic=topic,
+                texts=format_names(sorted(texts)),
             ),
             severity=Severity.ERROR if are_different else Severity.WARNING,
             notes=(
@@ -154,9 +157,9 @@ def _examine_joint_senders(observation: Observation) -> Iterator[Diagnostic]:
             phrase(
                 "{count} nodes publish the state of joint {names} on {topics}: {senders}",
                 count=len(senders),
-                names=listed(names),
-                topics=listed(topics),
-                senders=listed(senders),
+                names=format_names(names),
+                topics=format_names(topics),
+                senders=format_names(senders),
             ),
             severity=Severity.WARNING,
             notes=(Note(phrase("the robot jumps between the published values")),),
@@ -180,11 +183,11 @@ def _examine_unknown_joints(observation: Observation, robot: ObservedRobot) -> I
             "DOC405",
             phrase(
                 "{senders} publishes the state of joint '{name}', which robot '{model_name}' does not have",
-                senders=listed(joint.senders),
+                senders=format_names(joint.senders),
                 name=joint.name,
                 model_name=robot.model.name,
             ),
             severity=Severity.WARNING,
             hint=suggestion
-            or phrase("the joints of the robot are {joint_names}", joint_names=listed(sorted(robot.joint_names))),
+            or phrase("the joints of the robot are {joint_names}", joint_names=format_names(sorted(robot.joint_names))),
         )

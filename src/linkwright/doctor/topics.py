@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, nearest, phrase
-from linkwright.doctor.record import TWIST, TWIST_STAMPED, Observation, listed, node_of, nodes_of
+from linkwright.doctor.record import TWIST, TWIST_STAMPED, Observation, format_names, get_node_name, list_node_names
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.qos.compatibility import find_incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind
@@ -33,7 +33,7 @@ def examine_topics(observation: Observation) -> Iterator[Diagnostic]:
     yield from _examine_qos(observation)
     yield from _examine_misnamed_topics(observation)
     yield from _examine_commands(observation)
-    yield from _examine_drivers(observation)
+    yield from _examine_commanders(observation)
     yield from _examine_clients(observation)
 
 
@@ -66,10 +66,12 @@ def _examine_types(observation: Observation) -> Iterator[Diagnostic]:
     ):
         by_topic.setdefault(endpoint.name, {}).setdefault(endpoint.type_name, []).append(endpoint)
     for topic, all_types in sorted(by_topic.items()):
-        types = _without_universal_subscribers(all_types)
+        types = _drop_universal_subscribers(all_types)
         if len(types) < 2:
             continue
-        notes = tuple(note for name, endpoints in sorted(types.items()) for note in _endpoint_notes(endpoints, name))
+        notes = tuple(
+            note for name, endpoints in sorted(types.items()) for note in _make_endpoint_notes(endpoints, name)
+        )
         if set(types) == {TWIST, TWIST_STAMPED}:
             yield Diagnostic(
                 "DOC202",
@@ -97,7 +99,7 @@ def _examine_types(observation: Observation) -> Iterator[Diagnostic]:
             )
 
 
-def _without_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
+def _drop_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict[str, list[EndpointInfo]]:
     """Return a topic's endpoints by type, without subscriptions of nodes that accept any type.
 
     A node accepts all types if it subscribes to more than one type, and to all published types. Its publishers remain.
@@ -108,7 +110,7 @@ def _without_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict
     subscribed_types: dict[str, set[str]] = {}
     for endpoint in all_endpoints:
         if endpoint.kind is EndpointKind.SUBSCRIPTION:
-            subscribed_types.setdefault(node_of(endpoint), set()).add(endpoint.type_name)
+            subscribed_types.setdefault(get_node_name(endpoint), set()).add(endpoint.type_name)
     universal_subscribers = {
         node for node, names in subscribed_types.items() if len(names) > 1 and names >= published_types
     }
@@ -116,22 +118,24 @@ def _without_universal_subscribers(types: dict[str, list[EndpointInfo]]) -> dict
         return {}
     remaining: dict[str, list[EndpointInfo]] = {}
     for endpoint in all_endpoints:
-        if endpoint.kind is EndpointKind.PUBLISHER or node_of(endpoint) not in universal_subscribers:
+        if endpoint.kind is EndpointKind.PUBLISHER or get_node_name(endpoint) not in universal_subscribers:
             remaining.setdefault(endpoint.type_name, []).append(endpoint)
     return remaining
 
 
-def _endpoint_notes(endpoints: list[EndpointInfo], type_name: str) -> Iterator[Note]:
-    publishers = nodes_of(endpoint for endpoint in endpoints if endpoint.kind is EndpointKind.PUBLISHER)
+def _make_endpoint_notes(endpoints: list[EndpointInfo], type_name: str) -> Iterator[Note]:
+    publishers = list_node_names(endpoint for endpoint in endpoints if endpoint.kind is EndpointKind.PUBLISHER)
     if publishers:
         yield Note(
-            phrase("{type_name} is published by {publishers}", type_name=type_name, publishers=listed(publishers))
+            phrase("{type_name} is published by {publishers}", type_name=type_name, publishers=format_names(publishers))
         )
-    subscribers = nodes_of(endpoint for endpoint in endpoints if endpoint.kind is EndpointKind.SUBSCRIPTION)
+    subscribers = list_node_names(endpoint for endpoint in endpoints if endpoint.kind is EndpointKind.SUBSCRIPTION)
     if subscribers:
         yield Note(
             phrase(
-                "{type_name} is subscribed to by {subscribers}", type_name=type_name, subscribers=listed(subscribers)
+                "{type_name} is subscribed to by {subscribers}",
+                type_name=type_name,
+                subscribers=format_names(subscribers),
             )
         )
 
@@ -146,20 +150,20 @@ def _examine_qos(observation: Observation) -> Iterator[Diagnostic]:
             if publisher.name != subscription.name or publisher.type_name != subscription.type_name:
                 continue
             policies = tuple(find_incompatible_policies(publisher.qos, subscription.qos))
-            key = (publisher.name, node_of(publisher), node_of(subscription), policies)
+            key = (publisher.name, get_node_name(publisher), get_node_name(subscription), policies)
             if policies and key not in reported:
                 reported.add(key)
-                yield _qos_finding(publisher, subscription, policies)
+                yield _make_qos_finding(publisher, subscription, policies)
 
 
-def _qos_finding(
+def _make_qos_finding(
     publisher: EndpointInfo, subscription: EndpointInfo, policies: tuple[QoSPolicyKind, ...]
 ) -> Diagnostic:
-    sender, receiver = node_of(publisher), node_of(subscription)
+    sender, receiver = get_node_name(publisher), get_node_name(subscription)
     notes = []
     for policy in policies:
         name = policy.name.lower()
-        offered, requested = _policy_text(publisher, policy), _policy_text(subscription, policy)
+        offered, requested = _format_policy(publisher, policy), _format_policy(subscription, policy)
         notes.append(
             Note(
                 phrase(
@@ -182,11 +186,11 @@ def _qos_finding(
             name=publisher.name,
         ),
         notes=tuple(notes),
-        hint=_qos_hint(policies[0]),
+        hint=_make_qos_hint(policies[0]),
     )
 
 
-def _qos_hint(policy: QoSPolicyKind) -> Phrase:
+def _make_qos_hint(policy: QoSPolicyKind) -> Phrase:
     if policy is QoSPolicyKind.RELIABILITY:
         return phrase(
             "make the publisher reliable, or the subscription best effort (in RViz: the display's Reliability Policy)"
@@ -199,7 +203,7 @@ def _qos_hint(policy: QoSPolicyKind) -> Phrase:
     return phrase("let the publisher offer a stricter policy, or the subscription request a weaker one")
 
 
-def _policy_text(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
+def _format_policy(endpoint: EndpointInfo, policy: QoSPolicyKind) -> str:
     """Return the value of an endpoint's QoS policy as text, such as ``RELIABLE``."""
     value = getattr(endpoint.qos, policy.name.lower())
     if policy is QoSPolicyKind.LIVELINESS:
@@ -217,7 +221,7 @@ def _find_misnamed_topics(observation: Observation) -> Iterator[tuple[str, str, 
     senders: dict[str, set[str]] = {}
     for endpoint in observation.endpoints_of_kind(EndpointKind.PUBLISHER):
         published_types.setdefault(endpoint.name, set()).add(endpoint.type_name)
-        senders.setdefault(endpoint.name, set()).add(node_of(endpoint))
+        senders.setdefault(endpoint.name, set()).add(get_node_name(endpoint))
     subscriptions: dict[tuple[str, str], list[EndpointInfo]] = {}
     for endpoint in observation.endpoints_of_kind(EndpointKind.SUBSCRIPTION):
         if (
@@ -230,7 +234,7 @@ def _find_misnamed_topics(observation: Observation) -> Iterator[tuple[str, str, 
     for (topic, type_name), endpoints in sorted(subscriptions.items()):
         # A published topic with a subscriber is probably meant for that one. In addition, no node means to subscribe
         # to its own topic.
-        subscribers = set(nodes_of(endpoints))
+        subscribers = set(list_node_names(endpoints))
         unsubscribed_topics = [
             name
             for name, types in published_types.items()
@@ -243,14 +247,14 @@ def _find_misnamed_topics(observation: Observation) -> Iterator[tuple[str, str, 
 
 def _examine_misnamed_topics(observation: Observation) -> Iterator[Diagnostic]:
     for topic, type_name, endpoints, published_topic in _find_misnamed_topics(observation):
-        senders = nodes_of(observation.publishers_of(published_topic))
+        senders = list_node_names(observation.find_publishers(published_topic))
         yield Diagnostic(
             "DOC204",
             phrase(
                 "no node publishes topic '{topic}', which {subscribers} subscribes to, "
                 "but '{similar_topic}' is published",
                 topic=topic,
-                subscribers=listed(nodes_of(endpoints)),
+                subscribers=format_names(list_node_names(endpoints)),
                 similar_topic=published_topic,
             ),
             severity=Severity.WARNING,
@@ -260,7 +264,7 @@ def _examine_misnamed_topics(observation: Observation) -> Iterator[Diagnostic]:
                         "'{similar_topic}' has the same type, {type_name}, and is published by {senders}",
                         similar_topic=published_topic,
                         type_name=type_name,
-                        senders=listed(senders),
+                        senders=format_names(senders),
                     )
                 ),
             ),
@@ -294,7 +298,7 @@ def _examine_commands(observation: Observation) -> Iterator[Diagnostic]:
         hint = (
             phrase(
                 "nodes accept velocities on {topics}; remap the topic: --ros-args -r {topic}:={other}",
-                topics=listed(sorted(command_topics)),
+                topics=format_names(sorted(command_topics)),
                 topic=topic,
                 other=min(command_topics),
             )
@@ -305,7 +309,7 @@ def _examine_commands(observation: Observation) -> Iterator[Diagnostic]:
             "DOC207",
             phrase(
                 "{publishers} publishes velocities on '{topic}', but no node subscribes to it, so nothing moves",
-                publishers=listed(nodes_of(publishers)),
+                publishers=format_names(list_node_names(publishers)),
                 topic=topic,
             ),
             severity=Severity.WARNING,
@@ -313,14 +317,14 @@ def _examine_commands(observation: Observation) -> Iterator[Diagnostic]:
         )
 
 
-def _examine_drivers(observation: Observation) -> Iterator[Diagnostic]:
+def _examine_commanders(observation: Observation) -> Iterator[Diagnostic]:
     """Yield findings about nodes that published contradictory velocities on a topic."""
-    for observed_drivers in observation.disputed:
+    for observed_drivers in observation.contradictory_velocities:
         yield Diagnostic(
             "DOC208",
             phrase(
                 "two nodes drive the robot: {drivers} publish contradictory velocities on '{topic}'",
-                drivers=listed(observed_drivers.drivers),
+                drivers=format_names(observed_drivers.commanders),
                 topic=observed_drivers.topic,
             ),
             severity=Severity.WARNING,
@@ -351,7 +355,7 @@ def _examine_clients(observation: Observation) -> Iterator[Diagnostic]:
         if service_types.get(endpoint.name) != endpoint.type_name and "/_action/" not in endpoint.name:
             clients_by_service.setdefault((endpoint.name, endpoint.type_name), []).append(endpoint)
     for (name, type_name), clients in sorted(clients_by_service.items()):
-        callers = listed(nodes_of(clients))
+        callers = format_names(list_node_names(clients))
         if name in service_types:
             yield Diagnostic(
                 "DOC205",
@@ -396,7 +400,11 @@ def examine_lifecycle(observation: Observation) -> Iterator[Diagnostic]:
         transition = "configure" if state == "unconfigured" else "activate"
         yield Diagnostic(
             "DOC701",
-            phrase("managed node {nodes} is {state}, so it does nothing yet", nodes=listed(sorted(nodes)), state=state),
+            phrase(
+                "managed node {nodes} is {state}, so it does nothing yet",
+                nodes=format_names(sorted(nodes)),
+                state=state,
+            ),
             severity=Severity.WARNING,
             hint=phrase(
                 "request the next transition: ros2 lifecycle set {node} {transition}",

@@ -17,21 +17,26 @@ from linkwright.doctor.record import (
     FixedFrame,
     Observation,
     ObservedClock,
+    ObservedCommanders,
     ObservedDescription,
-    ObservedDrivers,
     ObservedFrame,
     ObservedJoint,
     ObservedStamp,
     ObservedTransform,
-    node_of,
+    get_node_name,
 )
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
 from linkwright.graph.endpoints.command_disputes import DisputeDetector, find_node_names, find_publishers
 from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
-from linkwright.wire.joining import middleware
-from linkwright.wire.unsupported_settings import DISCOVERY_SERVERS, MIDDLEWARE, SECURITY, ZENOH
+from linkwright.wire.joining import select_middleware
+from linkwright.wire.unsupported_settings import (
+    DISCOVERY_SERVER_VARIABLES,
+    MIDDLEWARE_VARIABLE,
+    SECURITY_VARIABLES,
+    ZENOH,
+)
 
 if TYPE_CHECKING:
     from linkwright.graph.loop.future import Future
@@ -53,9 +58,9 @@ _DISCOVERY_VARIABLES = (
     "ROS_AUTOMATIC_DISCOVERY_RANGE",
     "ROS_STATIC_PEERS",
     "CYCLONEDDS_URI",
-    MIDDLEWARE,
-    *DISCOVERY_SERVERS,
-    *SECURITY,
+    MIDDLEWARE_VARIABLE,
+    *DISCOVERY_SERVER_VARIABLES,
+    *SECURITY_VARIABLES,
     "ZENOH_CONFIG_OVERRIDE",
     "ZENOH_SESSION_CONFIG_URI",
 )
@@ -123,16 +128,16 @@ async def observe(
     await watcher.wait_for_node_names()
     variables = os.environ if environment is None else environment
     return Observation(
-        over_zenoh=middleware() == ZENOH,
+        over_zenoh=select_middleware() == ZENOH,
         seconds=seconds,
         nodes=tuple(watcher.nodes()),
         endpoints=tuple(watcher.endpoints()),
         transforms=watcher.transforms(),
         joints=watcher.joints(),
         descriptions=tuple(watcher.descriptions.values()),
-        stamps=watcher.observed_stamps(sim_time),
-        frames=watcher.observed_frames(),
-        disputed=watcher.disputed(),
+        stamps=watcher.compute_stamp_ages(sim_time),
+        frames=watcher.find_frames(),
+        contradictory_velocities=watcher.contradictory_velocities(),
         clock=watcher.clock,
         sim_time=sim_time,
         lifecycle=lifecycle,
@@ -142,7 +147,7 @@ async def observe(
 
 
 class _Watcher:
-    """The subscriptions to the topics that the examinations need, and a record of their messages."""
+    """The subscriptions that the examinations need, and a record of their messages."""
 
     def __init__(self, graph: Graph, node: Node) -> None:
         self._graph = graph
@@ -164,7 +169,7 @@ class _Watcher:
         The observing node and the hidden nodes of commands are excluded.
         """
         names = (join(identity.namespace, identity.name) for identity in self._graph.identities())
-        return sorted(name for name in names if not _is_tool(name) and name != self._own_name)
+        return sorted(name for name in names if not _is_tool(name) and name != self._get_own_name)
 
     def endpoints(self) -> list[EndpointInfo]:
         """Return the endpoints of the graph.
@@ -174,7 +179,7 @@ class _Watcher:
         return [
             endpoint
             for endpoint in self._graph.endpoints()
-            if not _is_tool(node_of(endpoint)) and node_of(endpoint) != self._own_name
+            if not _is_tool(get_node_name(endpoint)) and get_node_name(endpoint) != self._get_own_name
         ]
 
     async def wait_for_node_names(self) -> None:
@@ -190,7 +195,7 @@ class _Watcher:
             await asyncio.sleep(_POLL_S)
 
     def waits_for_transforms(self) -> bool:
-        """Return whether a topic with a publisher of transforms has not delivered any transform yet.
+        """Return whether a topic with a publisher of transforms has not delivered any.
 
         On a busy computer, the first transforms take seconds to arrive.
         """
@@ -198,7 +203,7 @@ class _Watcher:
         return not self._transform_topics <= topics_with_transforms
 
     @property
-    def _own_name(self) -> str:
+    def _get_own_name(self) -> str:
         return self._node.get_fully_qualified_name()
 
     def subscribe(self) -> None:
@@ -208,11 +213,11 @@ class _Watcher:
         """
         for endpoint in self._graph.endpoints():
             key = (endpoint.name, endpoint.type_name)
-            if _is_tool(node_of(endpoint)) and endpoint.type_name not in (TWIST, TWIST_STAMPED):
+            if _is_tool(get_node_name(endpoint)) and endpoint.type_name not in (TWIST, TWIST_STAMPED):
                 continue
             if (
                 endpoint.kind is EndpointKind.PUBLISHER
-                and node_of(endpoint) != self._own_name
+                and get_node_name(endpoint) != self._get_own_name
                 and key not in self._subscribed
             ):
                 self._subscribed.add(key)
@@ -246,7 +251,7 @@ class _Watcher:
 
         From a latched topic, the last messages are also received.
         """
-        offers = [publisher.qos for publisher in self._publishers(endpoint.name)]
+        offers = [publisher.qos for publisher in self._find_publishers(endpoint.name)]
         is_latched = all(offer.durability is DurabilityPolicy.TRANSIENT_LOCAL for offer in offers)
         is_reliable = all(offer.reliability is ReliabilityPolicy.RELIABLE for offer in offers)
         if is_latched:
@@ -262,14 +267,14 @@ class _Watcher:
 
         self._node.create_subscription(endpoint.type_name, endpoint.name, listen, qos, raw=raw)
 
-    def _sender(self, topic: str, info: MessageInfo) -> str:
-        publishers = self._publishers(topic)
+    def _find_sender(self, topic: str, info: MessageInfo) -> str:
+        publishers = self._find_publishers(topic)
         for publisher in publishers:
             if publisher.gid == info.publisher_gid:
-                return node_of(publisher)
-        return node_of(publishers[0]) if len(publishers) == 1 else UNKNOWN_NODE
+                return get_node_name(publisher)
+        return get_node_name(publishers[0]) if len(publishers) == 1 else UNKNOWN_NODE
 
-    def _publishers(self, topic: str) -> list[EndpointInfo]:
+    def _find_publishers(self, topic: str) -> list[EndpointInfo]:
         return [
             endpoint
             for endpoint in self._graph.endpoints()
@@ -279,7 +284,7 @@ class _Watcher:
     # --- messages received -------------------------------------------------------------------------------------------
 
     def _on_transforms(self, topic: str, is_static: bool, message: Any, info: MessageInfo) -> None:
-        sender = self._sender(topic, info)
+        sender = self._find_sender(topic, info)
         for transform in message.transforms:
             key = (transform.header.frame_id.lstrip("/"), transform.child_frame_id.lstrip("/"))
             senders, _, valid = self._transforms.get(key, ({}, is_static, True))
@@ -289,7 +294,7 @@ class _Watcher:
                 self._record_stamp(topic, sender, transform.header.stamp.sec, transform.header.stamp.nanosec)
 
     def _on_joints(self, topic: str, message: Any, info: MessageInfo) -> None:
-        sender = self._sender(topic, info)
+        sender = self._find_sender(topic, info)
         self._record_stamp(topic, sender, message.header.stamp.sec, message.header.stamp.nanosec)
         for name in message.name if len(message.position) else ():
             senders, topics = self._joints.setdefault(name, (set(), set()))
@@ -297,7 +302,7 @@ class _Watcher:
             topics.add(topic)
 
     def _on_description(self, topic: str, message: Any, info: MessageInfo) -> None:
-        sender = self._sender(topic, info)
+        sender = self._find_sender(topic, info)
         self.descriptions[topic, sender] = ObservedDescription(topic, sender, message.data)
 
     def _on_clock(self, message: Any) -> None:
@@ -306,7 +311,7 @@ class _Watcher:
         self.clock = (
             ObservedClock(1, now_ns, now_ns)
             if previous is None
-            else ObservedClock(previous.ticks + 1, previous.first_ns, now_ns)
+            else ObservedClock(previous.message_count + 1, previous.first_ns, now_ns)
         )
 
     def _on_velocity(self, topic: str, data: bytes, info: MessageInfo) -> None:
@@ -317,7 +322,7 @@ class _Watcher:
         if is_velocity:
             self._on_velocity(topic, data, info)
         seconds, nanoseconds = _STAMP[data[1] & 1].unpack_from(data, _CDR_HEADER)
-        sender = self._sender(topic, info)
+        sender = self._find_sender(topic, info)
         self._record_stamp(topic, sender, seconds, nanoseconds)
         self._frames[topic, sender] = _read_frame(data)
 
@@ -350,35 +355,37 @@ class _Watcher:
             for name, (senders, topics) in sorted(self._joints.items())
         )
 
-    def disputed(self) -> tuple[ObservedDrivers, ...]:
+    def contradictory_velocities(self) -> tuple[ObservedCommanders, ...]:
         """Return the nodes that published contradictory velocities, by topic."""
         drivers_by_topic = []
         for topic, dispute in sorted(self._disputes.items()):
             drivers = find_node_names(self._graph, find_publishers(self._graph, dispute.parties))
             if len(drivers) > 1:
-                drivers_by_topic.append(ObservedDrivers(topic, tuple(drivers)))
+                drivers_by_topic.append(ObservedCommanders(topic, tuple(drivers)))
         return tuple(drivers_by_topic)
 
-    def observed_stamps(self, sim_time: Mapping[str, bool]) -> tuple[ObservedStamp, ...]:
-        """Return the age of the last stamp of each sender on each topic, measured with the sender's clock.
+    def compute_stamp_ages(self, sim_time: Mapping[str, bool]) -> tuple[ObservedStamp, ...]:
+        """Return the age of the last stamp of each sender on each topic.
+
+        Ages are measured with the sender's clock.
 
         This clock is simulated time if the sender uses or publishes it. Any other sender may forward the stamps of
         other nodes, so the age is measured with the clock that is closer to the stamp.
         """
         stamps = []
-        clock_nodes = {node_of(publisher) for publisher in self._publishers("/clock")}
+        clock_nodes = {get_node_name(publisher) for publisher in self._find_publishers("/clock")}
         for (topic, sender), (stamp_ns, now_ns) in sorted(self._stamps.items()):
             if sim_time.get(sender) or sender in clock_nodes:
                 if self.clock is None:
                     continue
                 now_ns = self.clock.last_ns
-            behind_ns = now_ns - stamp_ns
+            age_ns = now_ns - stamp_ns
             if self.clock is not None:  # bridges and robot_state_publisher forward stamps of simulated time
-                behind_ns = min(behind_ns, self.clock.last_ns - stamp_ns, key=abs)
-            stamps.append(ObservedStamp(topic, sender, behind_ns, is_zero=stamp_ns == 0))
+                age_ns = min(age_ns, self.clock.last_ns - stamp_ns, key=abs)
+            stamps.append(ObservedStamp(topic, sender, age_ns, is_zero=stamp_ns == 0))
         return tuple(stamps)
 
-    def observed_frames(self) -> tuple[ObservedFrame, ...]:
+    def find_frames(self) -> tuple[ObservedFrame, ...]:
         """Return the frames of messages by topic and sender, without empty frames."""
         named_frames = sorted(item for item in self._frames.items() if item[1])
         return tuple(ObservedFrame(topic, sender, frame) for (topic, sender), frame in named_frames)
@@ -399,7 +406,7 @@ class _Watcher:
     async def fixed_frames(self) -> list[FixedFrame]:
         """Return the Fixed Frames that viewers declare as a parameter, as Linkwright's viewer does."""
         subscriptions = [endpoint for endpoint in self.endpoints() if endpoint.kind is EndpointKind.SUBSCRIPTION]
-        viewers = {node_of(subscription) for subscription in subscriptions if subscription.type_name == _TF}
+        viewers = {get_node_name(subscription) for subscription in subscriptions if subscription.type_name == _TF}
         package = "rcl_interfaces/srv"
         parameter_lists = await self._call_all(
             f"{package}/ListParameters", "list_parameters", viewers, prefixes=[_FIXED_FRAME]

@@ -175,7 +175,7 @@ class ModelView:
         node = self.host.graph.create_node(
             "rosbag2_recorder", parameters={"use_sim_time": True}, start_parameter_services=False
         )
-        return Recorder(node, TopicSelection(everything=True, every_service=True), writer, wrap_callback=guard)
+        return Recorder(node, TopicSelection(all_topics=True, all_services=True), writer, wrap_callback=guard)
 
     def _end_recording(self) -> None:
         recorder, self._recorder = self._recorder, None

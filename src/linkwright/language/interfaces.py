@@ -14,7 +14,7 @@ from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.hover import Explanation
 from linkwright.messages import catalog
-from linkwright.messages.definitions.interfaces import PRIMITIVES, snake_case
+from linkwright.messages.definitions.interfaces import PRIMITIVES, to_snake_case
 from linkwright.messages.definitions.parser import SECTIONS
 from linkwright.packages import enclosing_package
 from linkwright.packages.interface_files import find_interface_file, find_interface_files
@@ -73,10 +73,10 @@ def _find_message(document: Document, type_name: str) -> _Message | None:
     if file is not None:
         file = Path(find_source(str(file)))
         return _Message(document.other(file), Target(file))
-    text = catalog.texts(package).get(f"msg/{name}")
+    text = catalog.read_texts(package).get(f"msg/{name}")
     if text is None:
         return None
-    source = catalog.file_of(package)
+    source = catalog.get_file(package)
     start = source.read_text(encoding="utf-8").find(f"=== msg/{name}\n")
     return _Message(text, Target(source, start + 4, start + 8 + len(name)))
 
@@ -94,7 +94,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
     elif line["name"] is not None and line.start("name") <= offset <= line.end("name"):
         base = line["type"].rpartition("/")[2]
         if base not in PRIMITIVES:
-            yield Completion(snake_case(base), ItemKind.NAME, line.start("name"))
+            yield Completion(to_snake_case(base), ItemKind.NAME, line.start("name"))
 
 
 def _offer_types(document: Document, typed: str, start: int) -> Iterator[Completion]:
@@ -114,7 +114,7 @@ def _offer_types(document: Document, typed: str, start: int) -> Iterator[Complet
             yield Completion(name, ItemKind.NAME, start, own_package)
     for name in likely:
         yield Completion(name, ItemKind.NAME, start)
-    for package in dict.fromkeys((*_COMMON_PACKAGES, *sorted({*catalog.packages(), *document.finder.packages()}))):
+    for package in dict.fromkeys((*_COMMON_PACKAGES, *sorted({*catalog.list_packages(), *document.finder.packages()}))):
         for name in _list_message_names(document, package) if package != own_package else ():
             if f"{package}/{name}" not in likely:
                 yield Completion(f"{package}/{name}", ItemKind.NAME, start)
@@ -141,7 +141,7 @@ def _find_used_types(document: Document, excluded_offset: int) -> list[str]:
 def _list_message_names(document: Document, package: str) -> list[str]:
     share = document.finder.find(package) if package else None
     own_messages = {} if share is None else find_interface_files(share, "msg")
-    known_messages = [name.removeprefix("msg/") for name in catalog.texts(package) if name.startswith("msg/")]
+    known_messages = [name.removeprefix("msg/") for name in catalog.read_texts(package) if name.startswith("msg/")]
     return sorted({*own_messages, *known_messages})
 
 

@@ -6,7 +6,7 @@ The classes are created from the definitions of the interfaces.
 from typing import TYPE_CHECKING
 
 from linkwright.loading.deferred import deferred
-from linkwright.messages.catalog import packages as shipped_packages
+from linkwright.messages.catalog import list_packages as shipped_packages
 from linkwright.messages.classes import get_action, get_interface, get_message, get_service
 from linkwright.messages.definitions.embedded import add_definitions
 from linkwright.messages.definitions.hashing import type_hash

@@ -23,29 +23,29 @@ _LATER_SUFFIX = " jazzy"
 
 
 @cache
-def packages() -> tuple[str, ...]:
+def list_packages() -> tuple[str, ...]:
     """Return the sorted names of the packages that come with Linkwright."""
     return tuple(sorted(name[:-4] for name in os.listdir(_FOLDER) if name.endswith(".txt")))  # noqa: PTH208 - as above
 
 
-def file_of(package: str) -> Path:
+def get_file(package: str) -> Path:
     """Return the file with the interfaces of a package that comes with Linkwright."""
     from pathlib import Path
 
     return Path(_FOLDER, package + ".txt")
 
 
-def texts(package: str) -> dict[str, str]:
+def read_texts(package: str) -> dict[str, str]:
     """Return the texts of a package's interface files by name, such as ``msg/JointState``.
 
     The dictionary is empty for any package that does not come with Linkwright.
     """
-    return _texts(package, not is_before_iron())
+    return _read_texts(package, not is_before_iron())
 
 
 @cache
-def _texts(package: str, later: bool) -> dict[str, str]:
-    if package not in packages():
+def _read_texts(package: str, later: bool) -> dict[str, str]:
+    if package not in list_packages():
         return {}
     with open(os.path.join(_FOLDER, package + ".txt"), encoding="utf-8") as file:  # noqa: PTH118, PTH123 - as above
         text = file.read()

@@ -35,7 +35,7 @@ class Unset:
 
 UNSET = Unset()
 
-_keeps_to_ros = False
+_accepts_ros_values_only = False
 _fixed_as_humble = True
 
 
@@ -46,8 +46,8 @@ def restrict_to_ros_values(*, as_humble: bool) -> None:
         as_humble: whether constructors convert the values for fixed arrays, as in Humble and earlier, instead of
             checking them.
     """
-    global _keeps_to_ros, _fixed_as_humble
-    _keeps_to_ros, _fixed_as_humble = True, as_humble
+    global _accepts_ros_values_only, _fixed_as_humble
+    _accepts_ros_values_only, _fixed_as_humble = True, as_humble
 
 
 def refuse_arguments(names: Iterable[str]) -> NoReturn:
@@ -114,15 +114,15 @@ def check_message(name: str, value: Any, cls: type) -> Any:
 
 def check_values(name: str, value: Any, kind: FieldType, cls: type) -> Any:
     """Check a list of bools, bytes, strings or messages, and return the list itself."""
-    if cls is bool and not _keeps_to_ros and is_array(value) and value.dtype.kind == "b":
+    if cls is bool and not _accepts_ros_values_only and is_array(value) and value.dtype.kind == "b":
         value = value.ravel().tolist()
     if not (
         _is_collection(value)
-        and _length_fits(value, kind)
+        and _is_length_valid(value, kind)
         and (set(map(type, value)) <= {cls} or all(isinstance(item, cls) for item in value))
         and (kind.string_bound is None or all(len(item) <= kind.string_bound for item in value))
     ):
-        raise AssertionError(f"The '{name}' field must be {_valid_value_text(kind, cls)}")
+        raise AssertionError(f"The '{name}' field must be {_describe_valid_value(kind, cls)}")
     return value
 
 
@@ -137,7 +137,7 @@ def check_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
         if value.size != kind.size:
             raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {kind.size}")
         return value
-    return np.array(_checked_numbers(name, value, kind, primitive), dtype=primitive.dtype)
+    return np.array(_check_numbers(name, value, kind, primitive), dtype=primitive.dtype)
 
 
 def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
@@ -153,16 +153,16 @@ def check_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
         if kind.size is not None and len(value) > kind.size:
             raise AssertionError(f"The '{name}' array.array() must have a size <= {kind.size}")
         return value
-    if is_array(value) and not _keeps_to_ros:
-        return _from_numpy(name, value, kind, primitive)
+    if is_array(value) and not _accepts_ros_values_only:
+        return _sequence_from_numpy(name, value, kind, primitive)
     if primitive.array_code == "B" and (
-        isinstance(value, (bytes, bytearray)) or (isinstance(value, memoryview) and not _keeps_to_ros)
+        isinstance(value, (bytes, bytearray)) or (isinstance(value, memoryview) and not _accepts_ros_values_only)
     ):
-        return _from_buffer(name, value, kind)
-    return array(primitive.array_code, _checked_numbers(name, value, kind, primitive))
+        return _sequence_from_buffer(name, value, kind)
+    return array(primitive.array_code, _check_numbers(name, value, kind, primitive))
 
 
-def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
+def to_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
     """Convert the numbers in a constructor argument to an ``array.array``.
 
     As in rclpy, a constructor accepts integers for floats.
@@ -172,14 +172,14 @@ def made_sequence(name: str, value: Any, kind: FieldType) -> array[Any]:
     assert code is not None
     if value.__class__ is array and value.typecode == code and kind.size is None:  # four times as fast
         return value
-    if not _keeps_to_ros and (isinstance(value, (bytes, bytearray, memoryview)) or is_array(value)):
+    if not _accepts_ros_values_only and (isinstance(value, (bytes, bytearray, memoryview)) or is_array(value)):
         return check_sequence(name, value, kind)
     if isinstance(value, array) and value.typecode == code:
         return check_sequence(name, value, kind)
     return check_sequence(name, array(code, value), kind)
 
 
-def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
+def to_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
     """Convert the numbers in a constructor argument to a numpy array of fixed length."""
     import numpy as np
 
@@ -192,7 +192,7 @@ def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
         converted = np.array(value, dtype=primitive.dtype)
     if converted.size != kind.size:
         raise AssertionError(f"The '{name}' numpy.ndarray() must have a size of {kind.size}")
-    if _keeps_to_ros and converted.shape != (kind.size,):
+    if _accepts_ros_values_only and converted.shape != (kind.size,):
         raise AssertionError(f"The '{name}' numpy.ndarray() must have the shape ({kind.size},)")
     return converted
 
@@ -202,7 +202,7 @@ def made_fixed_array(name: str, value: Any, kind: FieldType) -> NDArray[Any]:
 
 def is_array(value: Any) -> TypeGuard[NDArray[Any]]:
     """Return whether a value is a ``numpy.ndarray``."""
-    array_class = ndarray_class()
+    array_class = find_ndarray_class()
     return array_class is not None and isinstance(value, array_class)
 
 
@@ -212,7 +212,7 @@ def is_scalar(value: Any) -> TypeGuard[np.generic]:
     return scalar_class is not None and isinstance(value, scalar_class)
 
 
-def ndarray_class() -> type[NDArray[Any]] | None:
+def find_ndarray_class() -> type[NDArray[Any]] | None:
     """Return ``numpy.ndarray``, or None if numpy has not been imported."""
     return getattr(sys.modules.get("numpy"), "ndarray", None)
 
@@ -226,24 +226,24 @@ def _is_collection(value: Any) -> bool:
     )
 
 
-def _length_fits(value: Any, kind: FieldType) -> bool:
+def _is_length_valid(value: Any, kind: FieldType) -> bool:
     if kind.container is Container.ARRAY:
         return len(value) == kind.size
     return kind.size is None or len(value) <= kind.size
 
 
-def _checked_numbers(name: str, value: Any, kind: FieldType, primitive: Primitive) -> Any:
+def _check_numbers(name: str, value: Any, kind: FieldType, primitive: Primitive) -> Any:
     if not (
         _is_collection(value)
-        and _length_fits(value, kind)
+        and _is_length_valid(value, kind)
         and (set(map(type, value)) <= {primitive.python} or all(isinstance(item, primitive.python) for item in value))
-        and _in_range(value, primitive)
+        and _are_in_range(value, primitive)
     ):
-        raise AssertionError(f"The '{name}' field must be {_valid_value_text(kind, primitive.python)}")
+        raise AssertionError(f"The '{name}' field must be {_describe_valid_value(kind, primitive.python)}")
     return value if isinstance(value, (list, tuple)) else list(value)
 
 
-def _in_range(values: Any, primitive: Primitive) -> bool:
+def _are_in_range(values: Any, primitive: Primitive) -> bool:
     if not len(values):
         return True
     if primitive.is_integer:
@@ -253,7 +253,7 @@ def _in_range(values: Any, primitive: Primitive) -> bool:
     return all(-primitive.high <= value <= primitive.high or not math.isfinite(value) for value in values)
 
 
-def _from_numpy(name: str, value: NDArray[Any], kind: FieldType, primitive: Primitive) -> array[Any]:
+def _sequence_from_numpy(name: str, value: NDArray[Any], kind: FieldType, primitive: Primitive) -> array[Any]:
     import numpy as np
 
     code = primitive.array_code
@@ -264,24 +264,24 @@ def _from_numpy(name: str, value: NDArray[Any], kind: FieldType, primitive: Prim
     can_convert = are_integers or np.can_cast(value.dtype, target_type, "same_kind")
     if not (
         can_convert
-        and _length_fits(value, kind)
-        and (value.dtype == target_type or not are_integers or _in_range(value, primitive))
+        and _is_length_valid(value, kind)
+        and (value.dtype == target_type or not are_integers or _are_in_range(value, primitive))
     ):
-        raise AssertionError(f"The '{name}' field must be {_valid_value_text(kind, primitive.python)}")
+        raise AssertionError(f"The '{name}' field must be {_describe_valid_value(kind, primitive.python)}")
     converted = array(code)
     converted.frombytes(np.ascontiguousarray(value, dtype=target_type).data.cast("B"))
     return converted
 
 
-def _from_buffer(name: str, value: bytes | bytearray | memoryview, kind: FieldType) -> array[Any]:
+def _sequence_from_buffer(name: str, value: bytes | bytearray | memoryview, kind: FieldType) -> array[Any]:
     converted = array("B")
     converted.frombytes(value)
-    if not _length_fits(converted, kind):
-        raise AssertionError(f"The '{name}' field must be {_valid_value_text(kind, int)}")
+    if not _is_length_valid(converted, kind):
+        raise AssertionError(f"The '{name}' field must be {_describe_valid_value(kind, int)}")
     return converted
 
 
-def _valid_value_text(kind: FieldType, python: type) -> str:
+def _describe_valid_value(kind: FieldType, python: type) -> str:
     """Return the description of a valid value for an array or sequence, in rclpy's wording."""
     phrases = ["a set or sequence"]
     if kind.container is Container.ARRAY:

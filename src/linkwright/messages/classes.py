@@ -22,13 +22,13 @@ from linkwright.messages.definitions.interfaces import (
     Field,
     Service,
     Structure,
-    event_of,
-    feedback_message_of,
-    get_result_of,
+    make_event_structure,
+    make_feedback_structure,
+    make_get_result_service,
+    make_send_goal_service,
     python_module,
-    send_goal_of,
 )
-from linkwright.messages.definitions.library import LIBRARY, wrong_kind_diagnostic
+from linkwright.messages.definitions.library import LIBRARY, make_wrong_kind_diagnostic
 from linkwright.messages.errors import InterfaceNotFoundError
 from linkwright.messages.message import ActionImplementation, ActionType, DurationValue, Message, ServiceType, TimeValue
 
@@ -58,13 +58,13 @@ def build_class(structure: Structure, base: type, classes: dict[str, type], modu
 
         scope["Np"] = np
     fields = [_FieldCode(field, classes, scope) for field in structure.fields]
-    code = "".join([_constructor(fields), *(field.setter() for field in fields)])
+    code = "".join([_make_constructor(fields), *(field.setter() for field in fields)])
     exec(compile(code, f"<class of {structure.type_name}>", "exec"), scope)  # noqa: S102 - the names in it are checked
     name = structure.type_name.rpartition("/")[2]
     body: dict[str, Any] = {
         "__slots__": tuple("_" + field.name for field in structure.fields),
         "__module__": module,
-        "__doc__": _docstring(name, structure),
+        "__doc__": _make_docstring(name, structure),
         "__init__": scope["__init__"],
         "TYPE_NAME": structure.type_name,
         "_definition": structure,
@@ -92,7 +92,7 @@ class _FieldCode:
         scope["K_" + field.name] = field.type
         if self.kind.primitive is None:
             scope["C_" + field.name] = classes[self.kind.base]
-        self.default = self._default()
+        self.default = self._get_default()
         if self.default is not None and not self._is_single():
             scope["D_" + field.name] = self.default
 
@@ -110,28 +110,28 @@ class _FieldCode:
         if keyword.iskeyword(name):
             argument = name + "_"
             lines = f"    {argument} = Rest.pop({name!r}, U)\n"
-        lines += f"    if {argument} is U: M._{name} = {self._default_expression()}\n"
+        lines += f"    if {argument} is U: M._{name} = {self._make_default_expression()}\n"
         if self.kind.is_numeric_array:
-            convert = "made_fixed_array" if self.kind.container is Container.ARRAY else "made_sequence"
+            convert = "to_fixed_array" if self.kind.container is Container.ARRAY else "to_sequence"
             return lines + f"    else: M._{name} = Checks.{convert}({name!r}, {argument}, K_{name})\n"
         if self._is_single():  # as in the setter, but without calling it
-            lines += f"    elif {self._usual_test(argument)}: M._{name} = {argument}\n"
+            lines += f"    elif {self._make_usual_test(argument)}: M._{name} = {argument}\n"
         return lines + f"    else: S_{name}(M, {argument})\n"
 
     def setter(self) -> str:
         name = self.name
-        return f"def S_{name}(self, value):\n{self._check_lines()}    self._{name} = value\n"
+        return f"def S_{name}(self, value):\n{self._make_check_lines()}    self._{name} = value\n"
 
     # --- the check ------------------------------------------------------------------------------------------
 
-    def _check_lines(self) -> str:
+    def _make_check_lines(self) -> str:
         name, kind, primitive = self.name, self.kind, self.kind.primitive
         if kind.is_numeric_array and kind.container is Container.ARRAY:
             return f"    value = Checks.check_fixed_array({name!r}, value, K_{name})\n"
         if kind.is_numeric_array:
             assert primitive is not None
             usual_case = (
-                f"value.__class__ is Array and value.typecode == {primitive.array_code!r}" + self._length_check()
+                f"value.__class__ is Array and value.typecode == {primitive.array_code!r}" + self._make_length_check()
             )
             return f"    if not ({usual_case}): value = Checks.check_sequence({name!r}, value, K_{name})\n"
         if kind.container is not Container.ONE:
@@ -139,7 +139,7 @@ class _FieldCode:
             check = f"value = Checks.check_values({name!r}, value, K_{name}, {cls})"
             if kind.string_bound is not None:
                 return f"    {check}\n"
-            usual_case = f"value.__class__ is List and Set(Map(Type, value)) <= {{{cls}}}" + self._length_check()
+            usual_case = f"value.__class__ is List and Set(Map(Type, value)) <= {{{cls}}}" + self._make_length_check()
             return f"    if not ({usual_case}): {check}\n"
         if primitive is None:
             check = f"check_message({name!r}, value, C_{name})"
@@ -153,9 +153,9 @@ class _FieldCode:
             check = f"check_byte({name!r}, value)"
         else:
             check = f"check_text({name!r}, value, {kind.string_bound})"
-        return f"    if not ({self._usual_test('value')}): value = Checks.{check}\n"
+        return f"    if not ({self._make_usual_test('value')}): value = Checks.{check}\n"
 
-    def _length_check(self) -> str:
+    def _make_length_check(self) -> str:
         """Return an expression that tests the number of values.
 
         The expression is empty if any number is valid.
@@ -164,7 +164,7 @@ class _FieldCode:
             return ""
         return f" and len(value) {'==' if self.kind.container is Container.ARRAY else '<='} {self.kind.size}"
 
-    def _usual_test(self, value: str) -> str:
+    def _make_usual_test(self, value: str) -> str:
         """Return an expression that tests whether a single value can be stored unchanged."""
         kind, primitive = self.kind, self.kind.primitive
         if primitive is None:
@@ -185,15 +185,15 @@ class _FieldCode:
     def _is_single(self) -> bool:
         return self.kind.container is Container.ONE
 
-    def _default(self) -> Any:
-        """Return the default value as the field stores it, or None if the definition has no default."""
+    def _get_default(self) -> Any:
+        """Return the default value as the field stores it, or None if there is no default."""
         value = self.field.default
         if value is None or self._is_single():
             return value
         assert isinstance(value, tuple)
         return list(value)
 
-    def _default_expression(self) -> str:
+    def _make_default_expression(self) -> str:
         kind, primitive, name = self.kind, self.kind.primitive, self.name
         if kind.is_numeric_array:
             assert primitive is not None
@@ -207,24 +207,24 @@ class _FieldCode:
                 return f"List(D_{name})"
             if kind.container is Container.SEQUENCE:
                 return "[]"
-            return f"[{self._single_default()} for _ in Range({kind.size})]"
-        return self._single_default() if self.default is None else repr(self.default)
+            return f"[{self._make_single_default()} for _ in Range({kind.size})]"
+        return self._make_single_default() if self.default is None else repr(self.default)
 
-    def _single_default(self) -> str:
+    def _make_single_default(self) -> str:
         primitive = self.kind.primitive
         if primitive is None:
             return f"C_{self.name}()"
         return {int: "0", float: "0.0", bool: "False", str: "''", bytes: "b'\\0'"}[primitive.python]
 
 
-def _constructor(fields: list[_FieldCode]) -> str:
+def _make_constructor(fields: list[_FieldCode]) -> str:
     parameters = "".join(field.parameter() for field in fields)
     lines = "".join(field.initial() for field in fields)
     keyword_only = "*, " if fields else ""
     return f"def __init__(M, {keyword_only}{parameters}**Rest):\n{lines}    if Rest: Checks.refuse_arguments(Rest)\n"
 
 
-def _docstring(name: str, structure: Structure) -> str:
+def _make_docstring(name: str, structure: Structure) -> str:
     text = f"Message class '{name}'."
     if structure.constants:
         text += "\n\nConstants:\n" + "\n".join(f"  {constant.name}" for constant in structure.constants)
@@ -259,7 +259,7 @@ def get_message(name: str) -> type[Any]:
         InterfaceNotFoundError: MSG101 with the nearest names, MSG102 for a text that is not a name.
         DefinitionError: the interface file in the workspace has mistakes.
     """
-    return _class_by_name(name, Message, "msg")
+    return _find_class(name, Message, "msg")
 
 
 def get_service(name: str) -> type[Any]:
@@ -267,7 +267,7 @@ def get_service(name: str) -> type[Any]:
 
     Names and errors are as in `get_message`.
     """
-    return _class_by_name(name, ServiceType, "srv")
+    return _find_class(name, ServiceType, "srv")
 
 
 def get_action(name: str) -> type[Any]:
@@ -275,7 +275,7 @@ def get_action(name: str) -> type[Any]:
 
     Names and errors are as in `get_message`.
     """
-    return _class_by_name(name, ActionType, "action")
+    return _find_class(name, ActionType, "action")
 
 
 def get_interface(name: str) -> type[Any]:
@@ -283,7 +283,7 @@ def get_interface(name: str) -> type[Any]:
 
     For ``package/Name``, a message is preferred to a service, and a service to an action.
     """
-    return cast("type[Any]", _classes.get(name) or _class_for(LIBRARY.definition(name)))
+    return cast("type[Any]", _classes.get(name) or _get_class(LIBRARY.definition(name)))
 
 
 def class_of(structure: Structure) -> type[Any]:
@@ -291,7 +291,7 @@ def class_of(structure: Structure) -> type[Any]:
 
     The class is created on first use.
     """
-    return cast("type[Any]", _class_for(structure))
+    return cast("type[Any]", _get_class(structure))
 
 
 def add_class(message_class: type[Message]) -> None:
@@ -299,17 +299,17 @@ def add_class(message_class: type[Message]) -> None:
     _classes[message_class.TYPE_NAME] = message_class
 
 
-def _class_by_name(name: str, base: type, kind: str) -> type[Any]:
+def _find_class(name: str, base: type, kind: str) -> type[Any]:
     interface_class = _classes.get(name)
     if interface_class is None:
         # The kind in a full name is not checked, because a message may be 'std_srvs/srv/SetBool_Request'.
-        interface_class = _class_for(LIBRARY.definition(name, *(() if name.count("/") == 2 else (kind,))))
+        interface_class = _get_class(LIBRARY.definition(name, *(() if name.count("/") == 2 else (kind,))))
     if not issubclass(interface_class, base):
-        raise InterfaceNotFoundError(wrong_kind_diagnostic(LIBRARY.definition(name), kind))
+        raise InterfaceNotFoundError(make_wrong_kind_diagnostic(LIBRARY.definition(name), kind))
     return cast("type[Any]", interface_class)
 
 
-def _class_for(definition: Definition) -> Any:
+def _get_class(definition: Definition) -> Any:
     interface_class = _classes.get(definition.type_name)
     if interface_class is None:
         with _lock:
@@ -328,7 +328,7 @@ def _create_class(definition: Definition) -> type:
 
 
 def _create_message_class(structure: Structure) -> type:
-    classes = {name: _class_for(LIBRARY.structure(name)) for name in structure.references}
+    classes = {name: _get_class(LIBRARY.structure(name)) for name in structure.references}
     if structure.type_name in _HAND_WRITTEN_MODULES:
         import_module(_HAND_WRITTEN_MODULES[structure.type_name])  # The module calls `add_class` when it is imported.
         return cast("type", _classes[structure.type_name])
@@ -345,9 +345,9 @@ def _create_service_class(service: Service) -> type:
             "__module__": python_module(name),
             "__doc__": f"Service class '{name.rpartition('/')[2]}'.",
             "TYPE_NAME": name,
-            "Request": _class_for(service.request),
-            "Response": _class_for(service.response),
-            "Event": _LazyClass(event_of(service)),
+            "Request": _get_class(service.request),
+            "Response": _get_class(service.response),
+            "Event": _LazyClass(make_event_structure(service)),
         },
     )
 
@@ -358,9 +358,9 @@ def _create_action_class(action: Action) -> type:
         "Impl",
         (ActionImplementation,),
         {
-            "SendGoalService": _class_for(send_goal_of(action)),
-            "GetResultService": _class_for(get_result_of(action)),
-            "FeedbackMessage": _class_for(feedback_message_of(action)),
+            "SendGoalService": _get_class(make_send_goal_service(action)),
+            "GetResultService": _get_class(make_get_result_service(action)),
+            "FeedbackMessage": _get_class(make_feedback_structure(action)),
             "CancelGoalService": get_service("action_msgs/srv/CancelGoal"),
             "GoalStatusMessage": get_message("action_msgs/msg/GoalStatusArray"),
         },
@@ -372,9 +372,9 @@ def _create_action_class(action: Action) -> type:
             "__module__": python_module(name),
             "__doc__": f"Action class '{name.rpartition('/')[2]}'.",
             "TYPE_NAME": name,
-            "Goal": _class_for(action.goal),
-            "Result": _class_for(action.result),
-            "Feedback": _class_for(action.feedback),
+            "Goal": _get_class(action.goal),
+            "Result": _get_class(action.result),
+            "Feedback": _get_class(action.feedback),
             "Impl": implementation,
         },
     )
@@ -387,7 +387,7 @@ class _LazyClass:
         self._structure = structure
 
     def __get__(self, instance: object, owner: type) -> type:
-        return cast("type", _class_for(self._structure))
+        return cast("type", _get_class(self._structure))
 
 
 Message._class_named = staticmethod(get_message)

@@ -51,20 +51,20 @@ def to_dict(
         no_arr: whether arrays and sequences are replaced by their type and length.
         no_str: whether strings are replaced by their length.
     """
-    return _fields_as_dict(message, Abridgement(truncate_length, no_arr, no_str))
+    return _fields_to_dict(message, Abridgement(truncate_length, no_arr, no_str))
 
 
-def _fields_as_dict(message: Message, abridgement: Abridgement) -> OrderedDict[str, Any]:
+def _fields_to_dict(message: Message, abridgement: Abridgement) -> OrderedDict[str, Any]:
     plain_values: OrderedDict[str, Any] = OrderedDict()
     for field in definition_of(type(message)).fields:
         kind = field.type
         value = getattr(message, field.name)
         if kind.container is Container.ONE:
-            plain_values[field.name] = _plain_value(value, abridgement)
+            plain_values[field.name] = _to_plain_value(value, abridgement)
         elif abridgement.no_arr:
-            plain_values[field.name] = abbreviated(kind, value)
+            plain_values[field.name] = abbreviate(kind, value)
         else:
-            plain_values[field.name] = _plain_list(value, abridgement)
+            plain_values[field.name] = _to_plain_list(value, abridgement)
     return plain_values
 
 
@@ -77,17 +77,17 @@ def to_csv(message: Message, *, truncate_length: int | None = None, no_arr: bool
         no_arr: as in `to_dict`.
         no_str: as in `to_dict`.
     """
-    return _csv_line(message, Abridgement(truncate_length, no_arr, no_str))
+    return _to_csv_line(message, Abridgement(truncate_length, no_arr, no_str))
 
 
-def _csv_line(message: Message, abridgement: Abridgement) -> str:
+def _to_csv_line(message: Message, abridgement: Abridgement) -> str:
     items: list[str] = []
     for field in definition_of(type(message)).fields:
         value = getattr(message, field.name)
         if abridgement.no_arr and field.type.container is not Container.ONE:
-            items.append(abbreviated(field.type, value))
+            items.append(abbreviate(field.type, value))
         else:
-            items.append(_csv_text(value, abridgement))
+            items.append(_to_csv_text(value, abridgement))
     # As in rosidl_runtime_py, empty fields at the beginning of the line do not contribute a comma.
     text = ""
     for item in items:
@@ -95,7 +95,7 @@ def _csv_line(message: Message, abridgement: Abridgement) -> str:
     return text
 
 
-def abbreviated(kind: FieldType, value: Any) -> str:
+def abbreviate(kind: FieldType, value: Any) -> str:
     """Return a text with the type and length of an array or sequence.
 
     An example is ``<sequence type: double, length: 12>``.
@@ -108,36 +108,36 @@ def abbreviated(kind: FieldType, value: Any) -> str:
     return f"<sequence type: {name}{bound}, length: {len(value)}>"
 
 
-def _plain_value(value: Any, abridgement: Abridgement) -> Any:
+def _to_plain_value(value: Any, abridgement: Abridgement) -> Any:
     if isinstance(value, bytes):
         return abridgement.cut(value.decode("latin-1"))
     if isinstance(value, str):
         return abridgement.text(value)
     if isinstance(value, Message):
-        return _fields_as_dict(value, abridgement)
+        return _fields_to_dict(value, abridgement)
     return value.item() if is_scalar(value) else value
 
 
-def _plain_list(values: Any, abridgement: Abridgement) -> list[Any]:
+def _to_plain_list(values: Any, abridgement: Abridgement) -> list[Any]:
     length = abridgement.truncate_length
     is_cut = length is not None and len(values) > length
     if isinstance(values, array) or is_array(values):
         numbers: list[Any] = (values.ravel() if is_array(values) else values)[:length].tolist()
         return [*numbers, ELLIPSIS] if is_cut else numbers
-    plain_values = [_plain_value(value, abridgement) for value in list(values)[:length]]
+    plain_values = [_to_plain_value(value, abridgement) for value in list(values)[:length]]
     return [*plain_values, ELLIPSIS] if is_cut else plain_values
 
 
-def _csv_text(value: Any, abridgement: Abridgement) -> str:
+def _to_csv_text(value: Any, abridgement: Abridgement) -> str:
     if isinstance(value, Message):
-        return _csv_line(value, abridgement)
+        return _to_csv_line(value, abridgement)
     if isinstance(value, str):
         return abridgement.text(value)
     if isinstance(value, bytes):
         return str(value)
     if isinstance(value, (list, tuple, array)) or is_array(value):
         length = abridgement.truncate_length
-        texts = [_csv_text(item, abridgement) for item in list(value)[:length]]
+        texts = [_to_csv_text(item, abridgement) for item in list(value)[:length]]
         if length is not None and len(value) > length:
             texts.append(ELLIPSIS)
         return ",".join(texts)

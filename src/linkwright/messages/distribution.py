@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-ASSUMED = "LINKWRIGHT_ROS_DISTRO_ASSUMED"
+ASSUMED_DISTRIBUTION_VARIABLE = "LINKWRIGHT_ROS_DISTRO_ASSUMED"
 """The variable that is set if ``ROS_DISTRO`` does not come from the user.
 
 In that case, ``ROS_DISTRO`` is set only for launch files.
@@ -40,4 +40,8 @@ def checks_fields_as_ros(variables: Mapping[str, str] = os.environ) -> bool:
     """
     if variables.get("ROS_PYTHON_CHECK_FIELDS") == "1":
         return True
-    return bool(variables.get("ROS_DISTRO")) and ASSUMED not in variables and is_before_iron(variables)
+    return (
+        bool(variables.get("ROS_DISTRO"))
+        and ASSUMED_DISTRIBUTION_VARIABLE not in variables
+        and is_before_iron(variables)
+    )

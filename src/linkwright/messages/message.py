@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from linkwright.diagnostics import foreign, phrase
 from linkwright.messages.cdr.values import READ_FAULTS, DataFaultError
-from linkwright.messages.checks import ndarray_class
+from linkwright.messages.checks import find_ndarray_class
 from linkwright.messages.definitions.interfaces import Structure
 from linkwright.messages.errors import MessageDataError, data_error
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -26,9 +26,9 @@ class _SlotTypes:
     """A class attribute that computes ``SLOT_TYPES`` on first access."""
 
     def __get__(self, instance: object, owner: type[Message]) -> tuple[Any, ...]:
-        from linkwright.messages.definitions.slot_types import slot_types
+        from linkwright.messages.definitions.slot_types import make_slot_types
 
-        types = slot_types(definition_of(owner))
+        types = make_slot_types(definition_of(owner))
         owner.SLOT_TYPES = types
         return types
 
@@ -86,7 +86,7 @@ class Message:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, self.__class__):
             return False
-        ndarray = ndarray_class()
+        ndarray = find_ndarray_class()
         for slot in self.__slots__:
             own_value, other_value = getattr(self, slot), getattr(other, slot)
             if type(own_value) is ndarray or type(other_value) is ndarray:

@@ -1,4 +1,4 @@
-"""Type stubs of message classes, which are created at run time, for type checkers and editors."""
+"""Type stubs for type checkers and editors of message classes that are created at run time."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from linkwright.messages.definitions.interfaces import (
     FieldType,
     Service,
     Structure,
-    event_of,
-    feedback_message_of,
-    get_result_of,
-    send_goal_of,
+    make_event_structure,
+    make_feedback_structure,
+    make_get_result_service,
+    make_send_goal_service,
 )
 from linkwright.messages.definitions.library import Library
 
@@ -97,7 +97,7 @@ def _message(structure: Structure, names: StructureNames) -> Iterable[str]:
 
 
 def _service(service: Service, names: StructureNames) -> Iterable[str]:
-    for structure in (service.request, service.response, event_of(service)):
+    for structure in (service.request, service.response, make_event_structure(service)):
         yield from _message(structure, names)
     name = service.type_name.rpartition("/")[2]
     yield f"class {name}(ServiceType):"
@@ -108,9 +108,9 @@ def _service(service: Service, names: StructureNames) -> Iterable[str]:
 
 def _action(action: Action, names: StructureNames) -> Iterable[str]:
     name = action.type_name.rpartition("/")[2]
-    for structure in (action.goal, action.result, action.feedback, feedback_message_of(action)):
+    for structure in (action.goal, action.result, action.feedback, make_feedback_structure(action)):
         yield from _message(structure, names)
-    for service in (send_goal_of(action), get_result_of(action)):
+    for service in (make_send_goal_service(action), make_get_result_service(action)):
         yield from _service(service, names)
     yield f"class {name}(ActionType):"
     for part in ("Goal", "Result", "Feedback"):

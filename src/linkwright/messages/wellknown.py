@@ -1,4 +1,4 @@
-"""The message classes that Linkwright uses by name, described for mypy in ``wellknown.pyi``."""
+"""The message classes that Linkwright uses by name, with stubs in ``wellknown.pyi``."""
 
 from __future__ import annotations
 

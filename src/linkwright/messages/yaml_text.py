@@ -16,7 +16,7 @@ from math import isfinite
 from typing import Any
 
 from linkwright.messages.checks import is_array
-from linkwright.messages.conversion import ELLIPSIS, Abridgement, abbreviated, to_dict
+from linkwright.messages.conversion import ELLIPSIS, Abridgement, abbreviate, to_dict
 from linkwright.messages.definitions.interfaces import Container, Field, FieldType
 from linkwright.messages.message import Message, definition_of
 
@@ -86,7 +86,7 @@ class _Writer:
     def _write_list(self, kind: FieldType, values: Any, indent: str, path: tuple[str, ...]) -> None:
         lines = self._lines
         if self._abridgement.no_arr:
-            lines.append(f" {_format_scalar(abbreviated(kind, values))}\n")
+            lines.append(f" {_format_scalar(abbreviate(kind, values))}\n")
             return
         if not len(values):
             lines.append(" []\n")

@@ -30,9 +30,9 @@ class ZenohRouter(SingleNode):
             raise LinkwrightError(
                 Diagnostic("NODE003", phrase("the Zenoh router needs the Zenoh library"), hint=install_hint("zenoh"))
             )
-        from linkwright.wire.zenoh.opening import ObstacleReporter
-        from linkwright.wire.zenoh.reaching import configured_addresses
-        from linkwright.wire.zenoh.session import build_config, close_session, listen_endpoints, open_session
+        from linkwright.wire.zenoh.connection_problems import find_configured_addresses
+        from linkwright.wire.zenoh.session import build_config, close_session, find_listen_addresses, open_session
+        from linkwright.wire.zenoh.session_opener import ObstacleReporter
         from linkwright.wire.zenoh.settings import read_router_settings
 
         config = build_config(read_router_settings())
@@ -43,9 +43,9 @@ class ZenohRouter(SingleNode):
             close_session(self._session)
             raise
         logger = self._node.get_logger()
-        logger.info(f"Zenoh router at {', '.join(listen_endpoints(config))}")
+        logger.info(f"Zenoh router at {', '.join(find_listen_addresses(config))}")
         self._reporter = ObstacleReporter(config, self._warn, lambda: bool(self._session.info.routers_zid()))
-        if configured_addresses(config):
+        if find_configured_addresses(config):
             self._reporter.start()
 
     def _warn(self, reasons: str) -> None:

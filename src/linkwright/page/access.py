@@ -50,7 +50,7 @@ PROGRAM_PAGES_VARIABLE = "LINKWRIGHT_PROGRAM_PAGES"
 PROGRAM_PAGES_PATH = "/programs/"
 """The path of this address."""
 
-_LIFETIME = 7 * 24 * 3600.0
+_TOKEN_LIFETIME_S = 7 * 24 * 3600.0
 """The time for which a stored token is valid, in seconds."""
 
 _TOKEN = re.compile(r"[\w-]{32}")
@@ -58,7 +58,7 @@ _MAX_FILE_SIZE = 1000
 """The largest number of bytes that are read from a token file."""
 
 
-def new_token() -> str:
+def create_token() -> str:
     """Return a random token of 192 bits."""
     return secrets.token_urlsafe(24)
 
@@ -76,7 +76,7 @@ class PortToken:
     pages_wait: bool = False
 
 
-def token_folder() -> Path:
+def get_token_folder() -> Path:
     """Return the folder of the token files, below the user's state folder."""
     return state_folder() / "page-tokens"
 
@@ -88,9 +88,9 @@ def load_token(port: int) -> PortToken:
     program, which is reset in the file.
     """
     now = time.time()
-    created, stored = _read(token_folder() / str(port))
-    if stored is None or not 0.0 <= now - created < _LIFETIME:
-        created, stored = now, PortToken(new_token())
+    created, stored = _read(get_token_folder() / str(port))
+    if stored is None or not 0.0 <= now - created < _TOKEN_LIFETIME_S:
+        created, stored = now, PortToken(create_token())
     _write(port, created, PortToken(stored.token))
     return stored
 
@@ -100,7 +100,7 @@ def store_pages_wait(port: int, token: str, *, pages_wait: bool) -> None:
 
     Nothing is stored if the file contains another token.
     """
-    created, stored = _read(token_folder() / str(port))
+    created, stored = _read(get_token_folder() / str(port))
     if stored is not None and stored.token == token:
         _write(port, created, PortToken(token, pages_wait))
 
@@ -137,7 +137,7 @@ def _write(port: int, created: float, port_token: PortToken) -> None:
 
     A failure is ignored. The next program then gets a new token.
     """
-    folder = token_folder()
+    folder = get_token_folder()
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         content = {"token": port_token.token, "made": created, "pages wait": port_token.pages_wait}
@@ -163,8 +163,8 @@ class Gate:
         machine = socket.gethostname().lower()
         self._names = {"localhost", host.lower(), machine, f"{machine}.local"}
 
-    def refusal(self, headers: Mapping[str, str]) -> str | None:
-        """Return the reason to refuse a request because of its Host or Origin header (403), or None."""
+    def find_refusal_reason(self, headers: Mapping[str, str]) -> str | None:
+        """Return why a request is refused (403) for its Host or Origin header, or None."""
         host = headers.get("Host", "")
         if not self.accepts_host(host):
             return f"this server does not answer to the name '{host[:200]}': open the address that linkwright printed"
@@ -210,7 +210,7 @@ def _is_same_origin(origin: str, host: str) -> bool:
     return url.scheme in ("http", "https") and url.netloc.lower() == host.lower()
 
 
-def security_headers(host: str, *, frames: str = "'none'", frame_ancestors: str = "'none'") -> dict[str, str]:
+def make_security_headers(host: str, *, frames: str = "'none'", frame_ancestors: str = "'none'") -> dict[str, str]:
     """Return the security headers for every response.
 
     Scripts are loaded only from the server's files. They may evaluate text, because browser automation does so to wait
@@ -368,14 +368,14 @@ def is_local_connection(transport: BaseTransport | None) -> bool:
 
     It then comes over loopback, or from an address of this machine.
     """
-    endpoints = endpoints_of(transport)
+    endpoints = find_endpoints(transport)
     if endpoints is None:
         return False
     (peer, _), (own_address, _) = endpoints
     return peer.is_loopback or peer == own_address
 
 
-def endpoints_of(transport: BaseTransport | None) -> tuple[Endpoint, Endpoint] | None:
+def find_endpoints(transport: BaseTransport | None) -> tuple[Endpoint, Endpoint] | None:
     """Return the addresses and ports of the peer and of this program, or None if unknown."""
     if transport is None:
         return None

@@ -31,8 +31,8 @@ from linkwright.page.protocol.message import (
     ServerMessage,
     decode,
     encode,
-    import_path_of,
-    redundancy_key,
+    get_import_path,
+    make_redundancy_key,
 )
 
 if TYPE_CHECKING:
@@ -86,11 +86,11 @@ _MAX_INVALID_MESSAGES = 20
 _LAG_FACTOR = 4
 """A page receives a notice that the program is late if the lag times this factor exceeds the round-trip time."""
 
-_QUIET = 0.3
+_QUIET_PERIOD_S = 0.3
 """Seconds for which a connection must be idle before a page receives the full data of reduced content."""
 
 
-def requested_language(request: Request) -> str:
+def find_requested_language(request: Request) -> str:
     """Return the language that a page requests, one of `LANGUAGES`.
 
     The default is the language of the terminal.
@@ -144,7 +144,7 @@ class Page:
 
     def send(self, message: ServerMessage) -> None:
         """Send a message only to this page."""
-        self.outbox.put(redundancy_key(message), encode(message, self.language))
+        self.outbox.put(make_redundancy_key(message), encode(message, self.language))
 
     async def write(self) -> None:
         """Send the opening payloads, then the outbox's payloads, until the connection is lost."""
@@ -178,7 +178,7 @@ class Page:
 
     async def _send(self, payload: Outgoing | ScaledData) -> None:
         if not isinstance(payload, (str, bytes)):
-            payload = await self._fitted_frame(payload)
+            payload = await self._fit_frame(payload)
         size = len(payload)
         start_time = self.line.sending(size)
         if isinstance(payload, bytes):
@@ -188,13 +188,13 @@ class Page:
         self.line.sent(size, start_time)
         self._on_connection_change()
 
-    async def _fitted_frame(self, payload: ScaledData) -> bytes:
+    async def _fit_frame(self, payload: ScaledData) -> bytes:
         """Return a frame with as much of the content as the connection can carry.
 
         The full content is sent later, when the connection is idle.
         """
         byte_budget = self.line.room
-        frame = await payload.fitting(byte_budget)
+        frame = await payload.pack_fitting(byte_budget)
         if frame is payload.full_frame:
             self._reduced.pop(payload.key, None)
         else:
@@ -219,7 +219,7 @@ class Page:
         elif not self.line.is_idle:
             self._cancel_completion()
         elif self._reduced and self._completion_timer is None:
-            self._completion_timer = asyncio.get_running_loop().call_later(_QUIET, self._start_completion)
+            self._completion_timer = asyncio.get_running_loop().call_later(_QUIET_PERIOD_S, self._start_completion)
 
     def _report_lateness(self) -> None:
         """Notify the page when this program starts or stops being the reason for reduced data."""
@@ -241,7 +241,7 @@ class Page:
         for payload, _ in self._reduced.values():
             if payload.key not in self.outbox:
                 self._completion_count += 1
-                self._completion = ChunkedFrame(payload, self._completion_count, self._chunk_size)
+                self._completion = ChunkedFrame(payload, self._completion_count, self._compute_chunk_size)
                 self.outbox.put(payload.key, self._completion)
                 return
 
@@ -253,7 +253,7 @@ class Page:
         if self._reduced.get(completion.key, (None,))[0] is completion.payload:
             del self._reduced[completion.key]
 
-    def _chunk_size(self) -> int:
+    def _compute_chunk_size(self) -> int:
         """Return the size of a chunk in bytes.
 
         At most two chunks are in transit.
@@ -287,7 +287,7 @@ class PageGroup:
     def publish(self, message: ServerMessage) -> None:
         """Send a message to every page."""
         if self._pages:
-            key = redundancy_key(message)
+            key = make_redundancy_key(message)
             texts = {language: encode(message, language) for language in {page.language for page in self._pages}}
             for page in self._pages:
                 page.outbox.put(key, texts[page.language])
@@ -404,7 +404,7 @@ class Audience(PageGroup):
                     self._handle_message(page, decoded)
 
     def _handle_message(self, page: Page, message: PageMessage | SoundBlock) -> None:
-        receive = self._receivers.get(import_path_of(type(message)))
+        receive = self._receivers.get(get_import_path(type(message)))
         if receive is None:
             return
         try:

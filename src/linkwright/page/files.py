@@ -148,7 +148,7 @@ class MeshIndex:
             return FileAddress(
                 None, phrase("'{path}': {problem}; {hint}", path=path, problem=POINTER_REASON, hint=POINTER_HINT)
             )
-        folder = self._folder_of(uri, path)
+        folder = self._find_folder(uri, path)
         relative = path.relative_to(folder.root)
         try:
             resolve(folder, relative.as_posix())
@@ -158,7 +158,7 @@ class MeshIndex:
         version = path.stat().st_mtime_ns
         return FileAddress(f"/mesh/{folder.key}/{quote(relative.as_posix())}?v={version:x}")
 
-    def _folder_of(self, uri: str, path: Path) -> ServedFolder:
+    def _find_folder(self, uri: str, path: Path) -> ServedFolder:
         package_match = _PACKAGE_URI.match(uri)
         share_folder = self.finder.find(package_match[1]) if package_match else None
         if package_match and share_folder and path.is_relative_to(share_folder):
@@ -171,17 +171,19 @@ class MeshIndex:
 
 
 def without_secrets(text: str) -> str:
-    """Return a text that can be shared: file addresses have neither secrets, nor hashes of paths, nor times of files.
+    """Return a text that can be shared, without the secrets in file addresses.
+
+    Hashes of paths and times of files are also removed.
 
     Folders are numbered instead, in the order in which the text names them.
     """
     numbers: dict[str, int] = {}
 
-    def shared(match: re.Match[str]) -> str:
+    def remove_secrets(match: re.Match[str]) -> str:
         start, folder, path = match.groups()
         return f"{start}{numbers.setdefault(folder, len(numbers) + 1)}{path}"
 
-    return _ADDRESS.sub(shared, text)
+    return _ADDRESS.sub(remove_secrets, text)
 
 
 class MeshFolders:
@@ -236,7 +238,7 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
     if folder.package is None and not folder.is_model and len(parts) > _MAX_LOOSE_DEPTH:
         raise FileRefusedError(403, "the path is too deep below the folder of a mesh outside of packages")
     try:
-        real_path = _existing_or_texture(folder.root / relative).resolve(strict=True)
+        real_path = _find_file_or_texture(folder.root / relative).resolve(strict=True)
         root = folder.root.resolve(strict=True)
     except (OSError, RuntimeError, ValueError):
         raise FileRefusedError(404, "no such file") from None
@@ -249,7 +251,7 @@ def resolve(folder: ServedFolder, relative: str) -> Path:
     return real_path
 
 
-def _existing_or_texture(path: Path) -> Path:
+def _find_file_or_texture(path: Path) -> Path:
     """Return the path, or the path of an image of this name in a Gazebo model's texture folder.
 
     The texture folder is used only if there is no file at the path.
@@ -267,7 +269,7 @@ def _is_in_package(path: Path, name: str | None) -> bool:
     return package is not None and package[0] == name
 
 
-_OFFER_S = 60.0
+_OFFER_LIFETIME_S = 60.0
 _MAX_OFFERED = 4
 
 
@@ -315,6 +317,8 @@ class Downloads:
         Files that were offered more than a minute ago are discarded first.
         """
         now = time.monotonic()
-        for old in [expired_key for expired_key, file in self._files.items() if now - file.created_at > _OFFER_S]:
+        for old in [
+            expired_key for expired_key, file in self._files.items() if now - file.created_at > _OFFER_LIFETIME_S
+        ]:
             del self._files[old]
         return self._files.pop(key, None)

@@ -47,7 +47,7 @@ class ScaledData:
         """The frame with the full content."""
         return self._pack(self._content)
 
-    async def fitting(self, room: int) -> bytes:
+    async def pack_fitting(self, room: int) -> bytes:
         """Return a frame with as much content as fits into about `room` bytes.
 
         `room` is rounded down to a power of two, so that pages with similar connections share a frame.
@@ -196,13 +196,13 @@ class Outbox:
 MIN_MEASURED_SIZE = 4096
 """The minimum size in bytes of messages that are measured. Pages acknowledge all of these messages."""
 
-_MAX_BUSY_TIME = 0.1
+_MAX_BUSY_TIME_S = 0.1
 """The time in s for which one payload may occupy the connection."""
 
 _INITIAL_BUDGET = 24 * 1024
 _MIN_BUDGET = 6 * 1024
 
-_MIN_BLOCKED_TIME = 0.02
+_MIN_BLOCKED_TIME_S = 0.02
 """The minimum time of waiting for the socket, in s, of a slow connection."""
 
 _AVERAGED_COUNT = 8
@@ -247,7 +247,7 @@ class ConnectionMeter:
     @property
     def room(self) -> int:
         """The target size of large content, in bytes."""
-        return _INITIAL_BUDGET if self.rate is None else max(_MIN_BUDGET, int(self.rate * _MAX_BUSY_TIME))
+        return _INITIAL_BUDGET if self.rate is None else max(_MIN_BUDGET, int(self.rate * _MAX_BUSY_TIME_S))
 
     @property
     def is_full(self) -> bool:
@@ -279,7 +279,7 @@ class ConnectionMeter:
         while len(self._in_transit) > _MAX_IN_TRANSIT:
             self._in_transit.popleft()
         seconds = self._clock() - start_time
-        if seconds >= _MIN_BLOCKED_TIME:
+        if seconds >= _MIN_BLOCKED_TIME_S:
             self._update_rate(size / seconds)
         elif 2 * size >= self.room:  # a buffer of unknown size has accepted it
             self._update_rate(float("inf"))
@@ -308,5 +308,5 @@ class ConnectionMeter:
 
         A measurement at most doubles or halves the rate, because it may be an outlier.
         """
-        previous_rate = self.room / _MAX_BUSY_TIME
+        previous_rate = self.room / _MAX_BUSY_TIME_S
         self.rate = min(max(rate, previous_rate / 2), previous_rate * 2)

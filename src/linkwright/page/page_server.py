@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.page.access import PROGRAM_PAGES_VARIABLE, Gate, PortToken, load_token, new_token, store_pages_wait
+from linkwright.page.access import PROGRAM_PAGES_VARIABLE, Gate, PortToken, create_token, load_token, store_pages_wait
 from linkwright.page.files import Downloads, MeshFolders
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ class PageServer:
         self._only_loopback = only_loopback
         self._needs_terminal = needs_terminal
         self._port_token: tuple[int, PortToken] | None = None
-        self.program_pages = _new_program_pages() if only_loopback else None
+        self.program_pages = _create_program_pages() if only_loopback else None
         self._embedding: Embedding | None = None
 
     async def open(self) -> None:
@@ -76,11 +76,11 @@ class PageServer:
         self.is_open_to_others = is_open_to_others(listener)
         if self.is_open_to_others and self._only_loopback:
             listener.close()
-            raise LinkwrightError(_open_to_others(self.host, needs_terminal=self._needs_terminal))
+            raise LinkwrightError(_make_open_to_others_warning(self.host, needs_terminal=self._needs_terminal))
         if self._port != 0 and not self.is_open_to_others:
             port = listener.getsockname()[1]
             self._port_token = port, load_token(port)
-        gate = Gate(self.host, self._port_token[1].token if self._port_token else new_token())
+        gate = Gate(self.host, self._port_token[1].token if self._port_token else create_token())
         self.web = WebServer(gate, self.meshes, self.downloads, program_pages=self.program_pages)
         self.url = await self.web.start(listener)
 
@@ -98,7 +98,10 @@ class PageServer:
         return self._embedding is not None
 
     def on_pause(self, function: Callable[[bool], bool]) -> None:
-        """Call a function when the page that shows this one asks to pause or resume a world, see `Embedding`."""
+        """Call a function when the embedding page asks to pause or resume a world.
+
+        See `Embedding`.
+        """
         if self._embedding is not None:
             self._embedding.on_pause = function
 
@@ -174,7 +177,7 @@ def listen(host: str, port: int | None) -> socket.socket:
             return _listen_at(family, (address[0], candidate))
         except OSError as error:  # noqa: PERF203 - few ports, and each may be in use
             if candidate == candidates[-1] or error.errno != errno.EADDRINUSE:
-                raise LinkwrightError(_cannot_listen(host, candidate, error)) from None
+                raise LinkwrightError(_cannot_listen_error(host, candidate, error)) from None
     raise AssertionError("the last port listens or raises")
 
 
@@ -199,7 +202,7 @@ def _listen_at(family: int, address: tuple[str | int, int]) -> socket.socket:
     return listener
 
 
-def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
+def _cannot_listen_error(host: str, port: int, error: OSError) -> Diagnostic:
     if error.errno == errno.EADDRINUSE:
         hint = phrase("choose another port with '--port', or omit '--port' to use the next free one")
         return Diagnostic("VIEW101", phrase("port {port} of '{host}' is in use", port=port, host=host), hint=hint)
@@ -214,13 +217,13 @@ def _cannot_listen(host: str, port: int, error: OSError) -> Diagnostic:
     )
 
 
-def _new_program_pages() -> ProgramPages:
+def _create_program_pages() -> ProgramPages:
     from linkwright.page.program_pages import ProgramPages  # most pages have no terminal
 
     return ProgramPages()
 
 
-def _open_to_others(host: str, *, needs_terminal: bool) -> Diagnostic:
+def _make_open_to_others_warning(host: str, *, needs_terminal: bool) -> Diagnostic:
     message = phrase("a page with a terminal cannot be served at '{host}', which other machines can reach", host=host)
     hint = phrase("leave out `--host`, and reach the page through an SSH tunnel; or leave out `--terminal`")
     if needs_terminal:

@@ -12,7 +12,7 @@ import sys
 from asyncio import BaseTransport
 from pathlib import Path
 
-from linkwright.page.access import Endpoint, endpoints_of
+from linkwright.page.access import Endpoint, find_endpoints
 
 _TABLES = (Path("/proc/net/tcp"), Path("/proc/net/tcp6"))
 
@@ -34,7 +34,7 @@ def may_be_own_user(transport: BaseTransport | None) -> bool:
         True if the system does not list the sockets of other users. False if the socket is not listed as open, because
         a socket that its program has closed has no owner.
     """
-    endpoints = endpoints_of(transport)
+    endpoints = find_endpoints(transport)
     if endpoints is None:
         return False
     if not sys.platform.startswith("linux"):
@@ -43,7 +43,7 @@ def may_be_own_user(transport: BaseTransport | None) -> bool:
         tables = _read_tables()
         if not tables:
             return True
-        user = _socket_user(tables, *endpoints)
+        user = _find_socket_user(tables, *endpoints)
         if user is not None:
             return user in (os.geteuid(), _ROOT)
     return False
@@ -61,12 +61,12 @@ def _read_table(table: Path) -> str:
         return ""  # tcp6 is missing without IPv6, and a sandbox may hide both
 
 
-def _socket_user(tables: str, local: Endpoint, remote: Endpoint) -> int | None:
+def _find_socket_user(tables: str, local: Endpoint, remote: Endpoint) -> int | None:
     """Return the ID of the user who owns an open socket with these addresses, or None.
 
     A socket that its program has closed has no inode, and the user 0 in the tables.
     """
-    for write in (_table_address, _mapped_table_address):  # an IPv6 socket can connect to an IPv4 address
+    for write in (_to_table_address, _to_mapped_table_address):  # an IPv6 socket can connect to an IPv4 address
         start = f" {write(local)} {write(remote)} {_ESTABLISHED} "
         position = tables.find(start)
         if position >= 0:
@@ -75,7 +75,7 @@ def _socket_user(tables: str, local: Endpoint, remote: Endpoint) -> int | None:
     return None
 
 
-def _table_address(endpoint: Endpoint) -> str:
+def _to_table_address(endpoint: Endpoint) -> str:
     """Return an address and port in the form of the tables.
 
     The tables contain 32-bit words in the byte order of the machine.
@@ -86,8 +86,8 @@ def _table_address(endpoint: Endpoint) -> str:
     return f"{''.join(f'{word:08X}' for word in words)}:{port:04X}"
 
 
-def _mapped_table_address(endpoint: Endpoint) -> str:
+def _to_mapped_table_address(endpoint: Endpoint) -> str:
     address, port = endpoint
     if isinstance(address, ipaddress.IPv4Address):
         address = ipaddress.IPv6Address(f"::ffff:{address}")
-    return _table_address((address, port))
+    return _to_table_address((address, port))

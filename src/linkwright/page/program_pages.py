@@ -70,7 +70,10 @@ class ProgramPages:
         return bool(self._paused)
 
     def pause_worlds(self) -> None:
-        """Ask all programs to pause their worlds, including programs that start before `resume_worlds` is called."""
+        """Ask all programs to pause their worlds.
+
+        This includes programs that start before `resume_worlds` is called.
+        """
         self._must_pause = True
         for response in self._responses.values():
             self._send(response, _PAUSE)
@@ -83,12 +86,12 @@ class ProgramPages:
             for response in self._responses.values():
                 self._send(response, _RESUME)
 
-    def variables(self, origin: str) -> dict[str, str]:
-        """Return the environment variables for programs whose pages are shown in a page of an origin."""
+    def make_variables(self, origin: str) -> dict[str, str]:
+        """Return the environment variables for programs whose pages a page of an origin shows."""
         return {PROGRAM_PAGES_VARIABLE: f"{origin}{PROGRAM_PAGES_PATH}{self._key}"}
 
     def is_key(self, key: str) -> bool:
-        """Return whether a key matches the address in `variables`."""
+        """Return whether a key matches the address in `make_variables`."""
         return hmac.compare_digest(key.encode(errors="replace"), self._key.encode())
 
     async def receive(self, request: web.Request) -> web.StreamResponse:
@@ -195,7 +198,7 @@ class Embedder:
         reader, writer = await asyncio.open_connection(server.hostname, server.port)
         is_shown = False
         try:
-            writer.write(head.encode("ascii") + _chunk(line.encode("ascii")))  # the body ends with the program
+            writer.write(head.encode("ascii") + _encode_chunk(line.encode("ascii")))  # the body ends with the program
             status = await reader.readline()
             is_shown = status.split(b" ")[1:2] == [b"200"]
         finally:
@@ -227,10 +230,10 @@ class Embedding:
         with suppress(ConnectionError, ValueError):
             while line := await reader.readline():
                 if line in (_PAUSE, _RESUME) and self.on_pause(line == _PAUSE):
-                    self._writer.write(_chunk(_PAUSED))
+                    self._writer.write(_encode_chunk(_PAUSED))
         self.on_pause(False)
 
 
-def _chunk(content: bytes) -> bytes:
+def _encode_chunk(content: bytes) -> bytes:
     """Return a part of a body with the transfer encoding ``chunked``."""
     return b"%x\r\n%b\r\n" % (len(content), content)

@@ -20,7 +20,7 @@ from linkwright.page.access import (
     Admission,
     Gate,
     is_local_connection,
-    security_headers,
+    make_security_headers,
 )
 from linkwright.page.files import CONTENT_TYPES, IMAGE_TYPES, Downloads, FileRefusedError, MeshFolders
 from linkwright.page.http_server import SERVER_LOGGER, web
@@ -149,21 +149,21 @@ class WebServer:
         """
         application = web.Application(middlewares=[self._check_access])
         application.on_response_prepare.append(self._add_headers)
-        application.router.add_get("/", self._index)
-        application.router.add_get("/proof", self._proof, allow_head=False)
-        application.router.add_get("/ws", self._socket, allow_head=False)
-        application.router.add_get("/mesh/{key}/{path:.+}", self._mesh)
-        application.router.add_get("/export/{key}/{name}", self._export, allow_head=False)
+        application.router.add_get("/", self._serve_index)
+        application.router.add_get("/proof", self._serve_proof, allow_head=False)
+        application.router.add_get("/ws", self._serve_socket, allow_head=False)
+        application.router.add_get("/mesh/{key}/{path:.+}", self._serve_mesh)
+        application.router.add_get("/export/{key}/{name}", self._serve_export, allow_head=False)
         for method, path, handle_upload in _UPLOADS:
-            application.router.add_route(method, path, self._require_token(partial(self._upload, handle_upload)))
+            application.router.add_route(method, path, self._require_token(partial(self._handle_upload, handle_upload)))
         application.router.add_post(
-            "/export/{key}/{name}", self._require_token(partial(self._upload, self._show_own_recording))
+            "/export/{key}/{name}", self._require_token(partial(self._handle_upload, self._show_own_recording))
         )
         if self._program_pages is not None:
             application.router.add_post(
                 f"{PROGRAM_PAGES_PATH}{{key}}", partial(self._show_program, self._program_pages)
             )
-        application.router.add_get("/{path:.+}", self._page_file)
+        application.router.add_get("/{path:.+}", self._serve_page_file)
         self._runner = web.AppRunner(
             application,
             handle_signals=False,
@@ -186,7 +186,7 @@ class WebServer:
             finally:
                 listener.close()
             raise
-        return f"{url_of(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
+        return f"{make_url(listener)}?{TOKEN_PARAMETER}={self._gate.token}"
 
     def show(self, audience: Audience, open_guests: Callable[[], Guests] | None = None) -> None:
         """Admit pages, including pages that are already waiting.
@@ -223,9 +223,9 @@ class WebServer:
     ) -> web.StreamResponse:
         if self._admission is not None:
             self._admission.request_received(request.protocol)
-        reason = self._gate.refusal(request.headers)
+        reason = self._gate.find_refusal_reason(request.headers)
         if reason is not None:
-            return _refusal(403, reason)
+            return _make_refusal(403, reason)
         if self._gate.has_token(request.query):
             self._admit(request)
         return await handler(request)
@@ -237,27 +237,29 @@ class WebServer:
     async def _add_headers(self, request: web.Request, response: web.StreamResponse) -> None:
         host = request.host if self._gate.accepts_host(request.host) else "localhost"
         frames = "'none'" if self._program_pages is None else _FRAME_SOURCES
-        response.headers.update(security_headers(host, frames=frames, frame_ancestors=self.frame_ancestor or "'none'"))
+        response.headers.update(
+            make_security_headers(host, frames=frames, frame_ancestors=self.frame_ancestor or "'none'")
+        )
         response.headers.setdefault("Cache-Control", _NO_STORE)
 
     # --- handlers of requests ----------------------------------------------------------------------------------
 
-    async def _index(self, request: web.Request) -> web.StreamResponse:
+    async def _serve_index(self, request: web.Request) -> web.StreamResponse:
         index = self._page_folder / "index.html"
         if not index.is_file():
             return web.Response(status=503, text=_NOT_BUILT)
         # Browsers may apply a stored security policy to an unchanged page, and different programs use the same port.
         is_stored = self._program_pages is None and self.frame_ancestor is None
-        return await self._page_response(request, index, _PAGE_TYPES[".html"], "no-cache" if is_stored else _NO_STORE)
+        return await self._send_page_file(request, index, _PAGE_TYPES[".html"], "no-cache" if is_stored else _NO_STORE)
 
-    async def _proof(self, request: web.Request) -> web.Response:
+    async def _serve_proof(self, request: web.Request) -> web.Response:
         """Prove to a page that this program also has the token. See `Gate.proof`."""
         proof = self._gate.proof(request.query.get("nonce", ""))
         if proof is None:
             return web.Response(status=400, text="This address is for the page only.\n")
         return web.Response(text=proof)
 
-    async def _page_file(self, request: web.Request) -> web.StreamResponse:
+    async def _serve_page_file(self, request: web.Request) -> web.StreamResponse:
         path = request.match_info["path"]
         parts = path.split("/")
         content_type = _PAGE_TYPES.get(Path(parts[-1]).suffix)
@@ -268,15 +270,15 @@ class WebServer:
         file = self._page_folder / path
         gzip_path = file.with_name(f"{file.name}.gz")
         if not (is_hashed and gzip_path.is_file()):
-            return await self._page_response(request, file, content_type, cache)
+            return await self._send_page_file(request, file, content_type, cache)
         if not _accepts_gzip(request):
             vary = {"Vary": "Accept-Encoding"}
-            return await self._page_response(request, gzip_path, content_type, cache, vary, decompress=True)
+            return await self._send_page_file(request, gzip_path, content_type, cache, vary, decompress=True)
         # Compression reduces the files to a quarter, which saves tens of seconds on a slow connection.
         encoding_headers = {"Content-Encoding": "gzip", "Vary": "Accept-Encoding"}
-        return await self._page_response(request, gzip_path, content_type, cache, encoding_headers)
+        return await self._send_page_file(request, gzip_path, content_type, cache, encoding_headers)
 
-    async def _page_response(
+    async def _send_page_file(
         self,
         request: web.Request,
         path: Path,
@@ -292,7 +294,7 @@ class WebServer:
             try:
                 file_version = await asyncio.to_thread(_read, path, cached.tag if cached else "", decompress=decompress)
             except OSError:
-                raise _not_found() from None
+                raise _make_not_found_error() from None
             if cached is None or file_version.body is not None:
                 cached = self._page_contents[path, decompress] = file_version
         headers = {"Cache-Control": cache, **(encoding_headers or {})}
@@ -310,7 +312,7 @@ class WebServer:
         await response.write_eof()
         return response
 
-    async def _mesh(self, request: web.Request) -> web.StreamResponse:
+    async def _serve_mesh(self, request: web.Request) -> web.StreamResponse:
         key, relative = request.match_info["key"], request.match_info["path"]
         try:
             path = await asyncio.to_thread(self._meshes.file, key, relative)
@@ -320,9 +322,9 @@ class WebServer:
         content_type = CONTENT_TYPES[path.suffix.lower()]
         # images are already compressed
         may_compress = _accepts_gzip(request) and path.suffix.lower() not in IMAGE_TYPES
-        return await _file_response(request, path, content_type, "private, no-cache", may_compress=may_compress)
+        return await _make_file_response(request, path, content_type, "private, no-cache", may_compress=may_compress)
 
-    async def _export(self, request: web.Request) -> web.StreamResponse:
+    async def _serve_export(self, request: web.Request) -> web.StreamResponse:
         file = self._downloads.withdraw(request.match_info["key"])
         recording = self._downloads.path(request.match_info["key"])
         if recording is not None:
@@ -333,10 +335,10 @@ class WebServer:
         self._admit(request)
         return web.Response(
             body=file.data,
-            headers={"Content-Type": file.content_type, "Content-Disposition": _attachment_header(file.name)},
+            headers={"Content-Type": file.content_type, "Content-Disposition": _make_attachment_header(file.name)},
         )
 
-    async def _upload(
+    async def _handle_upload(
         self, handle_upload: Callable[[Uploads, web.Request], Awaitable[web.Response]], request: web.Request
     ) -> web.Response:
         services = await self._wait_for_services()
@@ -367,7 +369,7 @@ class WebServer:
 
     async def _show_program(self, programs: ProgramPages, request: web.Request) -> web.StreamResponse:
         if not programs.is_key(request.match_info["key"]):
-            return _unauthorized()
+            return _make_unauthorized_response()
         self._admit(request)
         return await programs.receive(request)
 
@@ -377,17 +379,17 @@ class WebServer:
         """Return a handler that calls the given handler only for requests with the token."""
 
         async def check_token(request: web.Request) -> web.StreamResponse:
-            return await handler(request) if self._gate.has_token(request.query) else _unauthorized()
+            return await handler(request) if self._gate.has_token(request.query) else _make_unauthorized_response()
 
         return check_token
 
-    async def _socket(self, request: web.Request) -> web.StreamResponse:
+    async def _serve_socket(self, request: web.Request) -> web.StreamResponse:
         if not self._gate.has_token(request.query):
-            return _unauthorized()
+            return _make_unauthorized_response()
         services = await self._wait_for_services()
-        from linkwright.page.audience import Page, requested_language
+        from linkwright.page.audience import Page, find_requested_language
 
-        audience = _audience_of(services, request)
+        audience = _find_audience(services, request)
         if audience.is_full:
             return web.Response(status=503, text="Too many pages are open.\n")
         socket = web.WebSocketResponse(
@@ -405,10 +407,10 @@ class WebServer:
             limit_buffers(request.transport)
         page = Page(
             socket,
-            _own_configuration(request),
+            _find_own_configuration(request),
             is_local=is_local_connection(request.transport),
             may_be_own_user=cache(partial(may_be_own_user, request.transport)),
-            language=requested_language(request),
+            language=find_requested_language(request),
             origin=request.headers.get("Origin") or f"http://{request.host}",
         )
         await audience.attend(page, socket)
@@ -424,7 +426,7 @@ _UPLOADS: tuple[tuple[str, str, Callable[[Uploads, web.Request], Awaitable[web.R
 """The methods, addresses and handlers of the requests with which pages upload recordings."""
 
 
-def _audience_of(services: _Services, request: web.Request) -> Audience:
+def _find_audience(services: _Services, request: web.Request) -> Audience:
     """Return the audience of the recording that a request names, if it is still shown.
 
     Otherwise, return the audience of the viewer.
@@ -434,7 +436,7 @@ def _audience_of(services: _Services, request: web.Request) -> Audience:
     return services.audience if audience is None else audience
 
 
-def _own_configuration(request: web.Request) -> str:
+def _find_own_configuration(request: web.Request) -> str:
     """Return the name of the page's own configuration, or an empty string for the shared one."""
     key = request.query.get("own", "")
     return key if _OWN_CONFIGURATION_KEY.fullmatch(key) else ""
@@ -445,21 +447,21 @@ def _accepts_gzip(request: web.Request) -> bool:
     return any(encoding.strip().lower() == "gzip" for encoding in encodings)
 
 
-def _unauthorized() -> web.Response:
-    return _refusal(401, "the token is missing or wrong: open the address that linkwright printed, token included")
+def _make_unauthorized_response() -> web.Response:
+    return _make_refusal(401, "the token is missing or wrong: open the address that linkwright printed, token included")
 
 
-def _refusal(status: int, reason: str) -> web.Response:
+def _make_refusal(status: int, reason: str) -> web.Response:
     """Return an error response that closes its connection."""
     response = web.Response(status=status, text=f"{reason[0].upper()}{reason[1:]}.\n")
     response.force_close()
     return response
 
 
-async def _file_response(
+async def _make_file_response(
     request: web.Request, path: Path, content_type: str, cache: str, *, may_compress: bool
 ) -> web.Response:
-    """Return a response with a file, or 304 if the browser already has this version of the file.
+    """Return a response with a file, or 304 if the browser already has this version.
 
     The ETag changes with the content. If `may_compress` is true and the file becomes clearly smaller, it is compressed,
     and a header contains the uncompressed length.
@@ -470,7 +472,7 @@ async def _file_response(
     try:
         file_version = await asyncio.to_thread(_read, path, request.headers.get("If-None-Match", ""))
     except OSError:
-        raise _not_found() from None
+        raise _make_not_found_error() from None
     headers = {"Cache-Control": cache, "ETag": file_version.tag, "Vary": "Accept-Encoding"}
     if file_version.body is None:
         return web.Response(status=304, headers=headers)
@@ -486,7 +488,7 @@ async def _file_response(
     return response
 
 
-def _attachment_header(name: str) -> str:
+def _make_attachment_header(name: str) -> str:
     return f"attachment; filename*=UTF-8''{quote(name)}"
 
 
@@ -495,10 +497,13 @@ async def _stream_file(request: web.Request, path: Path) -> web.StreamResponse:
     try:
         file = await asyncio.to_thread(path.open, "rb")
     except OSError:
-        raise _not_found() from None
+        raise _make_not_found_error() from None
     with file:
         response = web.StreamResponse(
-            headers={"Content-Type": "application/octet-stream", "Content-Disposition": _attachment_header(path.name)}
+            headers={
+                "Content-Type": "application/octet-stream",
+                "Content-Disposition": _make_attachment_header(path.name),
+            }
         )
         response.content_length = remaining_bytes = os.fstat(file.fileno()).st_size
         await response.prepare(request)
@@ -509,7 +514,7 @@ async def _stream_file(request: web.Request, path: Path) -> web.StreamResponse:
     return response
 
 
-def _not_found() -> web.HTTPNotFound:
+def _make_not_found_error() -> web.HTTPNotFound:
     return web.HTTPNotFound(text="There is no such file.\n")
 
 
@@ -559,7 +564,7 @@ def limit_buffers(transport: asyncio.Transport) -> None:
         connection.setsockopt(socket.IPPROTO_TCP, _NOT_SENT_LOW_WATER, MAX_UNSENT_BYTES)
 
 
-def url_of(listener: socket.socket) -> str:
+def make_url(listener: socket.socket) -> str:
     """Return the URL with which a browser on this machine reaches a listening socket."""
     host, port = listener.getsockname()[:2]
     host = _LOOPBACK_OF_WILDCARD.get(host, host)

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Protocol
 
 import msgspec
 
-from linkwright.bag.scratch import scratch_folder
+from linkwright.bag.scratch import create_scratch_folder
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, join_messages, phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.page.audience import requested_language
+from linkwright.page.audience import find_requested_language
 from linkwright.page.http_server import web
 
 if TYPE_CHECKING:
@@ -159,7 +159,7 @@ class Uploads:
                     count=_MAX_UPLOADS,
                 ),
             )
-        scratch = scratch_folder()
+        scratch = create_scratch_folder()
         required_bytes = sum(file.size for file in announcement.files)
         free = shutil.disk_usage(scratch.name).free
         if required_bytes + self._min_free_bytes > free:
@@ -204,7 +204,7 @@ class Uploads:
         try:
             recording_key = await self._guests.open(upload.target, upload.scratch)
         except LinkwrightError as error:
-            problem_text = localized(join_messages(error.diagnostics), requested_language(request))
+            problem_text = localized(join_messages(error.diagnostics), find_requested_language(request))
             self._remove(request.match_info["key"])
             return _problem_response(problem_text)
         self._uploads.pop(request.match_info["key"], None)
@@ -253,7 +253,7 @@ class Uploads:
 
 
 def _refusal(request: web.Request, message: Phrase) -> web.Response:
-    return _problem_response(localized(message, requested_language(request)))
+    return _problem_response(localized(message, find_requested_language(request)))
 
 
 def _problem_response(text: str) -> web.Response:

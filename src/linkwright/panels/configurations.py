@@ -80,7 +80,7 @@ class ConfigurationFeature(PageFeature):
 
     def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the state of the configuration: its file, and the edits to undo or redo."""
-        self._sent_states[manager] = self._state(manager)
+        self._sent_states[manager] = self._make_state(manager)
         return [self._sent_states[manager]]
 
     def remove_manager(self, manager: VisualizationManager) -> None:
@@ -89,7 +89,7 @@ class ConfigurationFeature(PageFeature):
 
     def on_edit(self, manager: VisualizationManager) -> None:
         """Send the state of the configuration to its pages if the state has changed."""
-        state = self._state(manager)
+        state = self._make_state(manager)
         if self._sent_states.get(manager) != state:
             self._sent_states[manager] = state
             manager.publish(state)
@@ -106,7 +106,7 @@ class ConfigurationFeature(PageFeature):
         except ValueError as error:
             page.send(ConfigurationRefused(str(error), None, None))
 
-    def _state(self, manager: VisualizationManager) -> Configuration:
+    def _make_state(self, manager: VisualizationManager) -> Configuration:
         config, history = manager.config, manager.history
         return Configuration(
             path=None if config.path is None else str(config.path),
@@ -124,7 +124,7 @@ class ConfigurationFeature(PageFeature):
         message, manager = request.message, request.manager
         if not has_display(message.cls):
             raise ValueError(f"there are no displays of the class '{message.cls[:100]}'")
-        entry = manager.config.make_display(message.cls, _checked_name(message.name))
+        entry = manager.config.make_display(message.cls, _check_name(message.name))
         group = manager.display(message.group) if message.group is not None else None
         topic = message.topic
         prepare: Callable[[ViewerDisplay], None] | None = None
@@ -135,28 +135,28 @@ class ConfigurationFeature(PageFeature):
         manager.tree.add(entry, group.config if group else None, prepare)
 
     def _duplicate(self, request: Request[DuplicateDisplays]) -> None:
-        if displays := _displays_of(request.manager, request.message.displays):
+        if displays := _find_displays(request.manager, request.message.displays):
             request.manager.tree.duplicate(displays)
 
     def _rename(self, request: Request[RenameDisplay]) -> None:
-        for display in _displays_of(request.manager, [request.message.display]):
-            request.manager.tree.rename(display, _checked_name(request.message.name))
+        for display in _find_displays(request.manager, [request.message.display]):
+            request.manager.tree.rename(display, _check_name(request.message.name))
 
     def _remove(self, request: Request[RemoveDisplays]) -> None:
-        if displays := _displays_of(request.manager, request.message.displays):
+        if displays := _find_displays(request.manager, request.message.displays):
             request.manager.tree.remove(displays)
 
     def _move(self, request: Request[MoveDisplays]) -> None:
         message, manager = request.message, request.manager
         group = manager.display(message.group) if message.group is not None else None
         next_display = manager.display(message.before) if message.before is not None else None
-        displays = _displays_of(manager, message.displays)
+        displays = _find_displays(manager, message.displays)
         if displays and (group is None) == (message.group is None):
             manager.tree.move(displays, group.config if group else None, next_display.config if next_display else None)
 
     def _group(self, request: Request[GroupDisplays]) -> None:
-        if displays := _displays_of(request.manager, request.message.displays):
-            request.manager.tree.group(displays, _checked_name(request.message.name))
+        if displays := _find_displays(request.manager, request.message.displays):
+            request.manager.tree.group(displays, _check_name(request.message.name))
 
     def _undo(self, request: Request[Undo]) -> None:
         request.manager.history.undo()
@@ -167,12 +167,12 @@ class ConfigurationFeature(PageFeature):
     # --- questions ---------------------------------------------------------------------------------------------
 
     def _send_display_choices(self, request: Request[RequestDisplayChoices]) -> None:
-        from linkwright.panels.displays import choices
+        from linkwright.panels.displays import find_display_choices
 
-        request.page.send(choices(self.context.node))
+        request.page.send(find_display_choices(self.context.node))
 
     def _send_folder(self, request: Request[RequestFolder]) -> None:
-        request.page.send(list_folder(request.message.path, _base_folder(request.manager)))
+        request.page.send(list_folder(request.message.path, _get_base_folder(request.manager)))
 
     def _send_text(self, request: Request[RequestConfigurationText]) -> None:
         path = request.manager.config.path
@@ -185,7 +185,7 @@ class ConfigurationFeature(PageFeature):
             self._open_config(request.manager, RvizConfig.default())
 
     def _open(self, request: Request[OpenConfiguration]) -> None:
-        path = resolve_configuration_path(request.message.path, _base_folder(request.manager))
+        path = resolve_configuration_path(request.message.path, _get_base_folder(request.manager))
         config = RvizConfig.load(path)
         if request.message.discard or self._may_discard(request.page, request.manager, str(path)):
             self._open_config(request.manager, config)
@@ -205,7 +205,7 @@ class ConfigurationFeature(PageFeature):
         path = (
             config.path
             if requested_path is None
-            else resolve_configuration_path(requested_path, _base_folder(request.manager))
+            else resolve_configuration_path(requested_path, _get_base_folder(request.manager))
         )
         if path is None:
             raise ValueError("the configuration has no file yet")
@@ -265,7 +265,7 @@ _HANDLERS: dict[type, Callable[..., None]] = {
 ConfigurationFeature.RECEIVES = tuple(_HANDLERS)
 
 
-def _displays_of(manager: VisualizationManager, display_ids: list[str]) -> list[ViewerDisplay]:
+def _find_displays(manager: VisualizationManager, display_ids: list[str]) -> list[ViewerDisplay]:
     """Return the displays with these IDs, in the order of the tree.
 
     Unknown IDs are ignored.
@@ -274,7 +274,7 @@ def _displays_of(manager: VisualizationManager, display_ids: list[str]) -> list[
     return [display for display in manager.displays if display.id in selected]
 
 
-def _base_folder(manager: VisualizationManager) -> Path:
+def _get_base_folder(manager: VisualizationManager) -> Path:
     """Return the base folder of relative paths.
 
     This is the folder of the open file, or the working directory.
@@ -283,7 +283,7 @@ def _base_folder(manager: VisualizationManager) -> Path:
     return path.absolute().parent if path is not None else Path.cwd()
 
 
-def _checked_name(text: str) -> str:
+def _check_name(text: str) -> str:
     """Return a name from a page, with each run of white space replaced by one space.
 
     Raises:

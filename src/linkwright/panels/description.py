@@ -26,7 +26,7 @@ from linkwright.page.protocol.description import (
     RequestInertia,
     SetArguments,
 )
-from linkwright.page.protocol.message import ServerMessage, tag_of
+from linkwright.page.protocol.message import ServerMessage, get_tag
 from linkwright.page.protocol.robot import RequestProvenance
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.displays.robot_model import RobotModelDisplay
@@ -122,13 +122,13 @@ class KnownDescription:
             prefix=self.prefix,
         )
 
-    def changes_since(self, previous: KnownDescription | None) -> DescriptionChanged:
+    def find_changes_since(self, previous: KnownDescription | None) -> DescriptionChanged:
         """Return the names of the links and joints that differ from the previous description.
 
         The lists are empty if `previous` is None.
         """
-        links = _changed_names(previous.robot.links, self.robot.links) if previous else []
-        joints = _changed_names(previous.robot.joints, self.robot.joints) if previous else []
+        links = _find_changed_names(previous.robot.links, self.robot.links) if previous else []
+        joints = _find_changed_names(previous.robot.joints, self.robot.joints) if previous else []
         return DescriptionChanged(self.display, self.revision, links, joints)
 
     def text_of_file(self, file: str) -> DescriptionText:
@@ -144,12 +144,12 @@ class KnownDescription:
 
         The findings are computed in each call, because meshes may have changed.
         """
-        from linkwright.panels.description_details import implausible_inertias
+        from linkwright.panels.description_details import find_implausible_inertias
 
-        return InertiaFindings(self.display, self.revision, implausible_inertias(self.robot, finder))
+        return InertiaFindings(self.display, self.revision, find_implausible_inertias(self.robot, finder))
 
 
-def _changed_names(previous: Mapping[str, Part], current: Mapping[str, Part]) -> list[str]:
+def _find_changed_names(previous: Mapping[str, Part], current: Mapping[str, Part]) -> list[str]:
     """Return the names of new or changed links or joints.
 
     Source positions are ignored.
@@ -188,9 +188,9 @@ class DescriptionFeature(PageFeature):
             for display in manager.robot_models():
                 shown_ids.add(display.id)
                 previous = self._descriptions.get(display.id)
-                description = self._current_description(display)
+                description = self._find_current_description(display)
                 if description is not None and description is not previous:
-                    manager.pages.publish(description.changes_since(previous))
+                    manager.pages.publish(description.find_changes_since(previous))
         for removed_id in self._descriptions.keys() - shown_ids:
             del self._descriptions[removed_id]
 
@@ -212,7 +212,7 @@ class DescriptionFeature(PageFeature):
 
     def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the revision of each description that pages can request."""
-        descriptions = [self._current_description(display) for display in manager.robot_models()]
+        descriptions = [self._find_current_description(display) for display in manager.robot_models()]
         return [
             DescriptionChanged(description.display, description.revision, [], [])
             for description in descriptions
@@ -222,10 +222,10 @@ class DescriptionFeature(PageFeature):
     def receive(self, page: Page, message: _Request) -> None:
         """Answer a request in the background, and cancel an earlier equal request."""
         file_name = message.file if isinstance(message, RequestDescriptionText) else ""
-        key = (page, f"{tag_of(message)} {message.display} {file_name}")
+        key = (page, f"{get_tag(message)} {message.display} {file_name}")
         if key in self._answer_tasks:
             self._answer_tasks[key].cancel()
-        task = asyncio.get_running_loop().create_task(self._answer(page, message))
+        task = asyncio.get_running_loop().create_task(self._respond(page, message))
         self._answer_tasks[key] = task
         task.add_done_callback(
             lambda finished_task: self._answer_tasks.pop(key) if self._answer_tasks.get(key) is finished_task else None
@@ -244,21 +244,21 @@ class DescriptionFeature(PageFeature):
 
     async def details(self, display: RobotModelDisplay) -> Description | None:
         """Return the details of the description that a display shows, or None if it shows none."""
-        description = self._current_description(display)
+        description = self._find_current_description(display)
         if description is None:
             return None
         async with self._answer_lock:
             return await asyncio.to_thread(lambda: description.details)
 
-    async def _answer(self, page: Page, request: _Request) -> None:
+    async def _respond(self, page: Page, request: _Request) -> None:
         robot_models = self.managers.of(page).robot_models()
         display = next((display for display in robot_models if display.id == request.display), None)
-        description = None if display is None else self._current_description(display)
+        description = None if display is None else self._find_current_description(display)
         texts_with_findings = dict(self._texts_with_findings)
 
-        def answer() -> ServerMessage | None:
+        def create_response() -> ServerMessage | None:
             if isinstance(request, RequestDescriptionText):
-                return _text(description, texts_with_findings, request)
+                return _make_text_response(description, texts_with_findings, request)
             if description is None:
                 return None
             if isinstance(request, RequestDescription):
@@ -268,11 +268,11 @@ class DescriptionFeature(PageFeature):
             return display.find_provenance(request.link) if display is not None else None
 
         async with self._answer_lock:
-            response = await asyncio.to_thread(answer)
+            response = await asyncio.to_thread(create_response)
         if response is not None:
             page.send(response)
 
-    def _current_description(self, display: RobotModelDisplay) -> KnownDescription | None:
+    def _find_current_description(self, display: RobotModelDisplay) -> KnownDescription | None:
         """Return the current description of a display, or None.
 
         If the description has changed, it has a new revision.
@@ -289,7 +289,7 @@ class DescriptionFeature(PageFeature):
         return description
 
 
-def _text(
+def _make_text_response(
     description: KnownDescription | None, texts_with_findings: dict[str, str], request: RequestDescriptionText
 ) -> DescriptionText:
     """Return the text of a file.
@@ -324,27 +324,27 @@ class DiagnosticsFeature(PageFeature):
         The list may be empty.
         """
         self._diagnostics = diagnostics
-        self._shown_diagnostics = self._all_diagnostics()
+        self._shown_diagnostics = self._collect_diagnostics()
         self.context.pages.publish(self._shown_diagnostics)
 
     def on_robot_changed(self) -> None:
         """Show an additional finding (VIEW207) while no visual of a robot can be drawn."""
-        shown_findings = self._all_diagnostics()
+        shown_findings = self._collect_diagnostics()
         if shown_findings != self._shown_diagnostics:
             self._shown_diagnostics = shown_findings
             self.context.pages.publish(shown_findings)
 
-    def _all_diagnostics(self) -> Diagnostics:
+    def _collect_diagnostics(self) -> Diagnostics:
         models = [model for manager in self.managers.all() for model in manager.robot_models()]
         invisibility_findings = {
-            model.text: finding for model in models if (finding := _invisibility_finding(model)) is not None
+            model.text: finding for model in models if (finding := _find_invisibility(model)) is not None
         }
         return Diagnostics(
-            [item_of(diagnostic) for diagnostic in (*self._diagnostics, *invisibility_findings.values())]
+            [make_item(diagnostic) for diagnostic in (*self._diagnostics, *invisibility_findings.values())]
         )
 
 
-def _invisibility_finding(model: RobotModelDisplay) -> Diagnostic | None:
+def _find_invisibility(model: RobotModelDisplay) -> Diagnostic | None:
     """Return the finding VIEW207 if no visual of a robot can be drawn, otherwise None."""
     robot, problems = model.robot, model.file_problems
     if robot is None or not problems or not model.enabled or any(link.visuals for link in model.scene.links):
@@ -360,7 +360,7 @@ def _invisibility_finding(model: RobotModelDisplay) -> Diagnostic | None:
     return Diagnostic("VIEW207", message, severity=Severity.WARNING, notes=(Note(problem_texts[0]),), hint=hint)
 
 
-def item_of(diagnostic: Diagnostic) -> DiagnosticItem:
+def make_item(diagnostic: Diagnostic) -> DiagnosticItem:
     """Return a diagnostic in the form for pages, with the source line that it refers to."""
     span, source = diagnostic.span, diagnostic.source
     excerpt = source.line(span.line) if span and source and source.name == span.file else ""

@@ -56,7 +56,7 @@ class SourcePositions:
             key = (element.tag, element.attributes.get("name", ""))
             self._expanded_elements.setdefault(key, element)
 
-    def of(self, tag: str, name: str, element: Element | None) -> Written:
+    def find(self, tag: str, name: str, element: Element | None) -> Written:
         """Return the positions of a link or joint in the expanded text and in the source files.
 
         Args:
@@ -68,11 +68,13 @@ class SourcePositions:
         expanded_range = None if expanded_element is None else _find_source_range(expanded_element)
         if element is None or element.source is None or element.source.name.startswith("<"):
             return Written(expanded_range, None, [])
-        return Written(expanded_range, _find_source_range(element), list(islice(_calls(element), _MAX_CALLS)))
+        return Written(expanded_range, _find_source_range(element), list(islice(_iterate_calls(element), _MAX_CALLS)))
 
 
-def _calls(element: Element) -> Iterator[CallSite]:
-    """Yield the macro calls and includes that produced an element, the innermost first, without duplicates.
+def _iterate_calls(element: Element) -> Iterator[CallSite]:
+    """Yield the macro calls and includes that produced an element.
+
+    They are in order from the innermost, without duplicates.
 
     They begin with the innermost, without duplicates.
     """
@@ -114,23 +116,23 @@ def describe(robot: Robot, text: str, files: list[str], *, display: str, revisio
         revision=revision,
         name=robot.name,
         root=robot.root,
-        links=[_link(link, parent_joints.get(link.name), prefix, positions) for link in robot.links.values()],
-        joints=[_joint(joint, positions) for joint in robot.joints.values()],
+        links=[_describe_link(link, parent_joints.get(link.name), prefix, positions) for link in robot.links.values()],
+        joints=[_describe_joint(joint, positions) for joint in robot.joints.values()],
         files=files,
     )
 
 
-def _link(link: Link, parent_joint: str | None, prefix: str, positions: SourcePositions) -> LinkDetails:
+def _describe_link(link: Link, parent_joint: str | None, prefix: str, positions: SourcePositions) -> LinkDetails:
     return LinkDetails(
         name=link.name,
         frame=get_frame_name(link.name, prefix),
         parent_joint=parent_joint,
         inertia=make_link_inertia(link.inertial),
-        written=positions.of("link", link.name, link.element),
+        written=positions.find("link", link.name, link.element),
     )
 
 
-def _joint(joint: Joint, positions: SourcePositions) -> JointDetails:
+def _describe_joint(joint: Joint, positions: SourcePositions) -> JointDetails:
     limit, dynamics, safety = joint.limit, joint.dynamics, joint.safety
     has_range = limit is not None and joint.type in ("revolute", "prismatic")
     quaternion = pose_quaternion(joint.origin)
@@ -142,7 +144,7 @@ def _joint(joint: Joint, positions: SourcePositions) -> JointDetails:
         xyz=[_finite_or_none(value) or 0.0 for value in joint.origin.xyz],
         rpy=[_finite_or_none(angle) or 0.0 for angle in rpy_from_quaternion(quaternion)],
         quaternion=[_finite_or_none(component) or 0.0 for component in quaternion],
-        axis=_unit_axis(joint.axis),
+        axis=_normalize_axis(joint.axis),
         lower=_finite_or_none(limit.lower) if limit and has_range else None,
         upper=_finite_or_none(limit.upper) if limit and has_range else None,
         velocity=_finite_or_none(limit.velocity) if limit else None,
@@ -153,12 +155,12 @@ def _joint(joint: Joint, positions: SourcePositions) -> JointDetails:
         soft_upper=_finite_or_none(safety.soft_upper_limit) if safety else None,
         k_position=_finite_or_none(safety.k_position) if safety else None,
         k_velocity=_finite_or_none(safety.k_velocity) if safety else None,
-        mimic=_mimic(joint.mimic),
-        written=positions.of("joint", joint.name, joint.element),
+        mimic=_describe_mimic(joint.mimic),
+        written=positions.find("joint", joint.name, joint.element),
     )
 
 
-def _mimic(mimic: Mimic | None) -> JointMimic | None:
+def _describe_mimic(mimic: Mimic | None) -> JointMimic | None:
     if mimic is None:
         return None
     return JointMimic(mimic.joint, _finite_or_none(mimic.multiplier) or 0.0, _finite_or_none(mimic.offset) or 0.0)
@@ -168,7 +170,7 @@ def _finite_or_none(number: float) -> float | None:
     return float(number) if isfinite(number) else None
 
 
-def _unit_axis(axis: tuple[float, float, float]) -> list[float]:
+def _normalize_axis(axis: tuple[float, float, float]) -> list[float]:
     """Return the axis scaled to length 1, or zeros if its length is 0 or not finite."""
     length = float(np.linalg.norm(axis))
     if not (isfinite(length) and length > 0):
@@ -216,17 +218,17 @@ class SourceTexts:
 
 
 def _index_sources(root: Element | None) -> dict[str, SourceText]:
-    """Return the source texts of the elements and of the calls that produced them, by file name."""
+    """Return the source texts of elements and of the calls that produced them, by file name."""
     sources: dict[str, SourceText] = {}
     visited_frames: set[int] = set()
     for element in root.walk() if root is not None else ():
-        for source in (element.source, *_call_sources(element, visited_frames)):
+        for source in (element.source, *_iterate_call_sources(element, visited_frames)):
             if source is not None and not source.name.startswith("<"):
                 sources.setdefault(source.name, source)
     return sources
 
 
-def _call_sources(element: Element, visited_frames: set[int]) -> Iterator[SourceText | None]:
+def _iterate_call_sources(element: Element, visited_frames: set[int]) -> Iterator[SourceText | None]:
     innermost = element.origin
     if not isinstance(innermost, Frame) or id(innermost) in visited_frames:
         return
@@ -235,7 +237,7 @@ def _call_sources(element: Element, visited_frames: set[int]) -> Iterator[Source
         yield frame.site.source
 
 
-def implausible_inertias(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
+def find_implausible_inertias(robot: Robot, finder: PackageFinder) -> list[InertiaFinding]:
     """Return the findings about implausible masses and inertias, with the names of the links."""
     return [
         InertiaFinding(link, finding.code, finding.message, finding.hint or "")

@@ -75,7 +75,7 @@ class PointsFeature(PageFeature):
             page.send(PointFields(message.display, message.key, message.index, fields))
 
 
-def choices(node: Node) -> DisplayChoices:
+def find_display_choices(node: Node) -> DisplayChoices:
     """Return the display classes and topics for the Add dialog, with groups last.
 
     This imports all displays. Pages therefore request it only when the user opens the dialog.
@@ -106,7 +106,7 @@ def show_topic(display: ViewerDisplay, topic: str) -> None:
     if spec is None:
         return
     display.properties.set(path, display.topic_value(topic))
-    child_names = {child.name for child in _spec_at(spec, path).children}
+    child_names = {child.name for child in _find_spec(spec, path).children}
     qos_profiles = [info.qos_profile for info in display.context.node.get_publishers_info_by_topic(topic)]
     if not qos_profiles:
         return
@@ -120,7 +120,7 @@ def show_topic(display: ViewerDisplay, topic: str) -> None:
         display.properties.set((*path, "Durability Policy"), "Transient Local")
 
 
-def _spec_at(spec: PropertySpec, path: tuple[str, ...]) -> PropertySpec:
+def _find_spec(spec: PropertySpec, path: tuple[str, ...]) -> PropertySpec:
     for name in path[1:]:
         spec = next(child for child in spec.children if child.name == name)
     return spec

@@ -23,7 +23,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 if TYPE_CHECKING:
     from linkwright.nodes.joint_state_publisher_gui import JointPanel
 
-_SEND_DELAY = 0.01
+_SEND_DELAY_S = 0.01
 """The delay in s between a change and the sending of positions, so that transforms are sent first."""
 
 
@@ -66,7 +66,7 @@ class JointsFeature(PageFeature):
         """Return the sliders and their values."""
         if self._panel is None:
             return [Joints(None)]
-        return [self._joints_message(self._panel), JointPositions(self._panel.positions())]
+        return [self._make_joints_message(self._panel), JointPositions(self._panel.positions())]
 
     def receive(self, page: Page, message: SetJoint | SetJoints | RandomizeJoints | CenterJoints) -> None:
         """Move joints.
@@ -92,9 +92,9 @@ class JointsFeature(PageFeature):
 
     def _on_panel_change(self, kind: str) -> None:
         if self._panel is not None and kind == "sliders":
-            self.context.pages.publish(self._joints_message(self._panel))
+            self.context.pages.publish(self._make_joints_message(self._panel))
         if self._send_timer is None:
-            self._send_timer = asyncio.get_running_loop().call_later(_SEND_DELAY, self._send_positions)
+            self._send_timer = asyncio.get_running_loop().call_later(_SEND_DELAY_S, self._send_positions)
 
     def _send_positions(self) -> None:
         self._send_timer = None
@@ -102,7 +102,7 @@ class JointsFeature(PageFeature):
             self.context.pages.publish(JointPositions(self._panel.positions()))
 
     @staticmethod
-    def _joints_message(panel: JointPanel) -> Joints:
+    def _make_joints_message(panel: JointPanel) -> Joints:
         return Joints(
             [
                 JointControl(

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from linkwright.graph import Subscription
     from linkwright.rviz.context import ViewerContext
 
-_BYTES = (bytes, bytearray, memoryview)
+_BYTES_TYPES = (bytes, bytearray, memoryview)
 
 _MAX_NEW_MESSAGES = 16
 """The number of new messages that are stored before they are serialized. This delays the page less."""
@@ -108,7 +108,7 @@ class LiveHistory:
             now_ns = self.history.end_ns
         self._context.held_time.show(self._context.node.get_clock(), now_ns)
         self._has_gone_back = False
-        self._known_subscriptions = set(self._subscriptions())
+        self._known_subscriptions = set(self._find_subscriptions())
         self.playback.continue_from(now_ns)
         self._context.graph_changes.watch(self._update_new_subscriptions)
         self.changed()
@@ -149,12 +149,12 @@ class LiveHistory:
             simulated: whether messages get the times of ``/clock``. Messages before the last reset of the simulation
                 are then omitted, because time starts again at the reset.
         """
-        from linkwright.bag.saving import last_reset_ns, to_simulated_time
+        from linkwright.bag.saving import find_last_reset_ns, to_simulated_time
 
         messages = self.history.messages_between(max(start_ns, self.history.start_ns), end_ns)
         if not simulated:
             return messages
-        reset_ns = last_reset_ns(messages)
+        reset_ns = find_last_reset_ns(messages)
         if reset_ns is not None:
             latched_topics = [name for name, topic in topics.items() if _is_latched(topic)]
             latched_messages = [
@@ -198,7 +198,7 @@ class LiveHistory:
 
         `publish_time` handles the clock.
         """
-        return frozenset(subscription.name for subscription in self._subscriptions()) - {CLOCK_TOPIC}
+        return frozenset(subscription.name for subscription in self._find_subscriptions()) - {CLOCK_TOPIC}
 
     def publish_time(self, stamp_ns: int) -> None:
         """Hold the viewer's clock at a time.
@@ -215,7 +215,7 @@ class LiveHistory:
     def publish(self, topic: str, stamp_ns: int, data: bytes) -> None:
         """Deliver a message to the subscriptions of its topic."""
         if not self.live:
-            self._deliver(self._subscriptions(), topic, stamp_ns, data)
+            self._deliver(self._find_subscriptions(), topic, stamp_ns, data)
 
     def _store_if_first(self, subscription: Subscription[Any], message: Any) -> bool:
         """Store a message, once per topic, and return whether to deliver it to the subscription.
@@ -257,17 +257,20 @@ class LiveHistory:
         A failure is logged, and does not affect other messages. If `thins` is true, some messages without a change of
         content are omitted. While a past time is shown, playback needs every message.
         """
-        from linkwright.bag.stillness import content_of
+        from linkwright.bag.stillness import extract_content
 
         try:
-            data = bytes(message) if isinstance(message, _BYTES) else serialize(message)
+            data = bytes(message) if isinstance(message, _BYTES_TYPES) else serialize(message)
             history.add(
-                topic, data, time_ns, content_of(self._storing_subscriptions[topic].type_name, data) if thins else None
+                topic,
+                data,
+                time_ns,
+                extract_content(self._storing_subscriptions[topic].type_name, data) if thins else None,
             )
         except Exception as error:  # noqa: BLE001  # a publisher may send any bytes
             log_failure(self._handle.logger, f"keeping a message of '{topic}'", error)
 
-    def _subscriptions(self) -> list[Subscription[Any]]:
+    def _find_subscriptions(self) -> list[Subscription[Any]]:
         return list(self._context.node.subscriptions)
 
     @staticmethod
@@ -279,11 +282,11 @@ class LiveHistory:
     def _update_new_subscriptions(self) -> None:
         """Deliver the last messages before the displayed time to new subscriptions."""
         new_subscriptions = [
-            subscription for subscription in self._subscriptions() if subscription not in self._known_subscriptions
+            subscription for subscription in self._find_subscriptions() if subscription not in self._known_subscriptions
         ]
         if self.live or not new_subscriptions:
             return
-        self._known_subscriptions = set(self._subscriptions())
+        self._known_subscriptions = set(self._find_subscriptions())
         position = self.playback.position_ns
         self.playback.continue_from(position)
         for message in self.history.state_at(
@@ -293,7 +296,7 @@ class LiveHistory:
 
     def _reset(self) -> None:
         if not self.live:
-            self._known_subscriptions = set(self._subscriptions())
+            self._known_subscriptions = set(self._find_subscriptions())
             self.on_reset()
 
     def _show_present(self) -> None:
@@ -301,7 +304,7 @@ class LiveHistory:
             return
         if self._has_gone_back:
             self.on_reset()
-        subscriptions = self._subscriptions()
+        subscriptions = self._find_subscriptions()
         with self._lock:
             for message in self.history.state_at(
                 {subscription.name for subscription in subscriptions}, self.history.end_ns

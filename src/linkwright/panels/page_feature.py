@@ -21,7 +21,7 @@ from linkwright.graph import Logger
 from linkwright.loading.extensions import extensions
 from linkwright.page.audience import Page
 from linkwright.page.outbox import Payload
-from linkwright.page.protocol.message import ServerMessage, define_later, import_path_of, tag_of
+from linkwright.page.protocol.message import ServerMessage, define_later, get_import_path, get_tag
 from linkwright.rviz.context import ViewerContext
 from linkwright.rviz.visualization.manager import Managers, VisualizationManager
 
@@ -89,7 +89,7 @@ class PageFeature:
     @property
     def receives(self) -> tuple[str, ...]:
         """The messages of pages that this feature handles, as ``module:class``."""
-        return tuple(map(import_path_of, self.RECEIVES))
+        return tuple(map(get_import_path, self.RECEIVES))
 
     def start(self) -> None:
         """Start the feature when the viewer starts."""
@@ -140,7 +140,7 @@ class PageFeature:
         """Release all resources when the viewer closes."""
 
 
-GROUP = "linkwright.page_features"
+ENTRY_POINT_GROUP = "linkwright.page_features"
 """The group of the entry points of features that are created with the viewer."""
 
 
@@ -150,7 +150,7 @@ def make_features(viewer: FeatureHost) -> list[PageFeature]:
     Features that fail are logged and omitted.
     """
     features: list[PageFeature] = []
-    for name, entry_point in extensions(GROUP).items():
+    for name, entry_point in extensions(ENTRY_POINT_GROUP).items():
         try:
             feature = entry_point.load()(viewer)
         except Exception as error:  # noqa: BLE001  # a third-party package may raise any exception
@@ -164,7 +164,7 @@ def make_features(viewer: FeatureHost) -> list[PageFeature]:
     return features
 
 
-ON_DEMAND_GROUP = "linkwright.page_features_on_demand"
+ON_DEMAND_ENTRY_POINT_GROUP = "linkwright.page_features_on_demand"
 """The group of the entry points of features that are created on demand."""
 
 
@@ -188,7 +188,7 @@ class OnDemand:
     refuses_recordings: bool = False
 
 
-def messages(module: str, *names: str) -> tuple[str, ...]:
+def list_message_paths(module: str, *names: str) -> tuple[str, ...]:
     """Return the import paths of message classes of a module, each as ``module:class``."""
     return tuple(f"{module}:{name}" for name in names)
 
@@ -198,7 +198,7 @@ def _load_declarations(logger: Logger) -> Iterator[OnDemand]:
 
     Modules that cannot be imported are logged and skipped.
     """
-    for name, entry_point in extensions(ON_DEMAND_GROUP).items():
+    for name, entry_point in extensions(ON_DEMAND_ENTRY_POINT_GROUP).items():
         try:
             declarations: tuple[OnDemand, ...] = entry_point.load().ON_DEMAND
         except Exception as error:  # noqa: BLE001  # a third-party package may raise any exception
@@ -237,11 +237,11 @@ class OnDemandFeatures(PageFeature):
             self.context.graph_changes.watch(self._create_published)
         self._create_published()
         default_messages = (feature.until for feature in self._declared if feature not in self._created)
-        return sorted((message for message in default_messages if message is not None), key=tag_of)
+        return sorted((message for message in default_messages if message is not None), key=get_tag)
 
     def receive(self, page: Page, message: Any) -> None:
         """Create the feature that handles the message, and pass the message on."""
-        self._create(self._declaration_by_message[import_path_of(type(message))]).receive(page, message)
+        self._create(self._declaration_by_message[get_import_path(type(message))]).receive(page, message)
 
     def on_recording_shown(self) -> None:
         """Create and notify the features that refuse requests while a recording is shown."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from linkwright.messages import Message
-from linkwright.panels.monitor.field_paths import FieldPath, FieldPathError, plot_fields
+from linkwright.panels.monitor.field_paths import FieldPath, FieldPathError, find_plot_fields
 
 
 def split_fields(text: str) -> list[str]:
@@ -19,7 +19,7 @@ def split_fields(text: str) -> list[str]:
 
 
 def split_topic(field: str, topics: Collection[str]) -> tuple[str, str] | None:
-    """Return the topic and the path in its messages, or None if none of the topics contains the field.
+    """Return the topic and the path in its messages, or None if no topic contains the field.
 
     Args:
         field: a field such as ``/odom/twist/twist/linear/x``; in the path, dots are accepted as separators, too.
@@ -34,7 +34,7 @@ def split_topic(field: str, topics: Collection[str]) -> tuple[str, str] | None:
     return None
 
 
-def numeric_fields(path: str, message_class: type[Message]) -> Iterator[str]:
+def find_numeric_fields(path: str, message_class: type[Message]) -> Iterator[str]:
     """Yield the paths to plot for a path in messages of a class.
 
     They are the path itself, or, as in ``rqt_plot``, the numbers directly in the message to which it leads. An invalid
@@ -51,7 +51,7 @@ def numeric_fields(path: str, message_class: type[Message]) -> Iterator[str]:
             return
     children = [
         field.path
-        for field in plot_fields(message_class)
+        for field in find_plot_fields(message_class)
         if field.path.startswith(prefix) and "." not in field.path[len(prefix) :]
     ]
     yield from children or ([path] if path else [])

@@ -75,7 +75,7 @@ class RecordingFeature(PageFeature):
 
     def opening_messages(self) -> list[ServerMessage]:
         """Return the state of the recording."""
-        return [self._state()]
+        return [self._make_state()]
 
     def receive(self, page: Page, message: RecordTopics | StopRecording | SaveMinutes) -> None:
         """Start or stop recording, or save the last minutes."""
@@ -105,7 +105,7 @@ class RecordingFeature(PageFeature):
         from linkwright.bag import BagWriter, Recorder, TopicSelection
 
         self._check_space(0)
-        writer = BagWriter(self._free_path("rosbag2"))
+        writer = BagWriter(self._find_free_path("rosbag2"))
         uses_simulated_time = bool(self.context.node.get_parameter("use_sim_time").value)
         node = Node(
             self.context.node.graph,
@@ -113,7 +113,7 @@ class RecordingFeature(PageFeature):
             parameters={"use_sim_time": uses_simulated_time},
             start_parameter_services=False,
         )
-        selection = TopicSelection(everything=not topics, every_service=not topics, names=topics)
+        selection = TopicSelection(all_topics=not topics, all_services=not topics, names=topics)
         recorder = Recorder(node, selection, writer, wrap_callback=self._guard)
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1), on_clock_change=False)
         jump_handle = node.get_clock().create_jump_callback(
@@ -140,7 +140,7 @@ class RecordingFeature(PageFeature):
         if self._running is not None and self._running.recorder is recorder:
             path = display_path(self._running.writer.path)
             self._report_errors(
-                [_finding(phrase("recording to '{path}' was stopped because simulated time was reset", path=path))]
+                [_make_finding(phrase("recording to '{path}' was stopped because simulated time was reset", path=path))]
             )
             self._stop_recording()
 
@@ -159,7 +159,7 @@ class RecordingFeature(PageFeature):
             self._add_file(path, recording.length, recording.simulated_seconds)
         else:
             shutil.rmtree(path, ignore_errors=True)
-            self._report_errors([_finding(phrase("no recording was saved, because no messages arrived"))])
+            self._report_errors([_make_finding(phrase("no recording was saved, because no messages arrived"))])
         self._publish()
 
     # --- saving the last minutes -------------------------------------------------------------------------------
@@ -169,7 +169,7 @@ class RecordingFeature(PageFeature):
         self._check_space(history.size)
         start_ns = history.start_ns if start is None else round(start * NANOSECONDS_PER_SECOND)
         end_ns = history.end_ns if end is None else round(end * NANOSECONDS_PER_SECOND)
-        path = self._free_path("last_minutes")
+        path = self._find_free_path("last_minutes")
         self._saved_fraction = 0.0
         self._save_task = self._loop.create_task(self._write(live, live.topics(), path, start_ns, end_ns))
         self._save_task.add_done_callback(self._on_saved)
@@ -185,7 +185,9 @@ class RecordingFeature(PageFeature):
             live.messages_between, topics, start_ns, end_ns, simulated=uses_simulated_time
         )
         if not messages:
-            self._report_errors([_finding(phrase("no recording was saved, because no messages arrived in that time"))])
+            self._report_errors(
+                [_make_finding(phrase("no recording was saved, because no messages arrived in that time"))]
+            )
             return
         try:
             await asyncio.to_thread(save_messages, path, topics, messages, self._on_progress)
@@ -202,13 +204,13 @@ class RecordingFeature(PageFeature):
         if error is not None:  # If no problem was reported, pages would wait forever.
             self.context.node.get_logger().error(f"The last minutes were not saved: {error!r}")
             self._report_errors(
-                [_finding(phrase("the last minutes were not saved: {reason}", reason=foreign(repr(error))))]
+                [_make_finding(phrase("the last minutes were not saved: {reason}", reason=foreign(repr(error))))]
             )
         self._publish()
 
     # --- files -------------------------------------------------------------------------------------------------
 
-    def _free_path(self, kind: str) -> Path:
+    def _find_free_path(self, kind: str) -> Path:
         name = f"{kind}_{datetime.now().astimezone():%Y_%m_%d-%H_%M_%S}"
         number = 1
         path = self.folder / name
@@ -223,20 +225,20 @@ class RecordingFeature(PageFeature):
         Raises:
             LinkwrightError: BAG110, there is not enough space.
         """
-        if self._free_bytes() < self.min_free_bytes + required_bytes:
+        if self._count_free_bytes() < self.min_free_bytes + required_bytes:
             raise LinkwrightError(
-                _finding(
+                _make_finding(
                     phrase(
                         "there is not enough space for a recording in '{folder}': {free} MB are free, but "
                         "{required} MB are required",
                         folder=display_path(self.folder),
-                        free=self._free_bytes() // 1_000_000,
+                        free=self._count_free_bytes() // 1_000_000,
                         required=(self.min_free_bytes + required_bytes) // 1_000_000,
                     )
                 )
             )
 
-    def _free_bytes(self) -> int:
+    def _count_free_bytes(self) -> int:
         """Return the number of free bytes on the disk of the recordings.
 
         The result is ``sys.maxsize`` if the number is unknown. A full disk is then reported when writing.
@@ -270,7 +272,7 @@ class RecordingFeature(PageFeature):
         self._problem = join_messages(diagnostics)
 
     def _publish(self) -> None:
-        self.context.pages.publish(self._state())
+        self.context.pages.publish(self._make_state())
 
     def _schedule_publish(self) -> None:
         if self._timer is None:
@@ -278,19 +280,19 @@ class RecordingFeature(PageFeature):
 
     def _check_and_publish(self) -> None:
         self._timer = None
-        if self._running is not None and self._free_bytes() < self.min_free_bytes:
+        if self._running is not None and self._count_free_bytes() < self.min_free_bytes:
             message = phrase(
                 "recording to '{path}' was stopped because the disk has less than {left} MB left",
                 path=display_path(self._running.writer.path),
                 left=self.min_free_bytes // 1_000_000,
             )
-            self._report_errors([_finding(message)])
+            self._report_errors([_make_finding(message)])
             self._stop_recording()
         self._publish()
         if self._running is not None or self._save_task is not None:
             self._schedule_publish()
 
-    def _state(self) -> RecordingState:
+    def _make_state(self) -> RecordingState:
         recording = self._running
         path, length, size = ("", 0.0, 0)
         if recording is not None:
@@ -332,5 +334,5 @@ class _CurrentRecording:
         return elapsed if elapsed >= 0 else None
 
 
-def _finding(message: Phrase) -> Diagnostic:
+def _make_finding(message: Phrase) -> Diagnostic:
     return Diagnostic("BAG110", message)

@@ -18,7 +18,7 @@ from linkwright.page.protocol.requested_panels import (
 from linkwright.panels.displays import show_topic
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.panels.panel_request import PanelRequest
-from linkwright.panels.plotted_fields import numeric_fields, split_fields, split_topic
+from linkwright.panels.plotted_fields import find_numeric_fields, split_fields, split_topic
 
 if TYPE_CHECKING:
     from linkwright.rviz.displays.base.display import ViewerDisplay
@@ -45,7 +45,7 @@ class RequestedPanelsFeature(PageFeature):
         panel = RequestedPanel(
             number,
             cast("RequestedPanelName", request.panel),
-            self._display(request).id if request.display_class else None,
+            self._find_or_add_display(request).id if request.display_class else None,
             [],
             request.node or None,
             RequestedVelocities(request.topic, request.stamped, request.linear, request.angular)
@@ -59,27 +59,29 @@ class RequestedPanelsFeature(PageFeature):
                 self.context.graph_changes.watch(self._resolve_fields)
             self._pending_fields[number] = fields
             self._resolve_fields()
-        self.context.pages.publish(self._message())
+        self.context.pages.publish(self._make_message())
 
     def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the requested panels.
 
         They are sent after the panels of the file, so that they open in front of them.
         """
-        return [self._message()]
+        return [self._make_message()]
 
     def close(self) -> None:
         """Stop waiting for topics."""
         self._pending_fields.clear()
         self.context.graph_changes.unwatch(self._resolve_fields)
 
-    def _message(self) -> RequestedPanels:
+    def _make_message(self) -> RequestedPanels:
         return RequestedPanels(list(self._panels))
 
     # --- displays ----------------------------------------------------------------------------------------------
 
-    def _display(self, request: PanelRequest) -> ViewerDisplay:
-        """Return the enabled display of the requested class and topic, which is added if there is none.
+    def _find_or_add_display(self, request: PanelRequest) -> ViewerDisplay:
+        """Return the enabled display of the requested class and topic.
+
+        If there is none, a display is added.
 
         The configuration does not count as changed by the user.
         """
@@ -89,7 +91,7 @@ class RequestedPanelsFeature(PageFeature):
             (
                 display
                 for display in manager.displays
-                if display.config.cls == request.display_class and _topic_of(display) == request.topic
+                if display.config.cls == request.display_class and _get_topic(display) == request.topic
             ),
             None,
         )
@@ -118,7 +120,7 @@ class RequestedPanelsFeature(PageFeature):
         if not self._pending_fields:
             self.context.graph_changes.unwatch(self._resolve_fields)
         if has_new:
-            self.context.pages.publish(self._message())
+            self.context.pages.publish(self._make_message())
 
     def _resolve_field(self, number: int, field: str, topics: dict[str, list[str]]) -> bool:
         """Add the series of a field to a panel, and return whether the topic of the field exists."""
@@ -127,21 +129,23 @@ class RequestedPanelsFeature(PageFeature):
             return False
         topic, path = split
         try:
-            paths = list(numeric_fields(path, get_message(topics[topic][0])))
+            paths = list(find_numeric_fields(path, get_message(topics[topic][0])))
         except LinkwrightError:
             paths = [path] if path else []  # the plot shows why the type of the topic is not known
         self._panels[number - 1].series.extend(RequestedSeries(topic, series_path) for series_path in paths)
         return True
 
 
-def _topic_of(display: ViewerDisplay) -> str:
+def _get_topic(display: ViewerDisplay) -> str:
     """Return the topic of a display; empty if it has none."""
     has_topic = any((spec.name,) == display.TOPIC[:1] for spec in display.schema())
     return display.properties.text(*display.TOPIC) if has_topic else ""
 
 
 def _set_topic(display: ViewerDisplay, topic: str) -> None:
-    """Set the topic of a new display, if any, and subscribe with Best Effort, as ``rqt_image_view`` does.
+    """Set the topic of a new display, and subscribe as ``rqt_image_view`` does.
+
+    The reliability is Best Effort.
 
     This matches all publishers, also those that do not exist yet.
     """

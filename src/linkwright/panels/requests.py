@@ -1,7 +1,7 @@
 """The declarations of the page features of this package that are created on demand."""
 
 from linkwright.page.protocol.time import NOTHING_RECORDED
-from linkwright.panels.page_feature import OnDemand, messages
+from linkwright.panels.page_feature import OnDemand, list_message_paths
 
 _EDITING = "linkwright.page.protocol.editing"
 _MONITOR = "linkwright.page.protocol.monitor"
@@ -22,21 +22,23 @@ ON_DEMAND = (
     OnDemand("linkwright.panels.displays:PointsFeature", ("linkwright.page.protocol.points:RequestPoint",)),
     OnDemand(
         "linkwright.panels.editing.feature:EditingFeature",
-        messages(_EDITING, "ApplyEdit", "PreviewEdit", "RedoEdit", "RequestEditableParts", "UndoEdit"),
+        list_message_paths(_EDITING, "ApplyEdit", "PreviewEdit", "RedoEdit", "RequestEditableParts", "UndoEdit"),
     ),
     OnDemand("linkwright.panels.export.feature:ExportFeature", ("linkwright.page.protocol.export:RequestExport",)),
-    OnDemand("linkwright.panels.monitor.log:LogFeature", messages(_MONITOR, "WatchLog"), ("/rosout",)),
-    OnDemand("linkwright.panels.monitor.node_graph:NodeGraphFeature", messages(_MONITOR, "WatchNodeGraph")),
+    OnDemand("linkwright.panels.monitor.log:LogFeature", list_message_paths(_MONITOR, "WatchLog"), ("/rosout",)),
+    OnDemand("linkwright.panels.monitor.node_graph:NodeGraphFeature", list_message_paths(_MONITOR, "WatchNodeGraph")),
     OnDemand(
         "linkwright.panels.monitor.parameters:ParametersFeature",
-        messages(_MONITOR, "DumpParameters", "SetParameter", "WatchParameters"),
+        list_message_paths(_MONITOR, "DumpParameters", "SetParameter", "WatchParameters"),
     ),
-    OnDemand("linkwright.panels.monitor.plots:PlotsFeature", messages(_MONITOR, "RequestFields", "WatchSeries")),
-    OnDemand("linkwright.panels.monitor.teleop:TeleopFeature", messages(_MONITOR, "AimTeleop", "Drive")),
-    OnDemand("linkwright.panels.monitor.topics:TopicsFeature", messages(_MONITOR, "WatchTopics")),
+    OnDemand(
+        "linkwright.panels.monitor.plots:PlotsFeature", list_message_paths(_MONITOR, "RequestFields", "WatchSeries")
+    ),
+    OnDemand("linkwright.panels.monitor.teleop:TeleopFeature", list_message_paths(_MONITOR, "AimTeleop", "Drive")),
+    OnDemand("linkwright.panels.monitor.topics:TopicsFeature", list_message_paths(_MONITOR, "WatchTopics")),
     OnDemand(
         "linkwright.panels.source_editor.feature:SourceEditorFeature",
-        messages(
+        list_message_paths(
             _SOURCES,
             "CloseSourceFile",
             "CreateSourceFile",
@@ -50,7 +52,7 @@ ON_DEMAND = (
     ),
     OnDemand(
         "linkwright.panels.terminal.feature:TerminalFeature",
-        messages(
+        list_message_paths(
             _TERMINAL,
             "AcknowledgeTerminal",
             "CloseTerminal",
@@ -65,7 +67,7 @@ ON_DEMAND = (
     ),
     OnDemand(
         "linkwright.panels.recording:RecordingFeature",
-        messages(_RECORDING, "RecordTopics", "StopRecording", "SaveMinutes"),
+        list_message_paths(_RECORDING, "RecordTopics", "StopRecording", "SaveMinutes"),
         until=NOTHING_RECORDED,
         refuses_recordings=True,
     ),

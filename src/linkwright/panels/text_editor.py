@@ -59,7 +59,7 @@ class TextEditorFeature(PageFeature):
         for manager in self.managers.all():
             for display in manager.robot_models():
                 description = await self.viewer.add_feature(DescriptionFeature).details(display)
-                shown_element = None if description is None else element_at(description, file, line)
+                shown_element = None if description is None else find_element_at(description, file, line)
                 if shown_element is not None:
                     manager.pages.publish(ShowElement(display.id, *shown_element))
                     break
@@ -69,14 +69,14 @@ class TextEditorFeature(PageFeature):
             for display in manager.robot_models():
                 if display.id == message.display:
                     description = await self.viewer.add_feature(DescriptionFeature).details(display)
-                    for kind, element in () if description is None else _elements(description):
+                    for kind, element in () if description is None else _iterate_elements(description):
                         origin = element.written.origin
                         if (kind, element.name) == (message.kind, message.name) and origin is not None:
                             self.selected(origin)
                     return
 
 
-def element_at(description: Description, file: Path, line: int) -> tuple[ElementKind, str] | None:
+def find_element_at(description: Description, file: Path, line: int) -> tuple[ElementKind, str] | None:
     """Return the kind and name of the innermost element at a line, or None.
 
     If the line contains only a macro call, the result is the call's first element.
@@ -89,7 +89,7 @@ def element_at(description: Description, file: Path, line: int) -> tuple[Element
     source_path = file.resolve()
     matches: list[tuple[int, ElementKind, str]] = []
     call_elements: list[tuple[ElementKind, str]] = []
-    for kind, element in _elements(description):
+    for kind, element in _iterate_elements(description):
         origin = element.written.origin
         if origin is not None and origin.line <= line <= origin.end_line and Path(origin.file).resolve() == source_path:
             matches.append((origin.end_line - origin.line, kind, element.name))
@@ -100,7 +100,7 @@ def element_at(description: Description, file: Path, line: int) -> tuple[Element
     return call_elements[0] if call_elements else None
 
 
-def _elements(description: Description) -> Iterator[tuple[ElementKind, LinkDetails | JointDetails]]:
+def _iterate_elements(description: Description) -> Iterator[tuple[ElementKind, LinkDetails | JointDetails]]:
     for link in description.links:
         yield "link", link
     for joint in description.joints:

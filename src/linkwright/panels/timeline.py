@@ -82,7 +82,7 @@ class TimeFeature(PageFeature):
     def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the state of the Time panel."""
         self._begin(manager)
-        return [_state(manager)]
+        return [_make_state(manager)]
 
     def remove_manager(self, manager: VisualizationManager) -> None:
         """Discard the start of the manager's elapsed times."""
@@ -153,7 +153,7 @@ class TimeFeature(PageFeature):
             self._timer = None
         must_repeat = False
         for page, sent_clock in list(self._sent_clocks.items()):
-            clock = self._clock(self.managers.of(page))
+            clock = self._make_clock(self.managers.of(page))
             must_repeat = must_repeat or not clock.running
             if (
                 sent_clock is None
@@ -165,7 +165,7 @@ class TimeFeature(PageFeature):
         if must_repeat:
             self._timer = self._loop.call_later(_CLOCK_PERIOD_S, self._tick)
 
-    def _clock(self, manager: VisualizationManager) -> Clock:
+    def _make_clock(self, manager: VisualizationManager) -> Clock:
         elapsed_start, time_control = self._begin(manager), manager.time
         is_simulated = self.context.node.get_clock().ros_time_is_active
         return Clock(
@@ -177,7 +177,7 @@ class TimeFeature(PageFeature):
         )
 
 
-def _state(manager: VisualizationManager) -> TimeState:
+def _make_state(manager: VisualizationManager) -> TimeState:
     time_control = manager.time
     return TimeState(time_control.paused, time_control.mode, time_control.source, list(time_control.sources))
 
@@ -229,7 +229,7 @@ class TimelineFeature(PageFeature):
 
         A read error must be reported with `show_error`.
         """
-        from linkwright.bag.publishing import missing_type_findings
+        from linkwright.bag.publishing import find_missing_types
 
         counts = bag.counts(_COUNT_INTERVALS)
         topics = [
@@ -246,7 +246,7 @@ class TimelineFeature(PageFeature):
             topics,
             live=False,
         )
-        if findings := [*bag.findings, *missing_type_findings(bag)]:
+        if findings := [*bag.findings, *find_missing_types(bag)]:
             self._problem = join_messages(findings)
         self._playback = playback
         playback.on_reset = self._reset
@@ -276,16 +276,16 @@ class TimelineFeature(PageFeature):
         """Return the extent of the recording or the history, and the current position."""
         playback = self._playback
         if self._live is not None:
-            extent = self._extent(self._live)
+            extent = self._make_extent(self._live)
             self._publish_extent_later()
-            return [Timeline("", extent.start, extent.end, [], live=True), extent, self._live_playhead(self._live)]
+            return [Timeline("", extent.start, extent.end, [], live=True), extent, self._make_live_playhead(self._live)]
         if playback is None or self._timeline is None:
             return []
         if not self._is_started:
             self._is_started = True
             playback.update_subscribed_topics()
             playback.play()
-        return [self._timeline, self._playhead(playback)]
+        return [self._timeline, self._make_playhead(playback)]
 
     def receive(self, page: Page, message: Play | SeekTime | StepTime | SetPlayback | GoLive) -> None:
         """Handle a request to play, pause, move to a time, or return to the present."""
@@ -371,21 +371,21 @@ class TimelineFeature(PageFeature):
             self._was_playing = playing
         playback = self._playback if live is None else live.playback
         if playback is not None:
-            self.context.pages.publish(self._playhead(playback))
+            self.context.pages.publish(self._make_playhead(playback))
             if playback.playing:
                 self._timer = self._loop.call_later(_PLAYHEAD_PERIOD_S, self._on_change)
 
-    def _playhead(self, playback: Playback) -> Playhead:
+    def _make_playhead(self, playback: Playback) -> Playhead:
         position = playback.position_ns / NANOSECONDS_PER_SECOND
         live = self._live is not None and self._live.live
         return Playhead(position, playback.playing, playback.speed, playback.loop, playback.seeks, self._problem, live)
 
-    def _live_playhead(self, live: LiveHistory) -> Playhead:
+    def _make_live_playhead(self, live: LiveHistory) -> Playhead:
         if live.has_playback:
-            return self._playhead(live.playback)
+            return self._make_playhead(live.playback)
         return Playhead(live.span_ns[0] / NANOSECONDS_PER_SECOND, False, 1.0, False, 0, self._problem, live=True)
 
-    def _extent(self, live: LiveHistory) -> HistoryExtent:
+    def _make_extent(self, live: LiveHistory) -> HistoryExtent:
         start_ns, end_ns = live.span_ns
         return HistoryExtent(
             start_ns / NANOSECONDS_PER_SECOND, end_ns / NANOSECONDS_PER_SECOND, live.size, live.max_bytes
@@ -402,5 +402,5 @@ class TimelineFeature(PageFeature):
         """
         self._publish_timer = None
         if self._live is not None and len(self.context.pages):
-            self.context.pages.publish(self._extent(self._live))
+            self.context.pages.publish(self._make_extent(self._live))
             self._publish_extent_later()

@@ -60,7 +60,10 @@ class ViewsFeature(PageFeature):
 
     def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the view of the file and the saved views."""
-        return [ViewState(manager.view, manager.opened, manager.shows_whole_robot), self._saved_views_message(manager)]
+        return [
+            ViewState(manager.view, manager.opened, manager.shows_whole_robot),
+            self._make_saved_views_message(manager),
+        ]
 
     def receive(self, page: Page, message: Any) -> None:
         """Handle a changed view of a page, or an edit of the saved views.
@@ -88,10 +91,10 @@ class ViewsFeature(PageFeature):
             self.context.node.get_logger().warning(f"A page sent an invalid view: {error}")
             return
         manager.record_permanent_edit()
-        manager.publish(self._saved_views_message(manager))
+        manager.publish(self._make_saved_views_message(manager))
 
     @staticmethod
-    def _saved_views_message(manager: VisualizationManager) -> SavedViews:
+    def _make_saved_views_message(manager: VisualizationManager) -> SavedViews:
         return SavedViews([SavedView(identity, view) for identity, view in manager.config.views.saved.items()])
 
 
@@ -127,11 +130,11 @@ class ToolsFeature(PageFeature):
     def start(self) -> None:
         """Create the publishers of the shared configuration's tools."""
         for manager in self.managers.all():
-            self._tool_set(manager)
+            self._get_tool_set(manager)
 
     def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the tools of the configuration."""
-        return [_tools_message(self._tool_set(manager))]
+        return [_make_tools_message(self._get_tool_set(manager))]
 
     def remove_manager(self, manager: VisualizationManager) -> None:
         """Destroy the publishers of the manager's tools."""
@@ -145,7 +148,7 @@ class ToolsFeature(PageFeature):
         Messages for removed tools are ignored.
         """
         manager = self.managers.of(page)
-        tool_set = self._tool_set(manager)
+        tool_set = self._get_tool_set(manager)
         if isinstance(message, SetToolProperty):
             self._set_property(page, manager, message)
         elif isinstance(message, AddTool):
@@ -165,7 +168,7 @@ class ToolsFeature(PageFeature):
         for manager in list(self._tool_sets):
             self.remove_manager(manager)
 
-    def _tool_set(self, manager: VisualizationManager) -> _ToolSet:
+    def _get_tool_set(self, manager: VisualizationManager) -> _ToolSet:
         """Return the tools of a manager.
 
         If its configuration was replaced, they are created again.
@@ -193,7 +196,7 @@ class ToolsFeature(PageFeature):
 
     def _publish_tools(self, manager: VisualizationManager) -> None:
         manager.record_permanent_edit()
-        manager.publish(_tools_message(self._tool_sets[manager]))
+        manager.publish(_make_tools_message(self._tool_sets[manager]))
 
     def _add(self, manager: VisualizationManager, message: AddTool) -> None:
         tool_set = self._tool_sets[manager]
@@ -273,7 +276,7 @@ class ToolsFeature(PageFeature):
         fixed_pose = (choice.x, choice.y, 0.0, 0.0, 0.0, math.sin(choice.yaw / 2), math.cos(choice.yaw / 2))
         goal_sender = self._tool_sets[manager].goals.get(choice.tool)
         if goal_sender is not None:
-            message, header_pose = self._stamped_message(manager, _POSE, fixed_pose)
+            message, header_pose = self._make_stamped_message(manager, _POSE, fixed_pose)
             self._log_pose("goal", message.header, _fill_pose(message.pose, header_pose), header_pose)
             from linkwright.page.protocol.navigation import GoalOutcome
 
@@ -283,7 +286,7 @@ class ToolsFeature(PageFeature):
         if tool_and_publisher is None:
             return
         entry, publisher = tool_and_publisher
-        message, header_pose = self._stamped_message(manager, TOOL_KINDS[entry.cls].publishes, fixed_pose)
+        message, header_pose = self._make_stamped_message(manager, TOOL_KINDS[entry.cls].publishes, fixed_pose)
         pose = message.pose
         if entry.cls == _INITIAL_POSE:
             for index, axis in ((0, "x"), (7, "y"), (35, "yaw")):
@@ -296,7 +299,7 @@ class ToolsFeature(PageFeature):
         self.context.node.get_logger().info(
             f"Setting {kind} pose: Frame:{header.frame_id}, "
             f"Position({pose.position.x:g}, {pose.position.y:g}, 0), "
-            f"Orientation(0, 0, {pose.orientation.z:g}, {pose.orientation.w:g}) = Angle: {_angle(planar_pose):g}"
+            f"Orientation(0, 0, {pose.orientation.z:g}, {pose.orientation.w:g}) = Angle: {_compute_yaw(planar_pose):g}"
         )
 
     def _publish_point(self, manager: VisualizationManager, choice: PointChosen) -> None:
@@ -305,13 +308,13 @@ class ToolsFeature(PageFeature):
             return
         entry, publisher = tool_and_publisher
         message_type = TOOL_KINDS[entry.cls].publishes
-        message, header_pose = self._stamped_message(
+        message, header_pose = self._make_stamped_message(
             manager, message_type, (choice.x, choice.y, choice.z, 0.0, 0.0, 0.0, 1.0)
         )
         message.point.x, message.point.y, message.point.z = header_pose[:3]
         publisher.publish(message)
 
-    def _stamped_message(
+    def _make_stamped_message(
         self, manager: VisualizationManager, message_type: str | None, pose: Transform
     ) -> tuple[Any, list[float]]:
         """Return a message with a header, and the given pose in the frame of the header.
@@ -332,11 +335,11 @@ def _fill_pose(pose: Any, planar_pose: list[float]) -> Any:
     return pose
 
 
-def _angle(pose: list[float]) -> float:
+def _compute_yaw(pose: list[float]) -> float:
     return 2 * math.atan2(pose[5], pose[6])
 
 
-def _tools_message(tool_set: _ToolSet) -> Tools:
+def _make_tools_message(tool_set: _ToolSet) -> Tools:
     return Tools(
         [
             Tool(entry.id, entry.cls, get_tool_name(entry.cls), entry.cls in TOOL_KINDS, entry.properties.rows())

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from linkwright.files.user_folders import cache_folder
 from linkwright.hosting.rqt_programs import PANEL_PROGRAMS
-from linkwright.messages.distribution import ASSUMED
+from linkwright.messages.distribution import ASSUMED_DISTRIBUTION_VARIABLE
 from linkwright.packages.ament import ROS_VARIABLES
 
 PROGRAMS = {
@@ -74,7 +74,7 @@ def set_ros_variables(environment: MutableMapping[str, str]) -> None:
     """
     if "ROS_DISTRO" not in environment:
         environment.update(ROS_VARIABLES)
-        environment[ASSUMED] = "1"
+        environment[ASSUMED_DISTRIBUTION_VARIABLE] = "1"
         for name in (
             "GZ_SIM_RESOURCE_PATH",
             "LD_LIBRARY_PATH",

@@ -18,7 +18,7 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError, did_you_mean, phrase
 from linkwright.messages import catalog
 from linkwright.messages.classes import get_interface
-from linkwright.messages.definitions.interfaces import KINDS, is_package_name, snake_case
+from linkwright.messages.definitions.interfaces import KINDS, is_package_name, to_snake_case
 from linkwright.messages.definitions.library import LIBRARY
 from linkwright.messages.errors import InterfaceNotFoundError
 from linkwright.messages.message import ActionType, ServiceType
@@ -87,7 +87,7 @@ def find_spec(name: str) -> ModuleSpec | None:
     if len(submodules) < 2:
         loader = _KindLoader(names) if submodules else _PackageLoader()
         return ModuleSpec(name, loader, origin="Linkwright", is_package=True)
-    interface = next((name for name in names if "_" + snake_case(name) == submodules[1]), None)
+    interface = next((name for name in names if "_" + to_snake_case(name) == submodules[1]), None)
     if interface is None:
         return None
     return ModuleSpec(name, _InterfaceLoader(f"{package}/{submodules[0]}/{interface}"), origin="Linkwright")
@@ -98,7 +98,7 @@ def _find_interface_names(package: str, kind: str) -> list[str]:
 
     Packages that are part of Linkwright are not searched for on disk.
     """
-    shipped_names = [name.rpartition("/")[2] for name in catalog.texts(package) if name.startswith(kind + "/")]
+    shipped_names = [name.rpartition("/")[2] for name in catalog.read_texts(package) if name.startswith(kind + "/")]
     return sorted(shipped_names) or [name.rpartition("/")[2] for name in LIBRARY.names(kind, package)]
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.bag import STORAGES, BagTopic, format_summary
-from linkwright.bag.names import METADATA
+from linkwright.bag.names import METADATA_FILE
 from linkwright.bag.qos import from_text, to_text
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.time.values import ClockType, Duration, Time
@@ -198,7 +198,7 @@ class MetadataIo:
 
     def metadata_file_exists(self, uri: str) -> bool:
         """Return whether a folder contains a ``metadata.yaml``."""
-        return (Path(uri) / METADATA).exists()
+        return (Path(uri) / METADATA_FILE).exists()
 
     def read_metadata(self, uri: str) -> BagMetadata:
         """Read the ``metadata.yaml`` in a folder.
@@ -208,11 +208,13 @@ class MetadataIo:
         """
         import yaml
 
-        from linkwright.bag.parts import INFORMATION
+        from linkwright.bag.parts import INFORMATION_KEY
 
         folder = Path(uri)
         try:
-            metadata = _parse_metadata(yaml.safe_load((folder / METADATA).read_text(encoding="utf-8"))[INFORMATION])
+            metadata = _parse_metadata(
+                yaml.safe_load((folder / METADATA_FILE).read_text(encoding="utf-8"))[INFORMATION_KEY]
+            )
         except (OSError, ValueError, TypeError, KeyError, yaml.YAMLError) as error:
             raise RuntimeError(f"Exception on parsing info file: {error}") from error
         metadata.bag_size = sum(path.stat().st_size for path in folder.iterdir() if path.is_file())

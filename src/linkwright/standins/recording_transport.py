@@ -117,15 +117,15 @@ class RecordOptions:
         As in ``ros2bag``, a service is selected by its event topic.
         """
         return TopicSelection(
-            everything=self.all_topics or self.all,
+            all_topics=self.all_topics or self.all,
             names=_to_absolute_names(self.topics),
             types=self.topic_types,
             pattern=self.regex,
             without_names=_to_absolute_names(self.exclude_topics),
             without_types=self.exclude_topic_types,
             without_pattern=self.exclude_regex or self.exclude,
-            hidden=self.include_hidden_topics,
-            every_service=self.all_services,
+            include_hidden=self.include_hidden_topics,
+            all_services=self.all_services,
             services=_find_service_names(self.services),
             without_services=_find_service_names(self.exclude_service_events),
         )
@@ -291,7 +291,10 @@ def _to_bag_play_options(options: PlayOptions, *, paused: bool) -> _BagPlayOptio
     return _BagPlayOptions(
         rate=options.rate,
         topics=_to_absolute_names(options.topics_to_filter),
-        without=[*_to_absolute_names(options.exclude_topics_to_filter), *options.exclude_service_events_to_filter],
+        excluded_topics=[
+            *_to_absolute_names(options.exclude_topics_to_filter),
+            *options.exclude_service_events_to_filter,
+        ],
         pattern=options.regex_to_filter,
         without_pattern=options.exclude_regex_to_filter,
         loop=options.loop,

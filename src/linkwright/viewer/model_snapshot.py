@@ -13,7 +13,7 @@ from linkwright.nodes.joint_layout import JointSettings, make_layout
 from linkwright.nodes.robot_state_publisher import RobotTransforms
 from linkwright.packages import PackageFinder
 from linkwright.panels.comparison.feature import add_old_robot
-from linkwright.panels.export.snapshot import Snapshot, snapshot_of
+from linkwright.panels.export.snapshot import Snapshot, take_configuration_snapshot
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.robot import estimate_size, has_visuals
@@ -83,7 +83,7 @@ async def _take_snapshot(
         viewer.attach_comparison(old.pair, old_publisher_node)(old.text)
     await graph.settle()
     try:
-        return snapshot_of(viewer, viewer.manager)
+        return take_configuration_snapshot(viewer, viewer.manager)
     finally:
         await viewer.close()
         await graph.close()

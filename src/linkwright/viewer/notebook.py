@@ -16,7 +16,7 @@ from linkwright.descriptions import DescriptionLibrary, Packages, examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.diagnostics.diagnostic import is_text
 from linkwright.packages import PackageFinder
-from linkwright.panels.export.html import html_of
+from linkwright.panels.export.html import write_html
 from linkwright.panels.export.snapshot import no_robot_error
 from linkwright.urdf import Robot, save
 from linkwright.viewer.model_snapshot import take_model_snapshot
@@ -78,5 +78,5 @@ def show(
     text = library.store(description)
     with ThreadPoolExecutor(1) as thread:  # the main thread of a notebook already runs an event loop
         snapshot = thread.submit(take_model_snapshot, text, described_robot, library, finder).result()
-    page = html_of(snapshot).decode("utf-8")
+    page = write_html(snapshot).decode("utf-8")
     return RobotCell(described_robot.name, page, height, (*description.diagnostics, *snapshot.problems))

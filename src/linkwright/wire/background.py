@@ -35,12 +35,12 @@ _JOIN_TIMEOUT_S = 10.0
 """Seconds after which the joining thread is abandoned, because an import that Ctrl-C ended may keep its lock."""
 
 _POLL_INTERVAL_S = 0.01
-_CLOSE_CHECK_INTERVAL = 0.05
+_CLOSE_CHECK_INTERVAL_S = 0.05
 """The interval, in seconds, at which a waiting thread checks whether the domain was left."""
 
 
 class DepartureMonitor(Protocol):
-    """A judge of whether a remote publisher that disappeared was lost or left in an orderly way."""
+    """Decides whether remote publishers that disappeared were lost."""
 
     def watch(self, lost: Callable[[EndpointInfo], None]) -> None:
         """Register a callback for lost publishers."""
@@ -104,11 +104,11 @@ class BackgroundTransport(ABC):
         """
 
     @abstractmethod
-    def _has_settled(self, quiet: float) -> bool:
+    def _has_settled(self, quiet_s: float) -> bool:
         """Return whether discovery counts as complete.
 
         Args:
-            quiet: the seconds since the last change to the remote graph, or since joining if that is later.
+            quiet_s: the seconds since the last change to the remote graph, or since joining if that is later.
         """
 
     @property
@@ -128,16 +128,18 @@ class BackgroundTransport(ABC):
             Whether the transport is ready. If the domain cannot be joined or was left, False is returned immediately.
         """
         deadline = None if timeout is None else time.monotonic() + timeout
-        while not self._join_ended.wait(_CLOSE_CHECK_INTERVAL) and not self._closed:
+        while not self._join_ended.wait(_CLOSE_CHECK_INTERVAL_S) and not self._closed:
             if deadline is not None and time.monotonic() >= deadline:
                 return False
         if self._engine is None:
             return False
         ready = threading.Event()
-        self._do(lambda _: ready.set())
+        self._queue(lambda _: ready.set())
         while not self._closed and (deadline is None or time.monotonic() < deadline):
             if ready.wait(
-                _CLOSE_CHECK_INTERVAL if deadline is None else min(_CLOSE_CHECK_INTERVAL, deadline - time.monotonic())
+                _CLOSE_CHECK_INTERVAL_S
+                if deadline is None
+                else min(_CLOSE_CHECK_INTERVAL_S, deadline - time.monotonic())
             ):
                 break
         return ready.is_set()
@@ -167,56 +169,56 @@ class BackgroundTransport(ABC):
 
     def open_node(self, node: NodeIdentity) -> None:
         """Announce a node."""
-        self._mirror(lambda engine: engine.add_node(node))
+        self._queue_mirroring(lambda engine: engine.add_node(node))
 
     def close_node(self, node: NodeIdentity) -> None:
         """Withdraw a node."""
-        self._mirror(lambda engine: engine.remove_node(node))
+        self._queue_mirroring(lambda engine: engine.remove_node(node))
 
     def open_publisher(self, publisher: Publisher[Any]) -> None:
         """Mirror a publisher."""
         if self._engine is not None and not self._discovers_only:
             publisher.hold_for_remote(self.wait_until_ready)
-        self._mirror(lambda engine: engine.open_publisher(publisher))
+        self._queue_mirroring(lambda engine: engine.open_publisher(publisher))
 
     def close_publisher(self, publisher: Publisher[Any]) -> None:
         """Stop mirroring a publisher once its reliable messages are acknowledged.
 
         If no reader is left to acknowledge the messages, mirroring also stops.
         """
-        self._mirror(lambda engine: engine.close_publisher(publisher))
+        self._queue_mirroring(lambda engine: engine.close_publisher(publisher))
 
     def open_subscription(self, subscription: Subscription[Any]) -> None:
         """Mirror a subscription."""
-        self._mirror(lambda engine: engine.open_subscription(subscription))
+        self._queue_mirroring(lambda engine: engine.open_subscription(subscription))
 
     def close_subscription(self, subscription: Subscription[Any]) -> None:
         """Stop mirroring a subscription."""
-        self._mirror(lambda engine: engine.close_endpoint(subscription))
+        self._queue_mirroring(lambda engine: engine.close_endpoint(subscription))
 
     def open_service(self, service: Service[Any, Any]) -> None:
         """Mirror a service."""
-        self._mirror(lambda engine: engine.open_service(service))
+        self._queue_mirroring(lambda engine: engine.open_service(service))
 
     def close_service(self, service: Service[Any, Any]) -> None:
         """Stop mirroring a service."""
-        self._mirror(lambda engine: engine.close_endpoint(service))
+        self._queue_mirroring(lambda engine: engine.close_endpoint(service))
 
     def open_client(self, client: Client[Any, Any]) -> None:
         """Mirror a client."""
-        self._mirror(lambda engine: engine.open_client(client))
+        self._queue_mirroring(lambda engine: engine.open_client(client))
 
     def close_client(self, client: Client[Any, Any]) -> None:
         """Stop mirroring a client."""
-        self._mirror(lambda engine: engine.close_endpoint(client))
+        self._queue_mirroring(lambda engine: engine.close_endpoint(client))
 
     def open_presence(self, presence: Presence) -> None:
         """Announce an endpoint that neither sends nor receives."""
-        self._mirror(lambda engine: engine.open_presence(presence))
+        self._queue_mirroring(lambda engine: engine.open_presence(presence))
 
     def close_presence(self, presence: Presence) -> None:
         """Withdraw an endpoint that neither sends nor receives."""
-        self._mirror(lambda engine: engine.close_endpoint(presence))
+        self._queue_mirroring(lambda engine: engine.close_endpoint(presence))
 
     def start_discovery(self) -> None:  # noqa: B027 - not needed if discovery runs continuously
         """Start discovery for the next query, unless discovery runs continuously."""
@@ -248,10 +250,10 @@ class BackgroundTransport(ABC):
             run_logged(self._logger, "a callback for lost publishers", partial(callback, publisher))
 
         self._departure_monitor.watch(notify)
-        self._do(lambda _: None)  # wakes the engine, which monitors processes from now on
+        self._queue(lambda _: None)  # wakes the engine, which monitors processes from now on
 
     def close(self) -> None:
-        """Leave the domain, after waiting at most a second for reliable messages to be acknowledged.
+        """Leave the domain, after reliable messages were acknowledged or a second has passed.
 
         If the domain is still being joined, this method first waits until joining ends, for at most 10 s.
         """
@@ -274,7 +276,7 @@ class BackgroundTransport(ABC):
     def _end_joining(self) -> None:
         deadline = time.monotonic() + _JOIN_TIMEOUT_S
         while self._join_thread.is_alive() and time.monotonic() < deadline:
-            self._join_thread.join(_CLOSE_CHECK_INTERVAL)
+            self._join_thread.join(_CLOSE_CHECK_INTERVAL_S)
             if self.waits_for_others:  # The thread may be in a call that cannot be interrupted.
                 break
 
@@ -285,12 +287,12 @@ class BackgroundTransport(ABC):
             self._engine.abandon()
             self._engine = None
 
-    def _mirror(self, work: Callable[[Engine], None]) -> None:
+    def _queue_mirroring(self, work: Callable[[Engine], None]) -> None:
         """Queue work on an endpoint or node of this process, unless the transport only discovers."""
         if not self._discovers_only:
-            self._do(work)
+            self._queue(work)
 
-    def _do(self, work: Callable[[Engine], None]) -> None:
+    def _queue(self, work: Callable[[Engine], None]) -> None:
         """Queue a call for the engine's thread, which makes the call once the domain is joined."""
         if self._closed or self.problem is not None:
             return

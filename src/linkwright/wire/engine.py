@@ -35,7 +35,7 @@ class Engine(ABC):
         logger: logs problems.
     """
 
-    refusal: ClassVar[type[Exception]]
+    library_error: ClassVar[type[Exception]]
     """The exception class of the transport's library, which is logged without a traceback."""
 
     def __init__(self, work: Work, logger: Logger) -> None:
@@ -118,11 +118,11 @@ class Engine(ABC):
 
         For an error of Linkwright itself, the traceback is logged.
         """
-        lines = [str(error)] if isinstance(error, self.refusal) else traceback.format_exception(error)
+        lines = [str(error)] if isinstance(error, self.library_error) else traceback.format_exception(error)
         self._logger.error("A part of the graph is not visible outside this process: " + "".join(lines).rstrip())
 
 
-def ends_by_error() -> bool:
+def is_ending_by_error() -> bool:
     """Return whether this program is ending because of an uncaught exception other than Ctrl-C."""
     error = getattr(sys, "last_value", None)
     is_interactive = hasattr(sys, "ps1")

@@ -18,9 +18,9 @@ from linkwright.wire.background import log_no_transport
 from linkwright.wire.switch import is_switched_off
 from linkwright.wire.unsupported_settings import (
     CYCLONE,
-    MIDDLEWARE,
+    MIDDLEWARE_VARIABLE,
     ZENOH,
-    new_unsupported_settings,
+    find_new_unsupported_settings,
     refuse_enforced_security,
 )
 from linkwright.wire.zenoh.joining import is_installed as zenoh_is_installed
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
     from linkwright.wire.background import BackgroundTransport, JoinOptions
 
 
-def middleware(environment: Mapping[str, str] | None = None) -> str:
+def select_middleware(environment: Mapping[str, str] | None = None) -> str:
     """Return the middleware that this process is compatible with: `ZENOH` or `CYCLONE`.
 
     Args:
         environment: the environment variables; by default, the variables of this process.
     """
     environment = os.environ if environment is None else environment
-    requested = environment.get(MIDDLEWARE, "").strip()
+    requested = environment.get(MIDDLEWARE_VARIABLE, "").strip()
     if requested:
         return ZENOH if requested == ZENOH else CYCLONE
     return ZENOH if find_spec("cyclonedds") is None and zenoh_is_installed() else CYCLONE
@@ -54,10 +54,10 @@ def unavailable_reason(environment: Mapping[str, str] | None = None) -> Phrase:
         environment: the environment variables; by default, the variables of this process.
     """
     environment = os.environ if environment is None else environment
-    if middleware(environment) == ZENOH:
+    if select_middleware(environment) == ZENOH:
         return zenoh.unavailable_reason(environment)
     reason = dds.unavailable_reason(environment)
-    if reason and find_spec("cyclonedds") is None and not environment.get(MIDDLEWARE, "").strip():
+    if reason and find_spec("cyclonedds") is None and not environment.get(MIDDLEWARE_VARIABLE, "").strip():
         return phrase(
             "neither DDS nor Zenoh is installed: {hint}, or with 'dds' in place of 'zenoh' for DDS, the "
             "default of ROS 2 (DDS has wheels for Linux x86_64, Windows and macOS arm64, up to Python 3.13; "
@@ -93,7 +93,7 @@ def check_settings(environment: Mapping[str, str] | None = None) -> None:
     Raises:
         LinkwrightError: DDS101, ROS_DOMAIN_ID is not a valid domain; DDS111, a setting of Zenoh is malformed.
     """
-    if middleware(environment) == ZENOH:
+    if select_middleware(environment) == ZENOH:
         from linkwright.wire.zenoh.settings import read_settings as read_zenoh_settings
 
         read_zenoh_settings(environment)
@@ -126,7 +126,7 @@ def join(graph: Graph, **options: Unpack[JoinOptions]) -> BackgroundTransport | 
         if not is_switched_off(environment):
             log_no_transport(graph.get_logger("wire"), reason)
         return None
-    for finding in new_unsupported_settings(environment):
+    for finding in find_new_unsupported_settings(environment):
         graph.get_logger("wire").warning(render(finding))
-    join_selected_transport = zenoh.join if middleware(environment) == ZENOH else dds.join
+    join_selected_transport = zenoh.join if select_middleware(environment) == ZENOH else dds.join
     return join_selected_transport(graph, **options)

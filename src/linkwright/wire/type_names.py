@@ -7,7 +7,7 @@ import re
 _TYPE = re.compile(r"(?P<package>\w+)::(?P<kind>msg|srv|action)::dds_::(?P<name>\w+)_")
 
 
-def dds_type(type_name: str) -> str:
+def to_wire_type(type_name: str) -> str:
     """Return the name of a ROS type on the wire.
 
     For example, ``std_msgs/msg/Header`` becomes ``std_msgs::msg::dds_::Header_``.
@@ -16,7 +16,7 @@ def dds_type(type_name: str) -> str:
     return f"{package}::{kind}::dds_::{name}_"
 
 
-def ros_type(type_name: str) -> str | None:
+def to_ros_type(type_name: str) -> str | None:
     """Return the ROS name of a type on the wire, or None if the type is not a ROS type."""
     match = _TYPE.fullmatch(type_name)
     return f"{match['package']}/{match['kind']}/{match['name']}" if match else None

@@ -12,14 +12,14 @@ from collections.abc import Mapping
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 
-MIDDLEWARE = "RMW_IMPLEMENTATION"
-SECURITY = ("ROS_SECURITY_ENABLE", "ROS_SECURITY_STRATEGY")
-DISCOVERY_SERVERS = ("ROS_DISCOVERY_SERVER", "ROS2_EASY_MODE")
+MIDDLEWARE_VARIABLE = "RMW_IMPLEMENTATION"
+SECURITY_VARIABLES = ("ROS_SECURITY_ENABLE", "ROS_SECURITY_STRATEGY")
+DISCOVERY_SERVER_VARIABLES = ("ROS_DISCOVERY_SERVER", "ROS2_EASY_MODE")
 """Variables of Fast DDS. ROS2_EASY_MODE exists since Kilted."""
 
 ZENOH = "rmw_zenoh_cpp"
 CYCLONE = "rmw_cyclonedds_cpp"
-_FAST = ("rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp")
+_FAST_DDS = ("rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp")
 _OTHER_DDS = (
     "rmw_connextdds",
     "rmw_connextddsmicro",
@@ -28,16 +28,16 @@ _OTHER_DDS = (
     "rmw_opensplice_cpp",
     "rmw_coredx_cpp",
 )
-_KNOWN_MIDDLEWARES = (CYCLONE, *_FAST, ZENOH, *_OTHER_DDS)
+_KNOWN_MIDDLEWARES = (CYCLONE, *_FAST_DDS, ZENOH, *_OTHER_DDS)
 
 _reported: set[str] = set()
-"""Codes of the settings that were reported in this process."""
+"""The codes of the warnings that were reported in this process."""
 
 
 def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> None:
     """Raise an error if security is enforced.
 
-    No node may join the graph without security then.
+    In that case, no node may join the graph without security.
 
     Args:
         environment: the environment variables; by default, the variables of this process.
@@ -62,7 +62,7 @@ def refuse_enforced_security(environment: Mapping[str, str] | None = None) -> No
         )
 
 
-def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
+def find_unsupported_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
     """Return a warning for each setting in the environment that is not supported.
 
     Args:
@@ -70,7 +70,7 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
     """
     variables = os.environ if environment is None else environment
     warnings = []
-    middleware = variables.get(MIDDLEWARE, "").strip()
+    middleware = variables.get(MIDDLEWARE_VARIABLE, "").strip()
     if _is_security_enabled(variables):
         warnings.append(
             Diagnostic(
@@ -83,15 +83,15 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
                 ),
             )
         )
-    server = next((name for name in DISCOVERY_SERVERS if variables.get(name)), None)
-    if server is not None and middleware in ("", *_FAST):
+    variable = next((name for name in DISCOVERY_SERVER_VARIABLES if variables.get(name)), None)
+    if variable is not None and middleware in ("", *_FAST_DDS):
         warnings.append(
             Diagnostic(
                 "DDS123",
                 phrase(
                     "{variable} is set, but Linkwright does not support discovery servers of Fast DDS: it does "
                     "not find nodes that use one",
-                    variable=server,
+                    variable=variable,
                 ),
                 severity=Severity.WARNING,
                 hint=phrase(
@@ -118,9 +118,9 @@ def unsupported_settings(environment: Mapping[str, str] | None = None) -> list[D
     return warnings
 
 
-def new_unsupported_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
-    """Return the warnings of `unsupported_settings` that this process has not returned before."""
-    warnings = [setting for setting in unsupported_settings(environment) if setting.code not in _reported]
+def find_new_unsupported_settings(environment: Mapping[str, str] | None = None) -> list[Diagnostic]:
+    """Return the warnings of `find_unsupported_settings` that were not returned before."""
+    warnings = [diagnostic for diagnostic in find_unsupported_settings(environment) if diagnostic.code not in _reported]
     _reported.update(diagnostic.code for diagnostic in warnings)
     return warnings
 

@@ -22,7 +22,7 @@ from linkwright.page.protocol.configuration import (
     StatusRow,
 )
 from linkwright.page.protocol.geometry import PolygonLine
-from linkwright.page.protocol.message import BadMessageError, decode, encode, pack_data, redundancy_key
+from linkwright.page.protocol.message import BadMessageError, decode, encode, make_redundancy_key, pack_data
 from linkwright.page.protocol.robot import (
     CenterJoints,
     JointPositions,
@@ -159,7 +159,7 @@ def test_server_messages_are_plain_json():
 
 
 def test_redundancy_key_identifies_replaceable_messages():
-    assert redundancy_key(PropertyChanged("a/b", 1)) != redundancy_key(PropertyChanged("a/c", 1))
-    assert redundancy_key(PropertyChanged("a/b", 1)) == redundancy_key(PropertyChanged("a/b", 2))
-    assert redundancy_key(RobotScene("a", 1, "", [])) != redundancy_key(RobotScene("b", 1, "", []))
-    assert redundancy_key(Joints(None)) != redundancy_key(JointPositions({}))
+    assert make_redundancy_key(PropertyChanged("a/b", 1)) != make_redundancy_key(PropertyChanged("a/c", 1))
+    assert make_redundancy_key(PropertyChanged("a/b", 1)) == make_redundancy_key(PropertyChanged("a/b", 2))
+    assert make_redundancy_key(RobotScene("a", 1, "", [])) != make_redundancy_key(RobotScene("b", 1, "", []))
+    assert make_redundancy_key(Joints(None)) != make_redundancy_key(JointPositions({}))

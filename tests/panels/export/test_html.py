@@ -13,8 +13,8 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.panels.export import html
-from linkwright.panels.export.feature import export_snapshot, format_of
-from linkwright.panels.export.snapshot import snapshot_of
+from linkwright.panels.export.feature import export_snapshot, find_format
+from linkwright.panels.export.snapshot import take_configuration_snapshot
 from linkwright.rviz import RvizConfig
 from tests.browser.golden import link_element, mesh_visual, robot_of
 from tests.browser.mesh_writers import make_png, write_dae, write_glb, write_obj, write_stl_binary
@@ -141,7 +141,7 @@ def test_html_contains_no_local_paths(tmp_path):
     ("name", "has_known_suffix"), [("a.html", True), ("b.GLB", True), ("c.gltf", False), ("html", False)]
 )
 def test_export_format_is_recognized_by_suffix(name, has_known_suffix):
-    assert (format_of(name) is not None) is has_known_suffix
+    assert (find_format(name) is not None) is has_known_suffix
 
 
 async def test_html_contains_markers():
@@ -157,7 +157,7 @@ async def test_html_contains_markers():
         world.graph.create_node("marks").create_publisher(type(marker), topic, 10).publish(marker)
         await world.settle()
         world.viewer.manager.fit_to_robot(2.0, 0.0)
-        snapshot = snapshot_of(world.viewer, world.viewer.manager)
+        snapshot = take_configuration_snapshot(world.viewer, world.viewer.manager)
     logged = read_recording(export_snapshot(snapshot, "html").decode())
     assert logged["awaits_size"] is False  # a page has already measured the robot
     assert logged["spacing"] is None

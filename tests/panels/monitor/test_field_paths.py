@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.messages import get_message
-from linkwright.panels.monitor.field_paths import FieldPath, FieldPathError, plot_fields
+from linkwright.panels.monitor.field_paths import FieldPath, FieldPathError, find_plot_fields
 
 JOINT_STATE = get_message("sensor_msgs/msg/JointState")
 ODOMETRY = get_message("nav_msgs/msg/Odometry")
@@ -98,7 +98,7 @@ def test_field_path_beyond_fixed_array_is_rejected():
 
 
 def test_plot_fields_of_type_include_first_array_elements():
-    assert [field.path for field in plot_fields(JOINT_STATE)] == [
+    assert [field.path for field in find_plot_fields(JOINT_STATE)] == [
         "header.stamp",
         "position[0]",
         "velocity[0]",
@@ -107,7 +107,7 @@ def test_plot_fields_of_type_include_first_array_elements():
 
 
 def test_plot_fields_of_message_include_named_elements():
-    fields = plot_fields(JOINT_STATE, make_joint_state())
+    fields = find_plot_fields(JOINT_STATE, make_joint_state())
     assert [field.path for field in fields] == ["header.stamp", "position[elbow]", "position[wrist]", "velocity[0]"]
     assert [field.kind for field in fields] == ["seconds", "double", "double", "double"]
     for field in fields:
@@ -117,12 +117,12 @@ def test_plot_fields_of_message_include_named_elements():
 
 def test_duplicate_names_are_not_used_in_plot_fields():
     message = JOINT_STATE(name=["a", "a", "5"], position=[1.0, 2.0, 3.0])
-    paths = [field.path for field in plot_fields(JOINT_STATE, message)]
+    paths = [field.path for field in find_plot_fields(JOINT_STATE, message)]
     assert "position[2]" in paths
 
 
 def test_plot_fields_of_large_message_are_limited():
     image = get_message("sensor_msgs/msg/Image")(data=bytes(10_000))
-    paths = [field.path for field in plot_fields(type(image), image)]
+    paths = [field.path for field in find_plot_fields(type(image), image)]
     assert paths[:3] == ["header.stamp", "height", "width"]
     assert sum(path.startswith("data[") for path in paths) == 64

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.page.protocol.monitor import SAMPLES_KIND, pack_samples
-from linkwright.panels.monitor.plots import MAX_SENT, SampleQueue, thin_out
+from linkwright.panels.monitor.plots import MAX_SENT_SAMPLES, SampleQueue, thin_out
 
 
 def test_samples_are_taken_once_in_order():
@@ -32,7 +32,7 @@ def test_unread_sample_queue_is_limited_and_keeps_extremes():
         queue.add(number, number, 1e6 if number == 31_415 else float(number % 100))
         assert len(queue) < 5000
     samples = queue.take()
-    assert samples.shape[1] <= MAX_SENT
+    assert samples.shape[1] <= MAX_SENT_SAMPLES
     assert 1e6 in samples[2]
     assert (np.diff(samples[0]) > 0).all()
 
@@ -58,7 +58,7 @@ def test_sample_frame_is_packed():
     assert len(frame) == 16 + 8 + 24 + 8 + 48
 
 
-@pytest.mark.parametrize("count", [MAX_SENT, MAX_SENT - 1])
+@pytest.mark.parametrize("count", [MAX_SENT_SAMPLES, MAX_SENT_SAMPLES - 1])
 def test_thinning_returns_small_input_unchanged(count):
     samples = np.random.default_rng(1).random((3, count))
-    assert thin_out(samples, MAX_SENT) is samples
+    assert thin_out(samples, MAX_SENT_SAMPLES) is samples

@@ -18,7 +18,7 @@ from linkwright.page import server
 from linkwright.page.page_server import PageServer
 from linkwright.panels.terminal import feature as terminals
 from linkwright.panels.terminal.feature import MAX_TERMINALS, TerminalFeature
-from linkwright.panels.terminal.process_session import session_processes
+from linkwright.panels.terminal.process_session import find_session_processes
 from linkwright.panels.terminal.terminal import MAX_UNACKNOWLEDGED
 from tests.viewer.scene import World, open_page, open_world
 from tests.waiting import TIMEOUT_S, wait_until
@@ -257,7 +257,7 @@ async def test_closing_terminal_ends_its_programs(tmp_path: Path) -> None:
         await client.send("close_terminal", terminal=1)
         while (await client.until("terminals"))["terminals"]:
             pass
-        await asyncio.to_thread(wait_until, lambda: not list(session_processes(leader)), TIMEOUT_S)
+        await asyncio.to_thread(wait_until, lambda: not list(find_session_processes(leader)), TIMEOUT_S)
 
 
 async def test_closing_server_ends_all_programs(tmp_path: Path) -> None:
@@ -266,8 +266,8 @@ async def test_closing_server_ends_all_programs(tmp_path: Path) -> None:
         await reader.type("trap '' HUP; (trap '' HUP; sleep 1000) & echo do'ne'\r")
         await reader.until("done\r\n")
         leader = leader_pid(world)
-        assert list(session_processes(leader))
-    assert list(session_processes(leader)) == []
+        assert list(find_session_processes(leader))
+    assert list(find_session_processes(leader)) == []
 
 
 async def test_number_of_terminals_is_limited(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from linkwright.panels.terminal.environment import terminal_environment
+from linkwright.panels.terminal.environment import make_terminal_environment
 from linkwright.panels.terminal.history import LINES, TerminalHistory
 
 
@@ -49,10 +49,10 @@ def test_terminal_modes_are_found_in_dropped_output() -> None:
 
 
 def test_shell_environment_gets_utf8_locale() -> None:
-    assert terminal_environment({})["LC_CTYPE"] in ("C.UTF-8", "UTF-8")
-    assert "LC_CTYPE" not in terminal_environment({"LANG": "zh_CN.UTF-8"})
-    assert "LC_CTYPE" not in terminal_environment({"LC_ALL": "C"})
-    environment = terminal_environment({"TERM": "dumb", "COLUMNS": "3", "PATH": "/bin"})
+    assert make_terminal_environment({})["LC_CTYPE"] in ("C.UTF-8", "UTF-8")
+    assert "LC_CTYPE" not in make_terminal_environment({"LANG": "zh_CN.UTF-8"})
+    assert "LC_CTYPE" not in make_terminal_environment({"LC_ALL": "C"})
+    environment = make_terminal_environment({"TERM": "dumb", "COLUMNS": "3", "PATH": "/bin"})
     assert (environment["TERM"], environment["COLORTERM"], environment["PATH"]) == (
         "xterm-256color",
         "truecolor",

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.panels.terminal.opening import open_pty
-from linkwright.panels.terminal.process_session import session_processes
+from linkwright.panels.terminal.process_session import find_session_processes
 from linkwright.panels.terminal.pty import Pty, TerminalProgram, TerminalSize
 from tests.waiting import TIMEOUT_S, wait_until
 
@@ -163,7 +163,7 @@ async def test_background_processes_end_with_shell(tmp_path: Path) -> None:
     script = "(trap '' HUP; sleep 1000) & sleep 1000 & echo ready; exit 5"
     async with run_program(script, tmp_path) as program:
         assert await program.end() == 5
-        assert list(session_processes(program.leader)) == []
+        assert list(find_session_processes(program.leader)) == []
 
 
 async def test_hang_up_ends_processes_that_ignore_sighup(tmp_path: Path) -> None:
@@ -171,10 +171,10 @@ async def test_hang_up_ends_processes_that_ignore_sighup(tmp_path: Path) -> None
     async with run_program(script, tmp_path) as program:
         await program.prints("ready")
         leader = program.leader
-        wait_until(lambda: len(list(session_processes(leader))) >= 3, TIMEOUT_S)
+        wait_until(lambda: len(list(find_session_processes(leader))) >= 3, TIMEOUT_S)
         program.pty.hang_up()
         await asyncio.to_thread(program.pty.wait_until_ended, 0.1)
-        assert list(session_processes(leader)) == []
+        assert list(find_session_processes(leader)) == []
         assert program.status is None
 
 
@@ -184,7 +184,7 @@ async def test_hang_up_ends_stopped_program(tmp_path: Path) -> None:
         leader = program.leader
         program.pty.hang_up()
         await asyncio.to_thread(program.pty.wait_until_ended, TIMEOUT_S)
-        assert list(session_processes(leader)) == []
+        assert list(find_session_processes(leader)) == []
 
 
 async def test_missing_program_is_an_error(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from linkwright.messages import get_action, get_message, get_service
 from linkwright.nodes import NodeOptions
 from linkwright.planning.nodes.move_group import MoveGroup
 from tests.planning.arms import LIMITS, SRDF, urdf
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 pytestmark = pytest.mark.extra("arm")
 
@@ -73,7 +73,7 @@ class Bench:
         await self.graph.settle()
 
     async def wait(self, future: Any) -> Any:
-        for _ in range(round(SECONDS / 0.01)):
+        for _ in range(round(TIMEOUT_S / 0.01)):
             await self.graph.settle()
             if future.done():
                 return future.result()

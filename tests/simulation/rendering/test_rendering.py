@@ -67,7 +67,11 @@ def test_depth_of_walls_is_exact(make_renderer_of_method):
 
 def test_depth_is_same_with_and_without_color(make_renderer_of_method):
     simulation = make_simulation(FLOOR, block("box", "2 0.5 0 0 0 0", "0.5 0.5 0.5", color="1 0 0 1"))
-    renderer, optics, pose = make_renderer_of_method(simulation), make_optics(CAMERA), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    renderer, optics, pose = (
+        make_renderer_of_method(simulation),
+        make_optics(CAMERA),
+        (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+    )
     depth_and_color = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
     depth_only = renderer.render(optics, pose, Channels.DEPTH)
     repeated = renderer.render(optics, pose, Channels.DEPTH | Channels.COLOR)
@@ -262,7 +266,9 @@ def test_shapes_have_correct_extent(make_renderer_of_method):
             '<model name="thing"><static>true</static><pose>2 0 0 0 0 0</pose><link name="link"><visual name="visual">'
             f"<geometry>{shape}</geometry></visual></link></model>"
         )
-        depth = make_renderer_of_method(make_simulation(text)).render(make_optics(CAMERA), IDENTITY, Channels.DEPTH).depth
+        depth = (
+            make_renderer_of_method(make_simulation(text)).render(make_optics(CAMERA), IDENTITY, Channels.DEPTH).depth
+        )
         assert 1.4 < depth[60, 80] < 2.0, shape
         assert np.isinf(depth[0, 0]), shape
 

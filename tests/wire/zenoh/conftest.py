@@ -10,7 +10,7 @@ from importlib.util import find_spec
 
 import pytest
 
-from linkwright.wire.zenoh.settings import OVERRIDES
+from linkwright.wire.zenoh.settings import OVERRIDES_VARIABLE
 
 ROUTER = [sys.executable, "-m", "linkwright.node_program", "rmw_zenoh_cpp", "rmw_zenohd"]
 
@@ -36,7 +36,7 @@ def start_router(router_port) -> Iterator[Callable[[], subprocess.Popen[str]]]:
         settings = f'listen/endpoints=["tcp/localhost:{router_port}"];connect/endpoints=[]'
         router = subprocess.Popen(
             ROUTER,
-            env={**os.environ, OVERRIDES: settings},
+            env={**os.environ, OVERRIDES_VARIABLE: settings},
             stderr=subprocess.STDOUT,
             stdout=subprocess.PIPE,
             text=True,

@@ -12,7 +12,7 @@ import zenoh
 
 from linkwright.messages import String, get_interface
 from linkwright.wire.zenoh import remote, transport
-from linkwright.wire.zenoh.settings import OVERRIDES
+from linkwright.wire.zenoh.settings import OVERRIDES_VARIABLE
 
 AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
 Int32 = get_interface("std_msgs/msg/Int32")
@@ -22,7 +22,7 @@ Int32 = get_interface("std_msgs/msg/Int32")
 def router(start_router, monkeypatch, router_port) -> None:
     """Start a router, and make all sessions its clients."""
     start_router()
-    monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
+    monkeypatch.setenv(OVERRIDES_VARIABLE, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
 
 
 def remote_node_names(process):
@@ -63,7 +63,7 @@ def test_client_discovers_only_what_its_endpoints_need(processes):
 
 def test_first_graph_query_is_answered_completely(processes, monkeypatch):
     monkeypatch.setattr(transport, "_ANSWER_TIMEOUT_S", 60.0)  # enough for a busy machine
-    monkeypatch.setattr(transport, "_QUIET", 1.0)
+    monkeypatch.setattr(transport, "_QUIET_S", 1.0)
     talker, asks = processes("talker"), processes("asks")
     talker.node.create_publisher(String, "chatter", 10)
     subscription = talker.node.create_subscription(String, "said_late", print, 10)

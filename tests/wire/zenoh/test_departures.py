@@ -43,7 +43,7 @@ class DepartureScene:
 
     def remove(self, token: Token) -> None:
         if self.remote.remove(token.key) is not None:
-            self.departures.token_removed(token.key, token)
+            self.departures.on_token_removed(token.key, token)
 
     def lost_names(self) -> list[str]:
         """Return the names of the lost publishers after all departures are judged."""
@@ -57,12 +57,12 @@ class DepartureScene:
 def test_publisher_of_ended_session_is_lost_unless_session_left(leaves, knows_node):
     """A client may be killed after the publisher's announcement and before that of its node."""
     scene = DepartureScene()
-    scene.departures.session_started(SESSION)
+    scene.departures.on_session_started(SESSION)
     if knows_node:
         scene.remote.add(NODE.key, NODE)
     if leaves:
-        scene.departures.session_leaving(SESSION)
-    scene.departures.session_ended(SESSION)
+        scene.departures.on_session_leaving(SESSION)
+    scene.departures.on_session_ended(SESSION)
     scene.remove(PUBLISHER)
     scene.remove(NODE)
     assert scene.lost_names() == ([] if leaves else ["/chatter"])
@@ -70,7 +70,7 @@ def test_publisher_of_ended_session_is_lost_unless_session_left(leaves, knows_no
 
 def test_publisher_with_remaining_session_and_node_is_not_lost():
     scene = DepartureScene()
-    scene.departures.session_started(SESSION)
+    scene.departures.on_session_started(SESSION)
     scene.remote.add(NODE.key, NODE)
     scene.remove(PUBLISHER)
     assert scene.lost_names() == []

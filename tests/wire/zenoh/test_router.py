@@ -10,7 +10,7 @@ from collections.abc import Callable
 import pytest
 
 from linkwright.messages import String, get_interface
-from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES
+from linkwright.wire.zenoh.settings import ATTEMPTS_VARIABLE, OVERRIDES_VARIABLE
 from tests.wire.test_topics import KEEP_ALL, TRANSIENT_LOCAL
 from tests.wire.zenoh.conftest import ROUTER
 
@@ -21,7 +21,7 @@ AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
 def by_router_alone(monkeypatch, router_port) -> None:
     """Turn multicast discovery off."""
     settings = f'connect/endpoints=["tcp/localhost:{router_port}"];scouting/multicast/enabled=false'
-    monkeypatch.setenv(OVERRIDES, settings)
+    monkeypatch.setenv(OVERRIDES_VARIABLE, settings)
 
 
 def test_processes_discover_by_router_and_continue_without_it(processes, start_router, by_router_alone):
@@ -44,7 +44,7 @@ def test_graph_is_restored_after_router_restart(processes, start_router, monkeyp
 
     Clients are connected only to their router, so they lose the graph with it, and regain it later.
     """
-    monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
+    monkeypatch.setenv(OVERRIDES_VARIABLE, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
     router = start_router()
     a, b = processes("a"), processes("b")
     chatter_texts: list[str] = []
@@ -98,7 +98,7 @@ def test_graph_is_restored_after_router_restart(processes, start_router, monkeyp
 
 
 def test_late_router_is_found(processes, start_router, by_router_alone, monkeypatch):
-    monkeypatch.setenv(ATTEMPTS, "0")
+    monkeypatch.setenv(ATTEMPTS_VARIABLE, "0")
     a, b = processes("a", join_now=False), processes("b", join_now=False)
     start_router()
     a.join(), b.join()
@@ -107,7 +107,7 @@ def test_late_router_is_found(processes, start_router, by_router_alone, monkeypa
 
 
 def test_missing_router_is_reported(processes, by_router_alone, monkeypatch):
-    monkeypatch.setenv(ATTEMPTS, "1")
+    monkeypatch.setenv(ATTEMPTS_VARIABLE, "1")
     process = processes("ours")
     process.spin_until(process.warnings)
     (text,) = process.warnings()
@@ -118,7 +118,7 @@ def test_missing_router_is_reported(processes, by_router_alone, monkeypatch):
 @pytest.mark.parametrize("verb", [["topic", "list"], ["topic", "echo", "/chatter", "std_msgs/msg/String"], ["doctor"]])
 def test_verb_without_router_fails_with_one_error(monkeypatch, router_port, verb):
     settings = f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"];connect/timeout_ms=0'
-    monkeypatch.setenv(OVERRIDES, settings)
+    monkeypatch.setenv(OVERRIDES_VARIABLE, settings)
     result = subprocess.run(
         [sys.executable, "-m", "linkwright", *verb], check=False, capture_output=True, text=True, timeout=60
     )
@@ -132,7 +132,12 @@ def test_second_router_reports_port_conflict(start_router, router_port):
     start_router()
     settings = f'listen/endpoints=["tcp/localhost:{router_port}"]'
     second = subprocess.run(
-        ROUTER, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
+        ROUTER,
+        check=False,
+        env={**os.environ, OVERRIDES_VARIABLE: settings},
+        capture_output=True,
+        text=True,
+        timeout=60,
     )
     assert second.returncode == 1
     assert "error[DDS112]: a Zenoh session cannot be opened" in second.stderr
@@ -145,7 +150,12 @@ def test_second_router_reports_port_conflict(start_router, router_port):
 )
 def test_rejected_setting_is_reported_by_name(monkeypatch, settings, message):
     result = subprocess.run(
-        ROUTER, check=False, env={**os.environ, OVERRIDES: settings}, capture_output=True, text=True, timeout=60
+        ROUTER,
+        check=False,
+        env={**os.environ, OVERRIDES_VARIABLE: settings},
+        capture_output=True,
+        text=True,
+        timeout=60,
     )
     assert result.returncode == 1
     assert f"error[DDS111]: {message}" in result.stderr

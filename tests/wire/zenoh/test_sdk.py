@@ -14,7 +14,7 @@ import pytest
 
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 from linkwright.messages import String, get_service
-from linkwright.wire.zenoh.settings import OVERRIDES
+from linkwright.wire.zenoh.settings import OVERRIDES_VARIABLE
 
 PYTHON = os.environ.get("LINKWRIGHT_ZENOH_SDK_PYTHON", "")
 CALL_COUNT = 1000
@@ -31,13 +31,13 @@ def start_peer(programs, router_port, monkeypatch):
 
     There is no router.
     """
-    settings = os.environ[OVERRIDES]
-    monkeypatch.setenv(OVERRIDES, f'connect/endpoints=[];listen/endpoints=["tcp/127.0.0.1:{router_port}"]')
+    settings = os.environ[OVERRIDES_VARIABLE]
+    monkeypatch.setenv(OVERRIDES_VARIABLE, f'connect/endpoints=[];listen/endpoints=["tcp/127.0.0.1:{router_port}"]')
     return lambda: programs(
         "sdk_peer",
         "sdk",
         python=PYTHON,
-        **{OVERRIDES: settings, "PYTHONPATH": ""},
+        **{OVERRIDES_VARIABLE: settings, "PYTHONPATH": ""},
     )
 
 

@@ -18,8 +18,8 @@ from typing import Any
 import pytest
 import zenoh
 
-from linkwright.wire.zenoh.reaching import connection_problem, connection_problems
-from linkwright.wire.zenoh.settings import OVERRIDES
+from linkwright.wire.zenoh.connection_problems import find_connection_problem, find_connection_problems
+from linkwright.wire.zenoh.settings import OVERRIDES_VARIABLE
 from tests.wire.zenoh.conftest import ROUTER
 
 AT_ONCE_S = 5.0
@@ -38,7 +38,7 @@ def silent_port() -> Iterator[int]:
 
 
 def test_client_reports_missing_router_and_joins_when_it_starts(processes, start_router, monkeypatch, router_port):
-    monkeypatch.setenv(OVERRIDES, client_config(router_port))
+    monkeypatch.setenv(OVERRIDES_VARIABLE, client_config(router_port))
     process = processes("ours", join_now=False)
     joining = threading.Thread(target=process.join)
     joining.start()
@@ -54,7 +54,7 @@ def test_client_reports_missing_router_and_joins_when_it_starts(processes, start
 
 
 def test_wait_for_router_ends_after_timeout(processes, monkeypatch, router_port):
-    monkeypatch.setenv(OVERRIDES, client_config(router_port, 1500))
+    monkeypatch.setenv(OVERRIDES_VARIABLE, client_config(router_port, 1500))
     process = processes("ours", join_now=False)
     with pytest.raises(AssertionError):
         process.join()
@@ -65,7 +65,7 @@ def test_wait_for_router_ends_after_timeout(processes, monkeypatch, router_port)
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send SIGINT to one process")
 @pytest.mark.parametrize("words", [("topic", "list"), ("node", "list"), ("doctor",), ("bridge", "zenoh", "zenoh:7")])
 def test_ctrl_c_ends_wait_for_router(monkeypatch, silent_port, words):
-    monkeypatch.setenv(OVERRIDES, client_config(silent_port))
+    monkeypatch.setenv(OVERRIDES_VARIABLE, client_config(silent_port))
     verb = subprocess.Popen(
         [sys.executable, "-m", "linkwright", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -84,7 +84,11 @@ def test_router_reports_unreachable_endpoint(router_port, silent_port):
         'transport/link/tls/root_ca_certificate="nowhere.pem"'
     )
     router = subprocess.Popen(
-        ROUTER, env={**os.environ, OVERRIDES: settings}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        ROUTER,
+        env={**os.environ, OVERRIDES_VARIABLE: settings},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
     )
     assert router.stdout is not None
     output = [router.stdout.readline() for _ in range(2)]
@@ -95,20 +99,20 @@ def test_router_reports_unreachable_endpoint(router_port, silent_port):
 
 
 def test_malformed_and_unknown_addresses_are_reported():
-    assert "is not an address: write it as tcp/HOST:PORT" in connection_problem("tcp/localhost", {})
-    assert "its port must be at most 65535" in connection_problem("tcp/127.0.0.1:70000", {})
-    assert "the host name of tcp/robot.invalid:7447 cannot be resolved" in connection_problem(
+    assert "is not an address: write it as tcp/HOST:PORT" in find_connection_problem("tcp/localhost", {})
+    assert "its port must be at most 65535" in find_connection_problem("tcp/127.0.0.1:70000", {})
+    assert "the host name of tcp/robot.invalid:7447 cannot be resolved" in find_connection_problem(
         "tcp/robot.invalid:7447", {}
     )
-    assert not connection_problem("udp/127.0.0.1:9", {}), "only Zenoh checks UDP addresses"
+    assert not find_connection_problem("udp/127.0.0.1:9", {}), "only Zenoh checks UDP addresses"
 
 
 def test_duplicate_session_id_is_reported(silent_port):
     config = zenoh.Config()
     for key, value in (("id", '"abc1"'), ("connect/endpoints", f'["tcp/127.0.0.1:{silent_port}"]')):
         config.insert_json5(key, value)
-    (connection_problem,) = connection_problems(config)
-    assert "the same 'id'" in connection_problem
+    (find_connection_problem,) = find_connection_problems(config)
+    assert "the same 'id'" in find_connection_problem
 
 
 class Certificates:
@@ -173,7 +177,7 @@ def find_obstacle(certificates) -> Callable[..., str]:
     port = certificates.serve()
 
     def ask(host: str = "localhost", **names: str) -> str:
-        return connection_problem(f"tls/{host}:{port}", certificates.settings(**names))
+        return find_connection_problem(f"tls/{host}:{port}", certificates.settings(**names))
 
     return ask
 
@@ -192,7 +196,7 @@ def test_invalid_certificates_are_reported(find_obstacle):
 
 
 def test_tls_and_tcp_mismatch_is_reported(certificates, silent_port):
-    assert "does not speak TLS: write tcp/" in connection_problem(
+    assert "does not speak TLS: write tcp/" in find_connection_problem(
         f"tls/localhost:{silent_port}", certificates.settings()
     )
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -203,4 +207,4 @@ def test_tls_and_tcp_mismatch_is_reported(certificates, silent_port):
                 called.recv(16)
 
         threading.Thread(target=refuse, daemon=True).start()
-        assert "speaks TLS: write tls/" in connection_problem(f"tcp/127.0.0.1:{server.getsockname()[1]}", {})
+        assert "speaks TLS: write tls/" in find_connection_problem(f"tcp/127.0.0.1:{server.getsockname()[1]}", {})

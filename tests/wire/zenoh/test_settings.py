@@ -11,7 +11,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError, render
 from linkwright.wire.zenoh.session import build_config, close_session, open_session
-from linkwright.wire.zenoh.settings import OVERRIDES, read_router_settings, read_settings
+from linkwright.wire.zenoh.settings import OVERRIDES_VARIABLE, read_router_settings, read_settings
 
 DROP_SETTING = "transport/link/tx/queue/congestion_control/drop"
 
@@ -30,7 +30,7 @@ def test_sessions_wait_longer_before_drop_than_routers():
 
 @pytest.mark.parametrize("wait", [0, 1_000_000])
 def test_wait_before_drop_can_be_configured(wait):
-    settings = read_settings({OVERRIDES: f"{DROP_SETTING}/wait_before_drop={wait}"})
+    settings = read_settings({OVERRIDES_VARIABLE: f"{DROP_SETTING}/wait_before_drop={wait}"})
     assert drop_settings(settings)["wait_before_drop"] == wait
 
 
@@ -47,7 +47,7 @@ def test_failed_session_opening_is_reported_with_advice(router_port, override, m
         listener.listen()
         text = override.format(port=listener.getsockname()[1], free=router_port)
         with pytest.raises(LinkwrightError) as refused:
-            open_session(build_config(read_settings({OVERRIDES: text})))
+            open_session(build_config(read_settings({OVERRIDES_VARIABLE: text})))
     (finding,) = refused.value.diagnostics
     assert finding.code == "DDS112"
     assert message in render(finding)

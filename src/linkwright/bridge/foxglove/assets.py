@@ -9,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.packages import PackageFinder, enclosing_package
 
 _PACKAGE = re.compile(r"package://([^/\s\"'%]+)/")
-_ENDINGS = frozenset(
+_SUFFIXES = frozenset(
     (".stl", ".dae", ".obj", ".glb", ".gltf", ".mtl", ".bin", ".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp", ".tga",
      ".tif", ".tiff", ".urdf", ".xacro")
 )  # fmt: skip
@@ -48,7 +48,7 @@ class Assets:
         relative = PurePosixPath(uri[match.end() :]) if match else PurePosixPath()
         if match is None or match[1] not in self._packages:
             raise AssetRefusedError("only files of packages that a robot description names are served")
-        if relative.suffix.lower() not in _ENDINGS:
+        if relative.suffix.lower() not in _SUFFIXES:
             raise AssetRefusedError("only meshes and images are served")
         if ".." in relative.parts or relative.is_absolute() or "\0" in uri or "\\" in uri:
             raise AssetRefusedError("the path is outside its package")
@@ -58,14 +58,14 @@ class Assets:
             share = self._finder.find(match[1])
             if share is None:
                 raise AssetRefusedError(phrase("there is no package '{package}'", package=match[1]))
-            return _content(match[1], share, relative)
+            return _read_content(match[1], share, relative)
         except LinkwrightError as error:
             raise AssetRefusedError(error.diagnostics[0].message) from None
         except OSError as error:
             raise AssetRefusedError(error.strerror or str(error)) from None
 
 
-def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
+def _read_content(package: str, share: Path, relative: PurePosixPath) -> bytes:
     """Return the content of a file of a package, after following and checking links.
 
     colcon links some files to other folders of the package.
@@ -75,7 +75,7 @@ def _content(package: str, share: Path, relative: PurePosixPath) -> bytes:
         enclosing = enclosing_package(path.parent)
         if enclosing is None or enclosing[0] != package:
             raise AssetRefusedError("a link points outside the package")
-    if not path.is_file() or path.suffix.lower() not in _ENDINGS:
+    if not path.is_file() or path.suffix.lower() not in _SUFFIXES:
         raise AssetRefusedError("the file is neither a mesh nor an image")
     if path.stat().st_size > _MAX_SIZE:
         raise AssetRefusedError(f"the file is larger than {_MAX_SIZE // 2**20} MiB")

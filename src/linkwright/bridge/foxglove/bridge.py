@@ -13,8 +13,8 @@ from linkwright.bridge.foxglove.assets import Assets
 from linkwright.bridge.foxglove.clients import Client
 from linkwright.bridge.foxglove.names import NameFilter
 from linkwright.bridge.foxglove.origins import is_allowed_origin
-from linkwright.bridge.foxglove.parameters import Parameters, parameter_entry
-from linkwright.bridge.foxglove.protocol import ENCODING, SUBPROTOCOLS, time_frame
+from linkwright.bridge.foxglove.parameters import Parameters, make_parameter_entry
+from linkwright.bridge.foxglove.protocol import ENCODING, SUBPROTOCOLS, encode_time
 from linkwright.bridge.foxglove.services import Services
 from linkwright.bridge.foxglove.session import Session, SharedResources
 from linkwright.bridge.foxglove.topics import Channels
@@ -147,7 +147,7 @@ class FoxgloveBridge(SingleNode):
         if not watching:
             return
         entries = [
-            parameter_entry(f"{event.node}.{new_parameter.name}", plain_value(new_parameter.value))
+            make_parameter_entry(f"{event.node}.{new_parameter.name}", plain_value(new_parameter.value))
             for new_parameter in (*event.new_parameters, *event.changed_parameters)
         ]
         for session in watching:
@@ -156,7 +156,7 @@ class FoxgloveBridge(SingleNode):
                 session.client.send({"op": "parameterValues", "parameters": client_entries})
 
     def _on_clock(self, message: Any) -> None:
-        frame = time_frame(message.clock.nanoseconds)
+        frame = encode_time(message.clock.nanoseconds)
         for session in self._sessions:
             session.client.send_data(frame)
 

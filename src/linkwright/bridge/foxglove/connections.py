@@ -25,7 +25,7 @@ def find_connections(node: Node) -> Connections:
     return published, subscribed, served
 
 
-def connection_update(previous: Connections | None, current: Connections) -> dict[str, Any]:
+def make_connection_update(previous: Connections | None, current: Connections) -> dict[str, Any]:
     """Return the message with the changes to the connection graph.
 
     `previous` is None for a client that has no connection graph yet; the message then contains the entire graph.

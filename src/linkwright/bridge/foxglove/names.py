@@ -25,7 +25,7 @@ class NameFilter:
     """
 
     def __init__(self, parameter: str, expressions: Sequence[str]) -> None:
-        self._expressions = [_read(parameter, expression) for expression in expressions]
+        self._expressions = [_parse_expression(parameter, expression) for expression in expressions]
         self._decisions: dict[str, bool] = {}
 
     def accepts(self, name: str) -> bool:
@@ -47,7 +47,7 @@ class NameFilter:
             return False
 
 
-def _read(parameter: str, expression: str) -> Expression:
+def _parse_expression(parameter: str, expression: str) -> Expression:
     try:
         return Expression(expression)
     except ExpressionError as error:

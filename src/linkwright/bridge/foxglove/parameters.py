@@ -40,7 +40,7 @@ class Parameters:
                 node, _, parameter = name.partition(".")
                 by_node[node] = [*(by_node.get(node) or ()), parameter]
         else:
-            by_node = dict.fromkeys(self._nodes())
+            by_node = dict.fromkeys(self._find_nodes())
         self._remove_closed()
         results = await asyncio.gather(
             *(self._read_node(node, parameter_names) for node, parameter_names in by_node.items())
@@ -57,9 +57,9 @@ class Parameters:
         for entry in parameters:
             name = str(entry.get("name", ""))
             node, _, parameter = name.partition(".")
-            if parameter and node in self._nodes() and self._filter.accepts(name):
-                value = _value(entry)
-                await self._wait_for(self._client(node).set_parameters([Parameter(parameter, value=value)]))
+            if parameter and node in self._find_nodes() and self._filter.accepts(name):
+                value = _parse_value(entry)
+                await self._wait_for(self._get_client(node).set_parameters([Parameter(parameter, value=value)]))
 
     def close(self) -> None:
         """Close the clients of the parameter services."""
@@ -67,7 +67,7 @@ class Parameters:
             client.destroy()
         self._clients.clear()
 
-    def _nodes(self) -> list[str]:
+    def _find_nodes(self) -> list[str]:
         own_name = self._node.get_fully_qualified_name()
         services = {
             endpoint.name.removesuffix(_SERVICE)
@@ -77,13 +77,13 @@ class Parameters:
         return sorted(services - {own_name})
 
     def _remove_closed(self) -> None:
-        for node in self._clients.keys() - set(self._nodes()):
+        for node in self._clients.keys() - set(self._find_nodes()):
             self._clients.pop(node).destroy()
 
     async def _read_node(self, node: str, names: Sequence[str] | None) -> list[dict[str, Any]]:
-        if node not in self._nodes():
+        if node not in self._find_nodes():
             return []
-        client = self._client(node)
+        client = self._get_client(node)
         if names is None:
             listing = await self._wait_for(client.list_parameters())
             names = list(listing.result.names) if listing is not None else []
@@ -93,9 +93,9 @@ class Parameters:
         if response is None:
             return []
         pairs = zip(names, map(plain_value, response.values), strict=False)
-        return [parameter_entry(f"{node}.{name}", value) for name, value in pairs if value is not None]
+        return [make_parameter_entry(f"{node}.{name}", value) for name, value in pairs if value is not None]
 
-    def _client(self, node: str) -> AsyncParameterClient:
+    def _get_client(self, node: str) -> AsyncParameterClient:
         if node not in self._clients:
             self._clients[node] = AsyncParameterClient(self._node, node)
         return self._clients[node]
@@ -134,7 +134,7 @@ class ParameterSubscription:
         self._change(set(names), subscribes=True)
 
     def remove(self, names: Iterable[str]) -> None:
-        """Unsubscribe from parameters with these names, or from all parameters if there are no names."""
+        """Unsubscribe from parameters with these names, or from all if there are no names."""
         self._change(set(names), subscribes=False)
 
     def _change(self, names: set[str], *, subscribes: bool) -> None:
@@ -146,7 +146,7 @@ class ParameterSubscription:
             self._names |= names
 
 
-def parameter_entry(name: str, value: Any) -> dict[str, Any]:
+def make_parameter_entry(name: str, value: Any) -> dict[str, Any]:
     """Return a parameter as an entry of the protocol's parameter messages."""
     parameter: dict[str, Any] = {"name": name, "value": value}
     if isinstance(value, (bytes, bytearray)):
@@ -158,7 +158,7 @@ def parameter_entry(name: str, value: Any) -> dict[str, Any]:
     return parameter
 
 
-def _value(parameter: Mapping[str, Any]) -> Any:
+def _parse_value(parameter: Mapping[str, Any]) -> Any:
     value, type_name = parameter.get("value"), parameter.get("type")
     if type_name == "byte_array":
         return [bytes([byte]) for byte in base64.b64decode(str(value))]

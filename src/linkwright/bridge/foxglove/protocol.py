@@ -56,28 +56,28 @@ class ServiceRequest:
     data: bytes
 
 
-def message_data(subscription: int, time_ns: int, data: bytes) -> bytes:
+def encode_message(subscription: int, time_ns: int, data: bytes) -> bytes:
     """Encode a binary frame with a message of a channel."""
     return struct.pack("<BIQ", _MESSAGE, subscription, max(0, time_ns)) + data
 
 
-def time_frame(time_ns: int) -> bytes:
+def encode_time(time_ns: int) -> bytes:
     """Encode a binary frame with the time of the graph."""
     return struct.pack("<BQ", _TIME, max(0, time_ns))
 
 
-def service_response(service: int, call: int, data: bytes) -> bytes:
+def encode_service_response(service: int, call: int, data: bytes) -> bytes:
     """Encode a binary frame with the response of a service."""
     encoding = ENCODING.encode()
     return struct.pack("<BIII", _SERVICE_RESPONSE, service, call, len(encoding)) + encoding + data
 
 
-def asset(request: int, data: bytes) -> bytes:
+def encode_asset(request: int, data: bytes) -> bytes:
     """Encode a binary frame with an asset."""
     return struct.pack("<BIBI", _ASSET, request, 0, 0) + data
 
 
-def asset_error(request: int, reason: str) -> bytes:
+def encode_asset_error(request: int, reason: str) -> bytes:
     """Encode a binary frame with the reason why an asset is refused."""
     text = reason.encode()
     return struct.pack("<BIBI", _ASSET, request, 1, len(text)) + text
@@ -105,6 +105,6 @@ def read_frame(frame: bytes) -> ClientMessage | ServiceRequest:
     raise BadFrameError(f"unknown message code {opcode}")
 
 
-def status(level: StatusLevel, message: str) -> dict[str, Any]:
+def make_status(level: StatusLevel, message: str) -> dict[str, Any]:
     """Return a status message for the user of the client."""
     return {"op": "status", "level": int(level), "message": message}

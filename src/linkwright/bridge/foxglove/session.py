@@ -10,7 +10,7 @@ from typing import Any
 
 from linkwright.bridge.foxglove.assets import AssetRefusedError, Assets
 from linkwright.bridge.foxglove.clients import Client
-from linkwright.bridge.foxglove.connections import Connections, connection_update, find_connections
+from linkwright.bridge.foxglove.connections import Connections, find_connections, make_connection_update
 from linkwright.bridge.foxglove.names import NameFilter
 from linkwright.bridge.foxglove.parameters import Parameters, ParameterSubscription
 from linkwright.bridge.foxglove.protocol import (
@@ -18,11 +18,11 @@ from linkwright.bridge.foxglove.protocol import (
     ClientMessage,
     ServiceRequest,
     StatusLevel,
-    asset,
-    asset_error,
+    encode_asset,
+    encode_asset_error,
+    encode_service_response,
+    make_status,
     read_frame,
-    service_response,
-    status,
 )
 from linkwright.bridge.foxglove.services import CallFailedError, Services
 from linkwright.bridge.foxglove.topics import Channels, Forwarding, Publication
@@ -94,7 +94,7 @@ class Session:
         if self.watches_connections:
             current = find_connections(self.resources.node)
             if current != self._sent_connections:
-                self.client.send(connection_update(self._sent_connections, current))
+                self.client.send(make_connection_update(self._sent_connections, current))
                 self._sent_connections = current
 
     def close(self) -> None:
@@ -192,7 +192,7 @@ class Session:
             failure = {"serviceId": request.service, "callId": request.call, "message": str(error)}
             self.client.send({"op": "serviceCallFailure", **failure})
             return
-        self.client.send(service_response(request.service, request.call, response))
+        self.client.send(encode_service_response(request.service, request.call, response))
 
     async def _send_parameters(self, names: list[str], identity: str | None) -> None:
         values = await self.resources.parameters.get(names)
@@ -213,9 +213,9 @@ class Session:
         try:
             data = await asyncio.to_thread(self.resources.assets.read, uri)
         except AssetRefusedError as error:
-            self.client.send(asset_error(request, str(error)))
+            self.client.send(encode_asset_error(request, str(error)))
             return
-        self.client.send(asset(request, data))
+        self.client.send(encode_asset(request, data))
 
     def _send_status(self, text: str, level: StatusLevel = StatusLevel.ERROR) -> None:
-        self.client.send(status(level, text))
+        self.client.send(make_status(level, text))

@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.bridge.foxglove.clients import Client
 from linkwright.bridge.foxglove.names import NameFilter
-from linkwright.bridge.foxglove.protocol import ENCODING, SCHEMA_ENCODING, message_data
+from linkwright.bridge.foxglove.protocol import ENCODING, SCHEMA_ENCODING, encode_message
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import EndpointKind, MessageInfo, Node, Publisher, QoSProfile, Subscription
 from linkwright.graph.qos.compatibility import fit_profile
@@ -107,7 +107,7 @@ class Forwarding:
         self._client = client
         self._subscription_id = subscription_id
         self._subscription: Subscription[Any] = Subscription(
-            node.handle, get_message(channel.type_name), channel.topic, self._qos(), self._forward, raw=True
+            node.handle, get_message(channel.type_name), channel.topic, self._choose_qos(), self._forward, raw=True
         )
         node.handle.add(self._subscription)
 
@@ -115,7 +115,7 @@ class Forwarding:
         """Stop forwarding."""
         self._node.destroy_subscription(self._subscription)
 
-    def _qos(self) -> QoSProfile:
+    def _choose_qos(self) -> QoSProfile:
         offers = [
             endpoint.qos
             for endpoint in self._node.graph.endpoints()
@@ -127,7 +127,7 @@ class Forwarding:
 
     def _forward(self, data: bytes, info: MessageInfo) -> None:
         stamp = info.source_timestamp or self._node.get_clock().now().nanoseconds
-        self._client.send_data(message_data(self._subscription_id, stamp, bytes(data)))
+        self._client.send_data(encode_message(self._subscription_id, stamp, bytes(data)))
 
 
 class Publication:
@@ -146,7 +146,7 @@ class Publication:
         if channel.get("encoding") != ENCODING:
             raise ValueError(f"the encoding '{str(channel.get('encoding'))[:40]}' is not supported: use {ENCODING}")
         self._node = node
-        self._class: Any = get_message(_full_type(str(channel["schemaName"])))
+        self._class: Any = get_message(_get_full_type(str(channel["schemaName"])))
         self._publisher: Publisher[Any] = node.create_publisher(self._class, str(channel["topic"]), 10)
 
     def publish(self, data: bytes) -> None:
@@ -162,7 +162,7 @@ class Publication:
         self._node.destroy_publisher(self._publisher)
 
 
-def _full_type(name: str) -> str:
+def _get_full_type(name: str) -> str:
     """Return the full name of a message type.
 
     The short form ``std_msgs/String`` is also accepted.

@@ -43,7 +43,7 @@ def run_description(arguments: argparse.Namespace) -> int:
         an error.
     """
     from linkwright.bag import BagReader
-    from linkwright.bag.robot_description import recorded_description
+    from linkwright.bag.robot_description import find_recorded_description
 
     files = [word for word in arguments.words if ":=" not in word]
     if len(files) > 1:
@@ -54,7 +54,7 @@ def run_description(arguments: argparse.Namespace) -> int:
             print_diagnostics(bag.findings, sys.stderr)
             if files:
                 return _compare(bag, Path(files[0]), parse_assignments([w for w in arguments.words if ":=" in w]))
-            text = recorded_description(bag)
+            text = find_recorded_description(bag)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return FAILURE
@@ -72,7 +72,7 @@ def _compare(bag: BagReader, path: Path, values: dict[str, str]) -> int:
         LinkwrightError: the file or the recorded description cannot be read; BAG118, the recording has neither a
             description nor its hash.
     """
-    from linkwright.bag.robot_description import hash_of_description, recorded_description, recorded_hash
+    from linkwright.bag.robot_description import find_recorded_description, find_recorded_hash, hash_description
     from linkwright.descriptions.comparison import as_text
     from linkwright.descriptions.pairs import Model, Pair
     from linkwright.files.scratch_folders import ScratchFolder
@@ -80,12 +80,12 @@ def _compare(bag: BagReader, path: Path, values: dict[str, str]) -> int:
 
     finder = PackageFinder(start=[path.absolute().parent, Path.cwd()])
     new = Model(path.absolute(), values, finder)
-    text = recorded_description(bag)
+    text = find_recorded_description(bag)
     if text is None:
-        known_hash = recorded_hash(bag)
+        known_hash = find_recorded_hash(bag)
         if known_hash is None:
             raise LinkwrightError(_missing_description_error(str(bag.path)))
-        return _compare_hashes(known_hash, hash_of_description(new.read().text))
+        return _compare_hashes(known_hash, hash_description(new.read().text))
     with ScratchFolder("recorded") as folder:
         recorded = Path(folder).resolve() / "robot.urdf"
         recorded.write_text(text, encoding="utf-8")

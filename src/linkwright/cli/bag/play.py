@@ -126,7 +126,7 @@ def run_play(arguments: argparse.Namespace) -> int:
         clock_topics=[_to_absolute_name(name) for name in arguments.clock_topics],
         clock_before_all=arguments.clock_topics_all,
         until_ns=_compute_until_ns(arguments),
-        without=[_to_absolute_name(name) for name in arguments.exclude_topics],
+        excluded_topics=[_to_absolute_name(name) for name in arguments.exclude_topics],
         loop=arguments.loop,
         clock_hz=arguments.clock,
         delay=arguments.delay,

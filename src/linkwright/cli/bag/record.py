@@ -208,15 +208,15 @@ def _read_selection(arguments: argparse.Namespace) -> TopicSelection:
     from linkwright.bag import TopicSelection
 
     return TopicSelection(
-        everything=arguments.all or arguments.all_topics,
+        all_topics=arguments.all or arguments.all_topics,
         names=_make_absolute(*arguments.names, *arguments.topics),
         types=arguments.topic_types,
         pattern=arguments.regex,
         without_names=_make_absolute(*arguments.exclude_topics),
         without_types=arguments.exclude_topic_types,
         without_pattern=arguments.exclude,
-        hidden=arguments.include_hidden_topics,
-        every_service=arguments.all or arguments.all_services,
+        include_hidden=arguments.include_hidden_topics,
+        all_services=arguments.all or arguments.all_services,
         services=_make_absolute(*arguments.services),
         without_services=_make_absolute(*arguments.exclude_services),
     )

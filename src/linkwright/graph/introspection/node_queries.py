@@ -52,10 +52,10 @@ class TypeDescriptions:
         if type_name is None:
             response.failure_reason = "Type not currently in use by this node"
             return response
-        from linkwright.messages.definitions.hashing import type_description
+        from linkwright.messages.definitions.hashing import make_type_description
         from linkwright.messages.definitions.library import LIBRARY
 
-        description = type_description(LIBRARY.definition(type_name))
+        description = make_type_description(LIBRARY.definition(type_name))
         referenced_types = description["referenced_type_descriptions"]
         response.type_description = _get_message_class("TypeDescription")(
             type_description=_to_type_message(description["type_description"]),

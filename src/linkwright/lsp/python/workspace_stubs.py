@@ -57,6 +57,6 @@ class WorkspaceStubs:
         with use_finder(finder):
             for package, share in finder.packages().items():
                 names = [f"{package}/{kind}/{name}" for kind in KINDS for name in find_interface_files(share, kind)]
-                if names and package not in catalog.packages():
+                if names and package not in catalog.list_packages():
                     stubs |= package_stubs(package, names, library)
         return stubs

@@ -28,7 +28,7 @@ class Alignment(NamedTuple):
     modulus: int
     remainder: int
 
-    def after(self, size: int) -> Alignment:
+    def advance(self, size: int) -> Alignment:
         """Return the position that is `size` bytes further."""
         return Alignment(self.modulus, (self.remainder + size) % self.modulus)
 
@@ -36,7 +36,7 @@ class Alignment(NamedTuple):
         """Return the number of bytes up to the next multiple of `size`, or None if it is not known."""
         return (-self.remainder) % size if self.modulus >= size else None
 
-    def common(self, other: Alignment) -> Alignment:
+    def combine(self, other: Alignment) -> Alignment:
         """Return the alignment that holds for both of two possible positions."""
         modulus = min(self.modulus, other.modulus)
         while (self.remainder - other.remainder) % modulus:
@@ -65,11 +65,11 @@ class Facts(NamedTuple):
 _facts: dict[str, Facts] = {}
 
 
-def facts(structure: Structure) -> Facts:
+def get_layout_facts(structure: Structure) -> Facts:
     """Return the layout properties of a structure."""
     layout_facts = _facts.get(structure.type_name)
     if layout_facts is None:
-        facts_of_fields = [field_facts(field) for field in structure.wire_fields]
+        facts_of_fields = [compute_field_facts(field) for field in structure.wire_fields]
         layout_facts = Facts(
             sum(f.min_size for f in facts_of_fields),
             sum(f.leaf_count for f in facts_of_fields),
@@ -79,15 +79,17 @@ def facts(structure: Structure) -> Facts:
     return layout_facts
 
 
-def field_facts(field: Field) -> Facts:
+def compute_field_facts(field: Field) -> Facts:
     """Return the layout properties of a field."""
     kind = field.type
     primitive = PRIMITIVES.get(kind.base)
     if kind.container is Container.SEQUENCE:
-        leaves = 1 if primitive is not None else 1 + facts(LIBRARY.structure(kind.base)).leaf_count
+        leaves = 1 if primitive is not None else 1 + get_layout_facts(LIBRARY.structure(kind.base)).leaf_count
         return Facts(4, leaves, 4)
     item_facts = (
-        Facts(primitive.size, 1, primitive.size) if primitive is not None else facts(LIBRARY.structure(kind.base))
+        Facts(primitive.size, 1, primitive.size)
+        if primitive is not None
+        else get_layout_facts(LIBRARY.structure(kind.base))
     )
     if kind.container is Container.ARRAY:
         assert kind.size is not None

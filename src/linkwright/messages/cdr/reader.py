@@ -16,7 +16,14 @@ from itertools import count
 from typing import Any, Literal
 
 from linkwright.messages.cdr import values as cdr_values
-from linkwright.messages.cdr.layout import ANYWHERE, MAX_INLINE_LEAVES, MAX_LOOP_DEPTH, START, Alignment, facts
+from linkwright.messages.cdr.layout import (
+    ANYWHERE,
+    MAX_INLINE_LEAVES,
+    MAX_LOOP_DEPTH,
+    START,
+    Alignment,
+    get_layout_facts,
+)
 from linkwright.messages.definitions.interfaces import Container, Field, FieldType, Primitive, Structure
 from linkwright.messages.definitions.library import LIBRARY
 
@@ -104,9 +111,9 @@ class _ReaderCode:
     # --- structures and fields ------------------------------------------------------------------------------
 
     def add_creation(self, structure: Structure) -> str:
-        """Generate code that creates an object for a structure, and return the name of its variable."""
+        """Generate code that creates a structure's object, and return its variable's name."""
         name = f"m{next(self._names)}"
-        self._add_line(f"{name} = new({self._constant_name(self._class_of(structure), 'C')})")
+        self._add_line(f"{name} = new({self._name_constant(self._class_of(structure), 'C')})")
         return name
 
     def structure(self, structure: Structure, target: str) -> None:
@@ -120,16 +127,16 @@ class _ReaderCode:
         if kind.container is Container.ONE:
             self._read_single(field.name, kind, target)
         elif kind.container is Container.ARRAY:
-            self._array(field, target)
+            self._read_array(field, target)
         else:
-            self._sequence(field, target)
+            self._read_sequence(field, target)
 
     def _read_single(self, name: str, kind: FieldType, target: str) -> None:
         primitive = kind.primitive
         if primitive is None:
             self._read_nested(kind, target)
         elif primitive.python is str:
-            self._text(name, kind, target)
+            self._read_text(name, kind, target)
         elif primitive.python is bool:
             value = f"b{next(self._names)}"
             self._read_primitive("B", 1, value)
@@ -140,17 +147,17 @@ class _ReaderCode:
 
     def _read_nested(self, kind: FieldType, target: str) -> None:
         structure = LIBRARY.structure(kind.base)
-        if facts(structure).leaf_count > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
+        if get_layout_facts(structure).leaf_count > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
             self._write_position()
             part = _compile_part(structure, self._class_of, self._order)
-            self._add_line(f"{target}, p = {self._constant_name(part, 'R')}(d, p, e)")
+            self._add_line(f"{target}, p = {self._name_constant(part, 'R')}(d, p, e)")
             self.alignment = ANYWHERE
         else:
             name = self.add_creation(structure)
             self._add_line(f"{target} = {name}")
             self.structure(structure, name)
 
-    def _text(self, name: str, kind: FieldType, target: str) -> None:
+    def _read_text(self, name: str, kind: FieldType, target: str) -> None:
         length = self._read_length()
         if kind.base == "wstring":
             self._add_line(f"{target}, p = wide(d, p, {length}, {self._order!r})")
@@ -166,7 +173,7 @@ class _ReaderCode:
         if kind.string_bound is not None:
             self._add_line(f"if len({target}) > {kind.string_bound}: raise_too_long({name!r}, {kind.string_bound})")
 
-    def _array(self, field: Field, target: str) -> None:
+    def _read_array(self, field: Field, target: str) -> None:
         kind, primitive, size = field.type, field.type.primitive, field.type.size
         assert size is not None
         if kind.is_numeric_array:
@@ -176,8 +183,8 @@ class _ReaderCode:
             import numpy as np
 
             dtype = np.dtype(primitive.dtype).newbyteorder(self._order)
-            function, element = self._constant_name(np.frombuffer, "F"), self._constant_name(dtype, "T")
-            data = f"{function}(d, {element}, {size}, {self._position_expression()})"
+            function, element = self._name_constant(np.frombuffer, "F"), self._name_constant(dtype, "T")
+            data = f"{function}(d, {element}, {size}, {self._make_position_expression()})"
             native = f".astype({primitive.dtype!r})" if self._order == ">" else ".copy()"
             self._add_line(f"{target} = {data}{native}")
             self._skip(size * primitive.size)
@@ -187,7 +194,7 @@ class _ReaderCode:
         else:
             self._read_repeated(field, target, str(size))
 
-    def _sequence(self, field: Field, target: str) -> None:
+    def _read_sequence(self, field: Field, target: str) -> None:
         kind, primitive = field.type, field.type.primitive
         length = self._read_length()
         if kind.size is not None:
@@ -203,7 +210,7 @@ class _ReaderCode:
             if kind.string_bound is not None:
                 self._add_line(f"check_bounds({field.name!r}, {target}, {kind.string_bound})")
         else:
-            min_size = 4 if primitive is not None else facts(LIBRARY.structure(kind.base)).min_size
+            min_size = 4 if primitive is not None else get_layout_facts(LIBRARY.structure(kind.base)).min_size
             self._add_line(f"if {length} * {min_size} > e - p: raise_truncated()")
             self._read_repeated(field, target, length)
 
@@ -250,7 +257,7 @@ class _ReaderCode:
                 self._read_single(field.name, item_type, value)
                 self._write_position()
                 self._add_line(f"{values}.append({value})")
-            common_alignment = start_alignment.common(self.alignment)
+            common_alignment = start_alignment.combine(self.alignment)
             if common_alignment == start_alignment:
                 break
             start_alignment = common_alignment
@@ -274,7 +281,7 @@ class _ReaderCode:
     def _read_primitive(self, code: str, size: int, target: str) -> None:
         self._align(size)
         self._run.append((code, target))
-        self.alignment = self.alignment.after(size)
+        self.alignment = self.alignment.advance(size)
 
     def _align(self, size: int) -> None:
         padding = self.alignment.padding(size)
@@ -287,7 +294,7 @@ class _ReaderCode:
                 self._run.append((f"{padding}x", ""))
             else:
                 self._skip_bytes(padding)
-            self.alignment = self.alignment.after(padding)
+            self.alignment = self.alignment.advance(padding)
 
     def end_run(self) -> None:
         """Generate the code that unpacks the fields of the current run, and start a new run."""
@@ -296,9 +303,8 @@ class _ReaderCode:
         run_struct = struct.Struct(self._order + "".join(code for code, _ in self._run))
         targets = ", ".join(target for _, target in self._run if target)
         comma = "" if "," in targets else ","
-        self._add_line(
-            f"{targets}{comma} = {self._constant_name(run_struct.unpack_from, 'U')}(d, {self._position_expression()})"
-        )
+        unpack = self._name_constant(run_struct.unpack_from, "U")
+        self._add_line(f"{targets}{comma} = {unpack}(d, {self._make_position_expression()})")
         self._skip_bytes(run_struct.size)
         self._run = []
         for line in self._after_run:
@@ -307,7 +313,7 @@ class _ReaderCode:
 
     def _skip(self, size: int) -> None:
         self._skip_bytes(size)
-        self.alignment = self.alignment.after(size)
+        self.alignment = self.alignment.advance(size)
 
     def _skip_bytes(self, size: int) -> None:
         if self._known_position is None:
@@ -315,7 +321,7 @@ class _ReaderCode:
         else:
             self._known_position += size
 
-    def _position_expression(self) -> str:
+    def _make_position_expression(self) -> str:
         return "p" if self._known_position is None else str(self._known_position)
 
     def _write_position(self) -> None:
@@ -333,7 +339,7 @@ class _ReaderCode:
     def _add_line(self, text: str) -> None:
         self._lines.append("    " * self._depth + text + "\n")
 
-    def _constant_name(self, value: Any, letter: str) -> str:
+    def _name_constant(self, value: Any, letter: str) -> str:
         name = f"{letter}{len(self._scope)}"
         self._scope[name] = value
         return name

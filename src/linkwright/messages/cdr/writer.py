@@ -19,13 +19,13 @@ from linkwright.messages.cdr.layout import (
     MAX_LOOP_DEPTH,
     START,
     Alignment,
-    facts,
-    field_facts,
+    compute_field_facts,
+    get_layout_facts,
 )
 from linkwright.messages.definitions.interfaces import EMPTY_MEMBER, Container, Field, FieldType, Primitive, Structure
 from linkwright.messages.definitions.library import LIBRARY
 
-_HEADER = 0x100
+_HEADER_BYTES = 0x100
 """The four header bytes of a message, 00 01 00 00, as a little-endian number."""
 
 
@@ -61,7 +61,7 @@ _part_writers: dict[str, Callable[..., int]] = {}
 def compile_writer(structure: Structure) -> Callable[[Any], bytes]:
     """Return a new function that serializes a message to bytes, including the header."""
     code = _WriterCode(START)
-    code.pack("I", str(_HEADER), alignment=START)
+    code.pack("I", str(_HEADER_BYTES), alignment=START)
     code.structure(structure, "m", 0)
     result = code.result()
     writer: Callable[[Any], bytes] = code.compile_function(
@@ -142,7 +142,9 @@ class _WriterCode:
         fields = structure.wire_fields
         for index, field in enumerate(fields):
             next_alignment = (
-                field_facts(fields[index + 1]).first_alignment if index + 1 < len(fields) else following_alignment
+                compute_field_facts(fields[index + 1]).first_alignment
+                if index + 1 < len(fields)
+                else following_alignment
             )
             value = "0" if field.name == EMPTY_MEMBER else f"{source}._{field.name}"
             self._write_field(field, value, next_alignment)
@@ -190,11 +192,11 @@ class _WriterCode:
 
     def _write_nested(self, kind: FieldType, value: str, following_alignment: int) -> None:
         structure = LIBRARY.structure(kind.base)
-        if facts(structure).leaf_count > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
+        if get_layout_facts(structure).leaf_count > MAX_INLINE_LEAVES or self._loops >= MAX_LOOP_DEPTH:
             self.flush()
             self.sync()
             self.needs_position = self._uses_list = True
-            self._add_line(f"p = {self._constant_name(_compile_part(structure), 'W')}(o, {value}, p)")
+            self._add_line(f"p = {self._name_constant(_compile_part(structure), 'W')}(o, {value}, p)")
             self.alignment = ANYWHERE
         else:
             self.structure(
@@ -266,7 +268,7 @@ class _WriterCode:
                 write_item(item)
                 self.flush()
                 self.sync()
-            common_alignment = start_alignment.common(self.alignment)
+            common_alignment = start_alignment.combine(self.alignment)
             if common_alignment == start_alignment:
                 break
             start_alignment = common_alignment
@@ -327,12 +329,12 @@ class _WriterCode:
             codes = "".join(code for code, _ in self._run)
             values = ", ".join(value for _, value in self._run if value)
             pack = struct.Struct("<" + codes).pack
-            self._pieces.append(f"{self._constant_name(pack, 'P')}({values})")
+            self._pieces.append(f"{self._name_constant(pack, 'P')}({values})")
             self._run = []
 
     def _advance(self, size: int) -> None:
         self._unsynced_sizes.append(str(size))
-        self.alignment = self.alignment.after(size)
+        self.alignment = self.alignment.advance(size)
 
     # --- lines and names ------------------------------------------------------------------------------------
 
@@ -344,7 +346,7 @@ class _WriterCode:
         self._add_line(f"{name} = {expression}")
         return name
 
-    def _constant_name(self, value: Any, letter: str) -> str:
+    def _name_constant(self, value: Any, letter: str) -> str:
         name = f"{letter}{len(self._scope)}"
         self._scope[name] = value
         return name

@@ -18,10 +18,10 @@ from linkwright.messages.definitions.interfaces import (
     FieldType,
     Service,
     Structure,
-    event_of,
-    feedback_message_of,
-    get_result_of,
-    send_goal_of,
+    make_event_structure,
+    make_feedback_structure,
+    make_get_result_service,
+    make_send_goal_service,
 )
 from linkwright.messages.definitions.library import LIBRARY
 
@@ -51,10 +51,10 @@ def type_hash(interface: Any) -> str:
 
 @cache
 def _hash_by_name(type_name: str) -> str:
-    return hash_of(type_description(LIBRARY.definition(type_name)))
+    return compute_hash(make_type_description(LIBRARY.definition(type_name)))
 
 
-def hash_of(description: dict[str, Any]) -> str:
+def compute_hash(description: dict[str, Any]) -> str:
     """Return the RIHS01 hash of a type description."""
     import hashlib  # imported here because a process without network peers does not need hashes
     import json
@@ -62,34 +62,34 @@ def hash_of(description: dict[str, Any]) -> str:
     return "RIHS01_" + hashlib.sha256(json.dumps(description, separators=(", ", ": ")).encode()).hexdigest()
 
 
-def type_description(definition: Definition) -> dict[str, Any]:
+def make_type_description(definition: Definition) -> dict[str, Any]:
     """Return the description of a type and of all nested types.
 
     It has the fields of a type_description_interfaces/msg/TypeDescription, without default values.
     """
-    description = _individual_description(definition)
+    description = _describe_definition(definition)
     nested_descriptions: dict[str, dict[str, Any]] = {}
-    pending = _nested_names(description)
+    pending = _find_nested_names(description)
     while pending:
         name = pending.pop()
         if name not in nested_descriptions:
-            nested_descriptions[name] = _individual_description(LIBRARY.definition(name))
-            pending += _nested_names(nested_descriptions[name])
+            nested_descriptions[name] = _describe_definition(LIBRARY.definition(name))
+            pending += _find_nested_names(nested_descriptions[name])
     return {
         "type_description": description,
         "referenced_type_descriptions": [nested_descriptions[name] for name in sorted(nested_descriptions)],
     }
 
 
-def _nested_names(description: dict[str, Any]) -> list[str]:
+def _find_nested_names(description: dict[str, Any]) -> list[str]:
     return [name for field in description["fields"] if (name := field["type"]["nested_type_name"])]
 
 
-def _individual_description(definition: Definition) -> dict[str, Any]:
-    return {"type_name": definition.type_name, "fields": [_field_description(field) for field in _members(definition)]}
+def _describe_definition(definition: Definition) -> dict[str, Any]:
+    return {"type_name": definition.type_name, "fields": [_describe_field(field) for field in _get_fields(definition)]}
 
 
-def _members(definition: Definition) -> tuple[Field, ...]:
+def _get_fields(definition: Definition) -> tuple[Field, ...]:
     """Return the fields of a definition.
 
     For a service or action, there is a field for each of its parts.
@@ -100,7 +100,7 @@ def _members(definition: Definition) -> tuple[Field, ...]:
         parts: dict[str, Definition] = {
             "request_message": definition.request,
             "response_message": definition.response,
-            "event_message": event_of(definition),
+            "event_message": make_event_structure(definition),
         }
     else:
         assert isinstance(definition, Action)
@@ -108,14 +108,14 @@ def _members(definition: Definition) -> tuple[Field, ...]:
             "goal": definition.goal,
             "result": definition.result,
             "feedback": definition.feedback,
-            "send_goal_service": send_goal_of(definition),
-            "get_result_service": get_result_of(definition),
-            "feedback_message": feedback_message_of(definition),
+            "send_goal_service": make_send_goal_service(definition),
+            "get_result_service": make_get_result_service(definition),
+            "feedback_message": make_feedback_structure(definition),
         }
     return tuple(Field(name, FieldType(part.type_name)) for name, part in parts.items())
 
 
-def _field_description(field: Field) -> dict[str, Any]:
+def _describe_field(field: Field) -> dict[str, Any]:
     kind, primitive = field.type, field.type.primitive
     type_id = _NESTED_TYPE_ID if primitive is None else primitive.type_id
     if kind.string_bound is not None:

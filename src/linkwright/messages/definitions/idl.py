@@ -20,9 +20,9 @@ from linkwright.messages.definitions.interfaces import (
     Field,
     FieldType,
     Structure,
-    interface_of,
+    build_interface,
 )
-from linkwright.messages.definitions.parser import SECTIONS, KnownMessages, LiteralFault, read_constant, read_default
+from linkwright.messages.definitions.parser import SECTIONS, KnownMessages, LiteralError, read_constant, read_default
 from linkwright.messages.errors import DefinitionError
 
 _TOKEN_PATTERN = re.compile(
@@ -71,7 +71,7 @@ def parse_idl(source: SourceText, type_name: str, known_messages: KnownMessages)
         DefinitionError: MSG120 for text that cannot be parsed; MSG111, MSG114, MSG118 and MSG119 as for other files.
     """
     reader = _Reader(source, known_messages)
-    reader.definitions(())
+    reader.read_definitions(())
     return _assemble(reader, source, type_name)
 
 
@@ -86,7 +86,7 @@ def parse_idl_structures(source: SourceText) -> tuple[Structure, ...]:
         DefinitionError: MSG114, MSG119 or MSG120, for text that cannot be parsed.
     """
     reader = _Reader(source, None)
-    reader.definitions(())
+    reader.read_definitions(())
     fields, constants = reader.structures, reader.constants
     return tuple(
         Structure(name.replace("/", "::"), tuple(fields.get(name, ())), tuple(constants.get(name, ())))
@@ -105,7 +105,7 @@ def _assemble(reader: _Reader, source: SourceText, type_name: str) -> Definition
             raise DefinitionError(Diagnostic("MSG118", message, source.span(0), hint=hint, source=source))
         fields = tuple(field for field in reader.structures[name] if field.name != EMPTY_MEMBER)
         structures.append(Structure(name, fields, tuple(reader.constants.get(name, ()))))
-    return interface_of(type_name, structures)
+    return build_interface(type_name, structures)
 
 
 class _Reader:
@@ -139,26 +139,26 @@ class _Reader:
 
     # --- definitions ----------------------------------------------------------------------------------------
 
-    def definitions(self, scope: tuple[str, ...]) -> None:
+    def read_definitions(self, scope: tuple[str, ...]) -> None:
         """Parse the content of a module, or of the file."""
-        while self._now.kind != "end" and self._now.text != "}":
+        while self._current_token.kind != "end" and self._current_token.text != "}":
             self._read_annotations()
             keyword = self._expect_name()
             if keyword.text == "module":
                 name = self._expect_name().text
                 self._expect("{")
-                self.definitions((*scope, name))
+                self.read_definitions((*scope, name))
                 self._expect("}")
                 self._expect(";")
             elif keyword.text == "struct":
                 self._read_structure(scope)
             elif keyword.text == "typedef":
-                kind = self._type()
+                kind = self._read_type()
                 name, kind = self._parse_declarator(kind)
                 self._typedefs[name] = kind
                 self._expect(";")
             elif keyword.text == "const":
-                self._constant(scope)
+                self._read_constant(scope)
             elif keyword.text == "enum" and self._known is None:
                 self._read_enumeration(scope)
             elif keyword.text == "union" and self._known is None:
@@ -176,13 +176,13 @@ class _Reader:
         name = "/".join((*scope, self._expect_name().text))
         fields: list[Field] = []
         self._expect("{")
-        while self._now.text != "}":
+        while self._current_token.text != "}":
             default = self._read_annotations()
-            kind = self._type()
+            kind = self._read_type()
             while True:
                 field_name, field_type = self._parse_declarator(kind)
-                fields.append(Field(field_name, field_type, self._default(default, field_type)))
-                if self._now.text != ",":
+                fields.append(Field(field_name, field_type, self._parse_default(default, field_type)))
+                if self._current_token.text != ",":
                     break
                 self._expect(",")
             self._expect(";")
@@ -196,14 +196,14 @@ class _Reader:
         values: list[Constant] = []
         number = 0
         self._expect("{")
-        while self._now.text != "}":
+        while self._current_token.text != "}":
             start = self._at
             self._read_annotations()
             given = [token.text for token in self._tokens[start : self._at] if token.text.isdigit()]
             number = int(given[-1]) if given else number
             values.append(Constant(self._expect_name().text, ENUMERATION, number))
             number += 1
-            if self._now.text != "}":
+            if self._current_token.text != "}":
                 self._expect(",")
         self._expect("}")
         self._expect(";")
@@ -214,27 +214,27 @@ class _Reader:
         name = "/".join((*scope, self._expect_name().text))
         self._expect("switch")
         self._expect("(")
-        fields = [Field("switch", self._type(), None)]
+        fields = [Field("switch", self._read_type(), None)]
         self._expect(")")
         self._expect("{")
-        while self._now.text != "}":
-            while self._now.text in ("case", "default"):
-                if self._next().text == "case":
-                    self._value()
+        while self._current_token.text != "}":
+            while self._current_token.text in ("case", "default"):
+                if self._read_token().text == "case":
+                    self._read_value()
                 self._expect(":")
             self._read_annotations()
-            field_name, field_type = self._parse_declarator(self._type())
+            field_name, field_type = self._parse_declarator(self._read_type())
             fields.append(Field(field_name, field_type, None))
             self._expect(";")
         self._expect("}")
         self._expect(";")
         self.structures[name] = fields
 
-    def _constant(self, scope: tuple[str, ...]) -> None:
-        kind = self._type()
+    def _read_constant(self, scope: tuple[str, ...]) -> None:
+        kind = self._read_type()
         name = self._expect_name().text
         self._expect("=")
-        value = self._value()
+        value = self._read_value()
         self._expect(";")
         owner = "/".join(scope).removesuffix("_Constants")
         if kind.primitive is None or kind.container is not Container.ONE:
@@ -245,8 +245,8 @@ class _Reader:
                 len(value.text),
             )
         try:
-            constant = Constant(name, kind.base, read_constant(_literal_text(value), kind.base))
-        except LiteralFault as fault:
+            constant = Constant(name, kind.base, read_constant(_format_literal(value), kind.base))
+        except LiteralError as fault:
             self._fail(
                 "MSG114",
                 phrase("the value of '{name}' is invalid: {fault}", name=name, fault=fault),
@@ -258,51 +258,51 @@ class _Reader:
     def _read_annotations(self) -> _Token | None:
         """Skip annotations, and return the value of ``@default (value=...)``, or None."""
         default = None
-        while self._now.text == "@":
+        while self._current_token.text == "@":
             self._expect("@")
             name = self._expect_name().text
-            if self._now.text != "(":
+            if self._current_token.text != "(":
                 continue
             self._expect("(")
             depth = 1
             while depth:
-                token = self._next()
+                token = self._read_token()
                 if token.kind == "end":
                     self._fail("MSG120", phrase("the file ends inside an annotation"), token.start, 0)
                 depth += {"(": 1, ")": -1}.get(token.text, 0)
                 if name == "default" and token.text == "=":
-                    default = self._now
+                    default = self._current_token
         return default
 
-    def _default(self, token: _Token | None, kind: FieldType) -> object | None:
+    def _parse_default(self, token: _Token | None, kind: FieldType) -> object | None:
         if token is None:
             return None
-        text = _literal_text(token)
+        text = _format_literal(token)
         if kind.container is not Container.ONE:
             # rosidl writes the default of a list as a string: "(1, 2, 3)".
             content = text[1:-1] if text[:1] in {'"', "'"} else text
             text = "[" + content.strip().removeprefix("(").removesuffix(")") + "]"
         try:
             return read_default(text, kind)
-        except LiteralFault as fault:
+        except LiteralError as fault:
             self._fail(
                 "MSG114", phrase("the default value is invalid: {fault}", fault=fault), token.start, len(token.text)
             )
 
     # --- types ----------------------------------------------------------------------------------------------
 
-    def _type(self) -> FieldType:
+    def _read_type(self) -> FieldType:
         token = self._expect_name()
         keywords = [token.text]
-        while keywords[-1] in _PRIMITIVE_KEYWORDS and self._now.text in _PRIMITIVE_KEYWORDS:
+        while keywords[-1] in _PRIMITIVE_KEYWORDS and self._current_token.text in _PRIMITIVE_KEYWORDS:
             keywords.append(self._expect_name().text)
         text = " ".join(keywords)
         if text in _PRIMITIVES:
             return FieldType(_PRIMITIVES[text])
         if text in {"string", "wstring"}:
-            return FieldType(text, self._read_bound() if self._now.text == "<" else None)
+            return FieldType(text, self._read_bound() if self._current_token.text == "<" else None)
         if text == "sequence":
-            return self._sequence(token)
+            return self._read_sequence(token)
         if text in self._typedefs:
             return self._typedefs[text]
         if text in _UNSUPPORTED_TYPES:
@@ -317,15 +317,15 @@ class _Reader:
                        did_you_mean(text, [*_PRIMITIVES, "string", "sequence", *self._typedefs]))  # fmt: skip
         name = "/".join(parts)
         if name not in self.structures and not self._known.has_message(name):
-            hint = self._known.hint_for(name)
+            hint = self._known.find_hint(name)
             self._fail("MSG111", phrase("there is no message '{name}'", name=name), token.start, len(text), hint)
         return FieldType(name)
 
-    def _sequence(self, token: _Token) -> FieldType:
+    def _read_sequence(self, token: _Token) -> FieldType:
         self._expect("<")
-        item_type = self._type()
+        item_type = self._read_type()
         size = None
-        if self._now.text == ",":
+        if self._current_token.text == ",":
             self._expect(",")
             size = self._read_size()
         self._expect(">")
@@ -341,12 +341,12 @@ class _Reader:
         The type includes an array size that follows the name.
         """
         token = self._expect_name()
-        if self._now.text != "[":
+        if self._current_token.text != "[":
             return token.text, kind
         self._expect("[")
         size = self._read_size()
         self._expect("]")
-        if kind.container is not Container.ONE or self._now.text == "[":
+        if kind.container is not Container.ONE or self._current_token.text == "[":
             self._fail("MSG120", phrase("arrays of arrays and sequences are not supported in messages"), token.start,
                        len(token.text))  # fmt: skip
         return token.text, FieldType(kind.base, kind.string_bound, Container.ARRAY, size)
@@ -358,7 +358,7 @@ class _Reader:
         return bound
 
     def _read_size(self) -> int:
-        token = self._next()
+        token = self._read_token()
         if not token.text.isdigit() or int(token.text) == 0:
             self._fail(
                 "MSG119",
@@ -371,29 +371,29 @@ class _Reader:
     # --- tokens ---------------------------------------------------------------------------------------------
 
     @property
-    def _now(self) -> _Token:
+    def _current_token(self) -> _Token:
         return self._tokens[self._at]
 
-    def _next(self) -> _Token:
+    def _read_token(self) -> _Token:
         token = self._tokens[self._at]
         if token.kind != "end":
             self._at += 1
         return token
 
     def _expect_name(self) -> _Token:
-        token = self._next()
+        token = self._read_token()
         if token.kind != "name":
             self._unexpected_token_error(token, phrase("a name"))
         return token
 
-    def _value(self) -> _Token:
-        token = self._next()
+    def _read_value(self) -> _Token:
+        token = self._read_token()
         if token.kind not in {"number", "text", "name"}:
             self._unexpected_token_error(token, phrase("a value"))
         return token
 
     def _expect(self, mark: str) -> None:
-        token = self._next()
+        token = self._read_token()
         if token.text != mark:
             self._unexpected_token_error(token, quoted(mark))
 
@@ -411,7 +411,7 @@ class _Reader:
         raise DefinitionError(Diagnostic(code, message, span, hint=hint, source=self._source))
 
 
-def _literal_text(token: _Token) -> str:
+def _format_literal(token: _Token) -> str:
     """Return the text of a literal as a ``.msg`` file would contain it."""
     if token.kind == "text":
         return token.text.removeprefix("L")

@@ -27,7 +27,7 @@ class InterfaceName(NamedTuple):
 
 
 def split_name(text: str) -> InterfaceName | None:
-    """Return the parts of ``package/kind/Name`` or ``package/Name``, or None for any other text."""
+    """Return the parts of ``package/kind/Name`` or ``package/Name``, or None for other texts."""
     parts = text.split("/")
     if len(parts) == 3 and parts[1] in KINDS:
         package, kind, name = parts
@@ -67,7 +67,7 @@ def _is_words(text: str) -> bool:
     return text.isascii() and text[:1].isalpha() and all(word.isalnum() for word in text.split("_"))
 
 
-def snake_case(name: str) -> str:
+def to_snake_case(name: str) -> str:
     """Return the snake_case form of an interface's name, as rosidl uses it for modules.
 
     ``JointState`` gives ``joint_state``, and ``TFMessage`` gives ``tf_message``.
@@ -88,7 +88,7 @@ def python_module(type_name: str) -> str:
     For example, all classes of SetBool are in ``std_srvs.srv._set_bool``.
     """
     package, kind, name = type_name.split("/")
-    return f"{package}.{kind}._{snake_case(name.split('_')[0])}"
+    return f"{package}.{kind}._{to_snake_case(name.split('_')[0])}"
 
 
 class Primitive(NamedTuple):
@@ -303,7 +303,7 @@ class Action(NamedTuple):
 Definition = Structure | Service | Action
 
 
-def interface_of(type_name: str, structures: Sequence[Structure]) -> Definition:
+def build_interface(type_name: str, structures: Sequence[Structure]) -> Definition:
     """Build a message, service or action from its structures.
 
     The structures must be in the order of the file.
@@ -314,7 +314,7 @@ def interface_of(type_name: str, structures: Sequence[Structure]) -> Definition:
     return Service(type_name, *structures) if kind == "srv" else Action(type_name, *structures)
 
 
-def structures_of(definition: Definition) -> tuple[Structure, ...]:
+def list_structures(definition: Definition) -> tuple[Structure, ...]:
     """Return the structures that a file defines, in the order of the file."""
     if isinstance(definition, Structure):
         return (definition,)
@@ -328,7 +328,7 @@ def structures_of(definition: Definition) -> tuple[Structure, ...]:
 _GOAL_ID = Field("goal_id", FieldType("unique_identifier_msgs/msg/UUID"))
 
 
-def event_of(service: Service) -> Structure:
+def make_event_structure(service: Service) -> Structure:
     """Return the message of a service's introspection topic (REP 2012)."""
     return Structure(
         service.type_name + "_Event",
@@ -340,7 +340,7 @@ def event_of(service: Service) -> Structure:
     )
 
 
-def send_goal_of(action: Action) -> Service:
+def make_send_goal_service(action: Action) -> Service:
     """Return the service through which an action server accepts goals."""
     name = action.type_name + "_SendGoal"
     return Service(
@@ -353,7 +353,7 @@ def send_goal_of(action: Action) -> Service:
     )
 
 
-def get_result_of(action: Action) -> Service:
+def make_get_result_service(action: Action) -> Service:
     """Return the service through which an action server returns a goal's status and result."""
     name = action.type_name + "_GetResult"
     return Service(
@@ -366,22 +366,22 @@ def get_result_of(action: Action) -> Service:
     )
 
 
-def feedback_message_of(action: Action) -> Structure:
+def make_feedback_structure(action: Action) -> Structure:
     """Return the message of an action's feedback topic: the feedback and the goal's id."""
     return Structure(
         action.type_name + "_FeedbackMessage", (_GOAL_ID, Field("feedback", FieldType(action.feedback.type_name)))
     )
 
 
-def parts_of(definition: Definition) -> dict[str, Definition]:
+def derive_definitions(definition: Definition) -> dict[str, Definition]:
     """Return an interface and all definitions that rosidl derives from it, by type name."""
     parts: dict[str, Definition] = {definition.type_name: definition}
     if isinstance(definition, Service):
-        for structure in (definition.request, definition.response, event_of(definition)):
+        for structure in (definition.request, definition.response, make_event_structure(definition)):
             parts[structure.type_name] = structure
     elif isinstance(definition, Action):
-        for structure in (definition.goal, definition.result, definition.feedback, feedback_message_of(definition)):
+        for structure in (definition.goal, definition.result, definition.feedback, make_feedback_structure(definition)):
             parts[structure.type_name] = structure
-        for service in (send_goal_of(definition), get_result_of(definition)):
-            parts |= parts_of(service)
+        for service in (make_send_goal_service(definition), make_get_result_service(definition)):
+            parts |= derive_definitions(service)
     return parts

@@ -34,9 +34,9 @@ from linkwright.messages.definitions.interfaces import (
     InterfaceName,
     Service,
     Structure,
-    parts_of,
+    derive_definitions,
+    list_structures,
     split_name,
-    structures_of,
 )
 from linkwright.messages.definitions.parser import KnownMessages, parse_interface
 from linkwright.messages.errors import DefinitionError, InterfaceNotFoundError
@@ -126,12 +126,12 @@ class Library:
         """
         type_names = {
             f"{owner}/{name}"
-            for owner in catalog.packages()
+            for owner in catalog.list_packages()
             if package is None or owner == package
-            for name in catalog.texts(owner)
+            for name in catalog.read_texts(owner)
             if name.startswith(kind + "/")
         }
-        for owner, share in self._workspace_packages(package):
+        for owner, share in self._find_workspace_packages(package):
             type_names.update(f"{owner}/{kind}/{name}" for name in find_interface_files(share, kind))
         if kind == "msg":
             type_names.update(
@@ -144,14 +144,14 @@ class Library:
     def _look_up(self, text: str, kinds: tuple[str, ...]) -> Definition:
         name = split_name(text)
         if name is None:
-            raise InterfaceNotFoundError(_invalid_name_diagnostic(text))
+            raise InterfaceNotFoundError(_make_invalid_name_diagnostic(text))
         for kind in (name.kind,) if name.kind else kinds:
             if kind in kinds:
                 type_name = f"{name.package}/{kind}/{name.name}"
                 definition = self._definitions.get(type_name) or self._load(type_name)
                 if definition is not None:
                     return definition
-        raise InterfaceNotFoundError(self._not_found_diagnostic(name, kinds))
+        raise InterfaceNotFoundError(self._make_not_found_diagnostic(name, kinds))
 
     def _load(self, type_name: str) -> Definition | None:
         """Read the file of an interface, and register all definitions that rosidl derives from it.
@@ -162,13 +162,15 @@ class Library:
         base = f"{package}/{kind}/{name.partition('_')[0]}"
         if base in self._sources:
             return self._definitions.get(type_name)
-        source = self._shipped_source(base) or self._workspace_source(base) or self._embedded_sources.get(base)
+        source = (
+            self._find_shipped_source(base) or self._find_workspace_source(base) or self._embedded_sources.get(base)
+        )
         if source is None:
             return None
         is_shipped = source.name[:1] == "<"
         definition = parse_source(source, base, TrustedMessages() if is_shipped else self)
         self._sources[base] = source
-        parts = parts_of(definition)
+        parts = derive_definitions(definition)
         self._definitions.update(parts)
         if not is_shipped:
             try:
@@ -180,12 +182,12 @@ class Library:
                 raise
         return self._definitions.get(type_name)
 
-    def _shipped_source(self, base: str) -> SourceText | None:
+    def _find_shipped_source(self, base: str) -> SourceText | None:
         package, _, rest = base.partition("/")
-        text = catalog.texts(package).get(rest)
+        text = catalog.read_texts(package).get(rest)
         return None if text is None else SourceText(f"<{base}>", text)
 
-    def _workspace_source(self, base: str) -> SourceText | None:
+    def _find_workspace_source(self, base: str) -> SourceText | None:
         package, kind, name = base.split("/")
         share = self._finder().find(package)
         path = find_interface_file(share, kind, name) if share is not None else None
@@ -194,26 +196,26 @@ class Library:
     def has_message(self, type_name: str) -> bool:
         """Return whether a message with a full name exists, even if its file has errors."""
         package, _, rest = type_name.partition("/")
-        if rest in catalog.texts(package) or type_name in self._embedded_sources:
+        if rest in catalog.read_texts(package) or type_name in self._embedded_sources:
             return True
         share = self._finder().find(package)
         return share is not None and find_interface_file(share, *rest.split("/")) is not None
 
-    def hint_for(self, type_name: str) -> Phrase | None:
+    def find_hint(self, type_name: str) -> Phrase | None:
         """Return a hint with names that resemble a missing message's name, or None."""
         name = split_name(type_name)
-        return None if name is None else self._not_found_diagnostic(name, ("msg",)).hint
+        return None if name is None else self._make_not_found_diagnostic(name, ("msg",)).hint
 
     def _check(self, definition: Definition, source: SourceText, enclosing_types: tuple[str, ...]) -> None:
-        """Check that no structure contains itself and that the files of nested structures are valid."""
+        """Check that no structure contains itself, and that nested structures are valid."""
         if definition.type_name in self._checked:
             return
-        for structure in structures_of(definition):
+        for structure in list_structures(definition):
             type_chain = (*enclosing_types, structure.type_name)
             for reference in dict.fromkeys(structure.references):
                 if reference in type_chain:
                     raise DefinitionError(
-                        _recursion_diagnostic(source, (*type_chain[type_chain.index(reference) :], reference))
+                        _make_recursion_diagnostic(source, (*type_chain[type_chain.index(reference) :], reference))
                     )
                 nested_definition = self.definition(reference)
                 inner_source = self._sources[reference]
@@ -237,7 +239,7 @@ class Library:
             finder = self._own_finder
         return finder
 
-    def _workspace_packages(self, package: str | None) -> Iterator[tuple[str, Path]]:
+    def _find_workspace_packages(self, package: str | None) -> Iterator[tuple[str, Path]]:
         finder = self._finder()
         if package is None:
             yield from finder.packages().items()
@@ -246,20 +248,20 @@ class Library:
             if share is not None:
                 yield package, share
 
-    def _not_found_diagnostic(self, name: InterfaceName, kinds: tuple[str, ...]) -> Diagnostic:
+    def _make_not_found_diagnostic(self, name: InterfaceName, kinds: tuple[str, ...]) -> Diagnostic:
         requested_kinds = (name.kind,) if name.kind in kinds else kinds
         kind_text = joined([term(KIND_NAMES[kind]) for kind in requested_kinds if kind], " or ")
         same_package = [other for kind in requested_kinds if kind for other in self.names(kind, name.package)]
         notes: list[Note] = []
         if same_package:
             interface_names = [other.rpartition("/")[2] for other in same_package]
-            hint = did_you_mean(name.name, interface_names) or self._same_name_elsewhere(name, requested_kinds)
+            hint = did_you_mean(name.name, interface_names) or self._find_same_name_elsewhere(name, requested_kinds)
             if hint is None:
                 hint = phrase("'{package}' defines {names}", package=name.package, names=joined(interface_names[:8]))
                 if len(interface_names) > 8:
                     hint = phrase("{list}, ...", list=hint)
         else:
-            packages = {*catalog.packages(), *self._finder().packages()}
+            packages = {*catalog.list_packages(), *self._finder().packages()}
             if name.package in packages:
                 notes.append(
                     Note(phrase("the package '{package}' has no {kind}", package=name.package, kind=kind_text))
@@ -268,7 +270,7 @@ class Library:
             else:
                 notes.append(Note(phrase("there is no package '{package}'", package=name.package)))
                 hint = did_you_mean(name.package, packages)
-            hint = hint or self._same_name_elsewhere(name, requested_kinds)
+            hint = hint or self._find_same_name_elsewhere(name, requested_kinds)
         if hint is None:
             other_type_names = [
                 other for kind in KINDS if kind not in requested_kinds for other in self.names(kind, name.package)
@@ -285,7 +287,7 @@ class Library:
             "MSG101", phrase("there is no {kind} '{name}'", kind=kind_text, name=name), notes=tuple(notes), hint=hint
         )
 
-    def _same_name_elsewhere(self, name: InterfaceName, kinds: tuple[str | None, ...]) -> Phrase | None:
+    def _find_same_name_elsewhere(self, name: InterfaceName, kinds: tuple[str | None, ...]) -> Phrase | None:
         for kind in kinds:
             for other in self.names(kind) if kind else ():
                 if other.rpartition("/")[2] == name.name:
@@ -303,7 +305,7 @@ class TrustedMessages:
         """Return True for any name."""
         return True
 
-    def hint_for(self, type_name: str) -> Phrase | None:
+    def find_hint(self, type_name: str) -> Phrase | None:
         """Return None, because no message is missing."""
         return None
 
@@ -327,7 +329,7 @@ def parse_source(source: SourceText, base: str, known_messages: KnownMessages, *
     return parse_interface(source, base, known_messages, is_ros1=is_ros1)
 
 
-def wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:
+def make_wrong_kind_diagnostic(definition: Definition, kind: str) -> Diagnostic:
     """Return a finding for an interface that exists but is not of the requested kind."""
     name = definition.type_name
     actual_kind = {Structure: phrase("a message"), Service: phrase("a service"), Action: phrase("an action")}[
@@ -363,7 +365,7 @@ def read_source(path: Path) -> SourceText:
         ) from None
 
 
-def _invalid_name_diagnostic(text: str) -> Diagnostic:
+def _make_invalid_name_diagnostic(text: str) -> Diagnostic:
     hint = phrase("write it as 'package/kind/Name', such as 'sensor_msgs/msg/JointState'")
     guess = re.sub(r"\.|::", "/", text)
     if guess != text and split_name(guess):
@@ -373,7 +375,7 @@ def _invalid_name_diagnostic(text: str) -> Diagnostic:
     )
 
 
-def _span_of(source: SourceText, reference: str, owner: str) -> Span:
+def _find_span(source: SourceText, reference: str, owner: str) -> Span:
     package, _, name = reference.split("/")
     spellings = [rf"{package}/(?:msg/)?{name}", rf"{package}::msg::{name}"]
     if owner.startswith(package + "/"):
@@ -382,8 +384,8 @@ def _span_of(source: SourceText, reference: str, owner: str) -> Span:
     return source.span(*match.span(1)) if match else source.span(0)
 
 
-def _recursion_diagnostic(source: SourceText, type_chain: tuple[str, ...]) -> Diagnostic:
-    span = _span_of(source, type_chain[-1], type_chain[-2])
+def _make_recursion_diagnostic(source: SourceText, type_chain: tuple[str, ...]) -> Diagnostic:
+    span = _find_span(source, type_chain[-1], type_chain[-2])
     enclosing_types = (
         type_chain[0] if len(type_chain) == 2 else f"{type_chain[0]} by way of " + ", ".join(type_chain[1:-1])
     )

@@ -16,7 +16,7 @@ from linkwright.messages.definitions.interfaces import (
     FieldType,
     Primitive,
     Structure,
-    interface_of,
+    build_interface,
     is_constant_name,
     is_field_name,
     is_interface_name,
@@ -31,7 +31,7 @@ _ESCAPE_PATTERN = re.compile(r"\\(.)")
 _ESCAPED_CHARACTERS = {"n": "\n", "t": "\t", "r": "\r", "0": "\0", "\\": "\\", '"': '"', "'": "'"}
 
 
-class LiteralFault(Exception):  # noqa: N818 - not an error of the program; the parser turns it into a diagnostic
+class LiteralError(Exception):
     """Raised when a text is not valid for a type. The argument is the reason."""
 
 
@@ -39,22 +39,22 @@ def read_default(text: str, kind: FieldType) -> object:
     """Parse the default value of a field: one value, or a tuple of values.
 
     Raises:
-        LiteralFault: the text is not a value of the type.
+        LiteralError: the text is not a value of the type.
     """
     primitive = kind.primitive
     if primitive is None:
-        raise LiteralFault(
+        raise LiteralError(
             phrase("a field of type '{type_name}' cannot have a default value", type_name=kind.to_msg_text())
         )
     if kind.container is Container.ONE:
         return _read_bounded(text, kind, primitive)
     if not (text.startswith("[") and text.endswith("]")):
-        raise LiteralFault(
+        raise LiteralError(
             phrase("write the default of '{type_name}' as a list in square brackets", type_name=kind.to_msg_text())
         )
     values = tuple(_read_bounded(item, kind, primitive) for item in split_list(text[1:-1]))
     if kind.container is Container.ARRAY and len(values) != kind.size:
-        raise LiteralFault(
+        raise LiteralError(
             phrase(
                 "'{type_name}' must have {size} values, not {count}",
                 type_name=kind.to_msg_text(),
@@ -63,7 +63,7 @@ def read_default(text: str, kind: FieldType) -> object:
             )
         )
     if kind.container is Container.SEQUENCE and kind.size is not None and len(values) > kind.size:
-        raise LiteralFault(
+        raise LiteralError(
             phrase(
                 "'{type_name}' must have at most {size} values, not {count}",
                 type_name=kind.to_msg_text(),
@@ -78,7 +78,7 @@ def read_constant(text: str, type_name: str) -> Value:
     """Parse the value of a constant.
 
     Raises:
-        LiteralFault: the text is not a value of the type.
+        LiteralError: the text is not a value of the type.
     """
     return _read(text, type_name, PRIMITIVES[type_name])
 
@@ -102,7 +102,7 @@ def split_list(text: str) -> list[str]:
 def _read_bounded(text: str, kind: FieldType, primitive: Primitive) -> Value:
     value = _read(text, kind.base, primitive)
     if kind.string_bound is not None and len(cast(str, value)) > kind.string_bound:
-        raise LiteralFault(
+        raise LiteralError(
             phrase("the string is longer than {string_bound} characters", string_bound=kind.string_bound)
         )
     return value
@@ -118,7 +118,7 @@ def _read(text: str, type_name: str, primitive: Primitive) -> Value:
     number = _read_int(text)
     low, high = (0, 255) if primitive.python is bytes else (primitive.low, primitive.high)
     if not low <= number <= high:
-        raise LiteralFault(
+        raise LiteralError(
             phrase(
                 "{value} is outside the range of {type_name}, {minimum} to {maximum}",
                 value=text,
@@ -136,7 +136,7 @@ def _read_bool(text: str) -> bool:
         return True
     if lower_text in {"false", "0"}:
         return False
-    raise LiteralFault(phrase("'{text}' is neither true nor false", text=text))
+    raise LiteralError(phrase("'{text}' is neither true nor false", text=text))
 
 
 def _read_int(text: str) -> int:
@@ -144,16 +144,16 @@ def _read_int(text: str) -> int:
     try:
         return int(text, 0 if digits[:1] == "0" and digits[1:2] in {"x", "X", "o", "O", "b", "B"} else 10)
     except ValueError:
-        raise LiteralFault(phrase("'{text}' is not an integer", text=text)) from None
+        raise LiteralError(phrase("'{text}' is not an integer", text=text)) from None
 
 
 def _read_float(text: str, type_name: str, primitive: Primitive) -> float:
     try:
         number = float(text)
     except ValueError:
-        raise LiteralFault(phrase("'{text}' is not a number", text=text)) from None
+        raise LiteralError(phrase("'{text}' is not a number", text=text)) from None
     if math.isfinite(number) and abs(number) > primitive.high:
-        raise LiteralFault(phrase("{value} is outside the range of {type_name}", value=text, type_name=type_name))
+        raise LiteralError(phrase("{value} is outside the range of {type_name}", value=text, type_name=type_name))
     return number
 
 
@@ -162,7 +162,7 @@ def _read_text(text: str) -> str:
     if quote not in {'"', "'"}:
         return text
     if len(text) < 2 or not text.endswith(quote) or _closes_early(text, quote):
-        raise LiteralFault(phrase("the string that begins with {quote} does not end with it", quote=quote))
+        raise LiteralError(phrase("the string that begins with {quote} does not end with it", quote=quote))
     return _ESCAPE_PATTERN.sub(lambda match: _ESCAPED_CHARACTERS.get(match.group(1), match.group(0)), text[1:-1])
 
 
@@ -207,7 +207,7 @@ class KnownMessages(Protocol):
     def has_message(self, type_name: str) -> bool:
         """Return whether a message with a full name exists."""
 
-    def hint_for(self, type_name: str) -> Phrase | None:
+    def find_hint(self, type_name: str) -> Phrase | None:
         """Return a hint with names that resemble a missing message's name, or None."""
 
 
@@ -242,7 +242,7 @@ class _Reader:
         sections = [_Section()]
         offset = 0
         for line in self._source.text.splitlines(keepends=True):
-            code = _without_comment(line)
+            code = _remove_comment(line)
             start = offset + len(code) - len(code.lstrip())
             offset += len(line)
             code = code.strip()
@@ -270,7 +270,7 @@ class _Reader:
             Structure(self._type_name + suffix, tuple(section.fields), tuple(section.constants))
             for suffix, section in zip(suffixes, sections, strict=True)
         ]
-        return interface_of(self._type_name, structures)
+        return build_interface(self._type_name, structures)
 
     def _check_sections(self, count: int, start: int) -> None:
         section_count = len(SECTIONS[self._kind])
@@ -309,12 +309,14 @@ class _Reader:
     # --- types ----------------------------------------------------------------------------------------------
 
     def _read_type(self, match: re.Match[str], start: int) -> FieldType | None:
-        base = self._base(match["base"], start)
+        base = self._read_base(match["base"], start)
         container, size = Container.ONE, None
         string_bound = None
         is_valid = base is not None
         if match["bound"] is not None:
-            string_bound = self._number(match["string_bound"], start + match.start("string_bound"), phrase("a string"))
+            string_bound = self._read_number(
+                match["string_bound"], start + match.start("string_bound"), phrase("a string")
+            )
             is_valid = is_valid and string_bound is not None
             if base is not None and base not in {"string", "wstring"}:
                 hint = phrase(
@@ -337,7 +339,7 @@ class _Reader:
             if length_text:
                 container_name = phrase("an array") if container is Container.ARRAY else phrase("a sequence")
                 number = length_text.removeprefix("<=").lstrip()
-                size = self._number(
+                size = self._read_number(
                     number,
                     length_offset + brackets[1:].index(length_text) + len(length_text) - len(number),
                     container_name,
@@ -345,7 +347,7 @@ class _Reader:
                 is_valid = is_valid and size is not None
         return FieldType(base, string_bound, container, size) if is_valid and base is not None else None
 
-    def _base(self, text: str, start: int) -> str | None:
+    def _read_base(self, text: str, start: int) -> str | None:
         if text in PRIMITIVES:
             return text
         if "/" in text:
@@ -353,7 +355,7 @@ class _Reader:
             if len(parts) == 3 and parts[1] == "msg":
                 parts.pop(1)
             if len(parts) == 2 and is_package_name(parts[0]) and is_interface_name(parts[1]):
-                return self._existing_message(f"{parts[0]}/msg/{parts[1]}", text, start)
+                return self._find_existing_message(f"{parts[0]}/msg/{parts[1]}", text, start)
             self._report(
                 "MSG111",
                 phrase("'{text}' is not a type: write 'package/Name' for a type of another package", text=text),
@@ -369,20 +371,20 @@ class _Reader:
                          phrase("use {name} in ROS 2", name=f"'{_ROS1_TYPES[text]}'"))  # fmt: skip
             return None
         if is_interface_name(text):
-            return self._existing_message(type_name, text, start)
+            return self._find_existing_message(type_name, text, start)
         self._report(
             "MSG111", phrase("there is no type '{text}'", text=text), start, len(text), did_you_mean(text, PRIMITIVES)
         )
         return None
 
-    def _existing_message(self, type_name: str, text: str, start: int) -> str | None:
+    def _find_existing_message(self, type_name: str, text: str, start: int) -> str | None:
         if self._known.has_message(type_name):
             return type_name
-        hint = self._known.hint_for(type_name)
+        hint = self._known.find_hint(type_name)
         self._report("MSG111", phrase("there is no message '{name}'", name=type_name), start, len(text), hint)
         return None
 
-    def _number(self, text: str, offset: int, subject: Phrase) -> int | None:
+    def _read_number(self, text: str, offset: int, subject: Phrase) -> int | None:
         if text.isascii() and text.isdigit() and int(text) > 0:
             return int(text)
         self._report(
@@ -418,7 +420,7 @@ class _Reader:
         if default:
             try:
                 value = read_default(default, kind)
-            except LiteralFault as fault:
+            except LiteralError as fault:
                 self._report(
                     "MSG114",
                     phrase("the default value of '{name}' is invalid: {fault}", name=name, fault=fault),
@@ -459,7 +461,7 @@ class _Reader:
             return
         try:
             section.constants.append(Constant(name, kind.base, read_constant(value, kind.base)))
-        except LiteralFault as fault:
+        except LiteralError as fault:
             self._report(
                 "MSG114",
                 phrase("the value of '{name}' is invalid: {fault}", name=name, fault=fault),
@@ -479,7 +481,7 @@ class _Reader:
         self._diagnostics.append(Diagnostic(code, message, span, hint=hint, source=self._source))
 
 
-def _without_comment(line: str) -> str:
+def _remove_comment(line: str) -> str:
     """Return a line without its comment.
 
     A ``#`` inside quotes does not begin a comment.

@@ -189,14 +189,14 @@ class UnboundedSequence(AbstractSequence):
     __slots__ = ()
 
 
-def slot_types(structure: Structure) -> tuple[AbstractType, ...]:
+def make_slot_types(structure: Structure) -> tuple[AbstractType, ...]:
     """Return a type object for each field of a structure, in the order of the fields."""
-    return tuple(slot_type(field.type) for field in structure.fields)
+    return tuple(make_slot_type(field.type) for field in structure.fields)
 
 
-def slot_type(kind: FieldType) -> AbstractType:
+def make_slot_type(kind: FieldType) -> AbstractType:
     """Return the type object for a field type of a definition."""
-    value_type = _value_type(kind)
+    value_type = _make_value_type(kind)
     if kind.container is Container.ONE:
         return value_type
     if kind.container is Container.ARRAY:
@@ -205,7 +205,7 @@ def slot_type(kind: FieldType) -> AbstractType:
     return UnboundedSequence(value_type) if kind.size is None else BoundedSequence(value_type, kind.size)
 
 
-def _value_type(kind: FieldType) -> AbstractNestableType:
+def _make_value_type(kind: FieldType) -> AbstractNestableType:
     primitive = kind.primitive
     if primitive is None:
         *namespaces, name = kind.base.split("/")

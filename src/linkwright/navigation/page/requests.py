@@ -1,6 +1,6 @@
 """The page features of navigation, created on demand."""
 
-from linkwright.panels.page_feature import OnDemand, messages
+from linkwright.panels.page_feature import OnDemand, list_message_paths
 
 ON_DEMAND = (
     OnDemand(
@@ -8,6 +8,6 @@ ON_DEMAND = (
     ),
     OnDemand(
         "linkwright.navigation.page.commands:NavigationFeature",
-        messages("linkwright.page.protocol.navigation", "CommandNavigation", "WatchNavigation"),
+        list_message_paths("linkwright.page.protocol.navigation", "CommandNavigation", "WatchNavigation"),
     ),
 )

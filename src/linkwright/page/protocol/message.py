@@ -59,7 +59,7 @@ class DataContent(Struct, tag_field="kind", tag=_tag):
     """The base class of content with large arrays of displays. `pack_data` packs it."""
 
 
-def tag_of(message: Struct) -> str:
+def get_tag(message: Struct) -> str:
     """Return the tag of a message's class in JSON."""
     return str(message.__struct_config__.tag)
 
@@ -71,7 +71,7 @@ class BadMessageError(ValueError):
     """
 
 
-def plain(value: Any) -> Any:
+def to_plain(value: Any) -> Any:
     """Return a string or number as a built-in type, which JSON can represent.
 
     Its class may be derived from the built-in type.
@@ -97,7 +97,7 @@ def encode(message: ServerMessage, language: str | None = None) -> str:
         language: the language of the message's phrases; None to leave them untranslated.
     """
     try:
-        return _encoder(language).encode(message).decode()
+        return _get_encoder(language).encode(message).decode()
     except UnicodeEncodeError:
         plain_message = msgspec.to_builtins(message, enc_hook=partial(_to_plain_or_localized, language=language))
         text = json.dumps(plain_message, ensure_ascii=False, separators=(",", ":"))
@@ -105,21 +105,21 @@ def encode(message: ServerMessage, language: str | None = None) -> str:
 
 
 @cache
-def _encoder(language: str | None) -> msgspec.json.Encoder:
+def _get_encoder(language: str | None) -> msgspec.json.Encoder:
     return msgspec.json.Encoder(enc_hook=partial(_to_plain_or_localized, language=language))
 
 
 def _to_plain_or_localized(value: Any, language: str | None) -> Any:
-    """Return a phrase in the language, or any other value as converted by `plain`."""
-    return plain(translate_phrase(value, language) if language is not None and isinstance(value, Phrase) else value)
+    """Return a phrase in the language, or any other value as converted by `to_plain`."""
+    return to_plain(translate_phrase(value, language) if language is not None and isinstance(value, Phrase) else value)
 
 
-def redundancy_key(message: ServerMessage) -> str:
+def make_redundancy_key(message: ServerMessage) -> str:
     """Return the key with which a message replaces earlier messages in an outbox.
 
     There is one key for each class, or for each value of the fields in the class's `NEWEST_OF`.
     """
-    return "\n".join((tag_of(message), *(str(getattr(message, name)) for name in message.NEWEST_OF)))
+    return "\n".join((get_tag(message), *(str(getattr(message, name)) for name in message.NEWEST_OF)))
 
 
 def decode(text: str) -> PageMessage:
@@ -140,12 +140,12 @@ def decode(text: str) -> PageMessage:
 
 
 def _decode_defined(text: str) -> PageMessage:
-    message: PageMessage = _decoder(len(PageMessage.__subclasses__())).decode(text)
+    message: PageMessage = _get_decoder(len(PageMessage.__subclasses__())).decode(text)
     return message
 
 
 @lru_cache(maxsize=1)
-def _decoder(_known: int) -> msgspec.json.Decoder[Any]:
+def _get_decoder(_known: int) -> msgspec.json.Decoder[Any]:
     """Return a decoder for all message classes defined so far.
 
     The decoder is cached by the number of classes, so that a new class leads to a new decoder.
@@ -168,7 +168,7 @@ class _TypeField(Struct):
     type: str
 
 
-def import_path_of(message: type) -> str:
+def get_import_path(message: type) -> str:
     """Return the import path of a message class, as ``module:class``."""
     return f"{message.__module__}:{message.__qualname__}"
 
@@ -330,8 +330,8 @@ def pack_data(
         "pose": None if pose is None else [float(number) for number in pose],
         "content": content,
     }
-    text = _header_json(header, arrays)
-    parts = [_HEADER.pack(DATA_KIND, len(text), 0, 0), text, _padding(_HEADER.size + len(text))]
+    text = _encode_header(header, arrays)
+    parts = [_HEADER.pack(DATA_KIND, len(text), 0, 0), text, _make_padding(_HEADER.size + len(text))]
     return b"".join([*parts, *arrays.parts])
 
 
@@ -356,7 +356,7 @@ class _Arrays:
 
         An array is added, and its placeholder is returned.
         """
-        return self.put(value) if isinstance(value, np.ndarray) else plain(value)
+        return self.put(value) if isinstance(value, np.ndarray) else to_plain(value)
 
     def put(self, array: NDArray[Any]) -> dict[str, list[Any]]:
         """Add an array and return its placeholder in the header."""
@@ -365,13 +365,13 @@ class _Arrays:
         name, dtype = _ARRAY_TYPES[array.dtype.kind]
         reference = {"$": [name, self._length, array.size]}
         data = np.ascontiguousarray(array, dtype=dtype).tobytes()
-        padding = _padding(len(data))
+        padding = _make_padding(len(data))
         self.parts += [data, padding]
         self._length += len(data) + len(padding)
         return reference
 
 
-def _header_json(header: dict[str, Any], arrays: _Arrays) -> bytes:
+def _encode_header(header: dict[str, Any], arrays: _Arrays) -> bytes:
     """Return the header as JSON.
 
     Surrogates, which file names may contain, are replaced with question marks.
@@ -384,7 +384,7 @@ def _header_json(header: dict[str, Any], arrays: _Arrays) -> bytes:
         return json.dumps(header, ensure_ascii=False, separators=(",", ":")).encode("utf-8", "replace")
 
 
-def _padding(length: int) -> bytes:
+def _make_padding(length: int) -> bytes:
     return b"\0" * (-length % _ALIGNMENT)
 
 

@@ -14,7 +14,7 @@ from linkwright.page.protocol.comparison import (
     Mark,
 )
 from linkwright.page.protocol.message import ServerMessage
-from linkwright.panels.comparison.old_robot import PREFIX, TOPIC, OldRobot, followed_joints
+from linkwright.panels.comparison.old_robot import DESCRIPTION_TOPIC, FRAME_PREFIX, OldRobot, find_leading_joints
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.config.rviz_config import RvizConfig
 
@@ -34,8 +34,8 @@ def add_old_robot(config: RvizConfig, name: str) -> None:
     """Add a translucent display of the old robot to the configuration of the new robot."""
     display = config.make_display("rviz_default_plugins/RobotModel", name)
     for path, value in (
-        (("Description Topic", "Value"), TOPIC),
-        (("TF Prefix",), PREFIX),
+        (("Description Topic", "Value"), DESCRIPTION_TOPIC),
+        (("TF Prefix",), FRAME_PREFIX),
         (("Alpha",), f"{_OLD_ROBOT_ALPHA:g}"),
     ):
         display.section.put(path, value, string=path[-1] != "Alpha")
@@ -70,7 +70,7 @@ class ComparisonFeature(PageFeature):
 
     def configuration_messages(self, manager: VisualizationManager) -> list[ServerMessage]:
         """Return the differences that were last sent to pages."""
-        message = self._message(manager)
+        message = self._make_message(manager)
         if message is None:
             return []
         self._sent_messages[manager] = message
@@ -81,7 +81,8 @@ class ComparisonFeature(PageFeature):
         if self._pair is None or self._old_robot is None:
             return
         old, new = next(
-            (pair for manager in self.managers.all() if None not in (pair := _compared_robots(manager))), (None, None)
+            (pair for manager in self.managers.all() if None not in (pair := _find_compared_robots(manager))),
+            (None, None),
         )
         if old is None or new is None:
             return
@@ -93,7 +94,9 @@ class ComparisonFeature(PageFeature):
             self._publish(manager)
 
     def on_edit(self, manager: VisualizationManager) -> None:
-        """Send the differences again if they have changed, because displays may have been added or removed.
+        """Send the differences again if they have changed.
+
+        Displays may have been added or removed.
 
         Displays may have been added or removed.
         """
@@ -104,62 +107,62 @@ class ComparisonFeature(PageFeature):
         self._sent_messages.pop(manager, None)
 
     def _publish(self, manager: VisualizationManager) -> None:
-        message = self._message(manager)
+        message = self._make_message(manager)
         if message is not None and message != self._sent_messages.get(manager):
             self._sent_messages[manager] = message
             manager.publish(message)
 
-    def _message(self, manager: VisualizationManager) -> ComparedDescriptions | None:
+    def _make_message(self, manager: VisualizationManager) -> ComparedDescriptions | None:
         if self._pair is None or self._last_comparison is None:
             return None
         old, new, comparison = self._last_comparison
-        old_marks, new_marks = _link_marks(comparison, old, new)
-        old_display, new_display = _robot_displays(manager)
+        old_marks, new_marks = _find_link_marks(comparison, old, new)
+        old_display, new_display = _find_robot_displays(manager)
         return ComparedDescriptions(
-            ComparedRobot(_display_id(old_display), self._pair.old.label(), old_marks),
-            ComparedRobot(_display_id(new_display), self._pair.new.label(), new_marks),
-            followed_joints(old, new, comparison.joints),
-            _links_of_same_shape(comparison),
-            [_compared_item(difference, old, new, self._pair) for difference in comparison.differences],
+            ComparedRobot(_get_display_id(old_display), self._pair.old.label(), old_marks),
+            ComparedRobot(_get_display_id(new_display), self._pair.new.label(), new_marks),
+            find_leading_joints(old, new, comparison.joints),
+            _find_links_of_same_shape(comparison),
+            [_make_compared_item(difference, old, new, self._pair) for difference in comparison.differences],
         )
 
 
 def without_paths(message: ComparedDescriptions) -> ComparedDescriptions:
     """Replace absolute paths in a message with file names for sharing, and return the message."""
     for robot in (message.old, message.new):
-        robot.label = _shareable_name(robot.label)
+        robot.label = _to_shareable_name(robot.label)
     for item in message.items:
         for location in (item.old_place, item.new_place):
             if location is not None:
-                location.text, location.file = _shareable_name(location.text), ""
+                location.text, location.file = _to_shareable_name(location.text), ""
     return message
 
 
-def _shareable_name(name: str) -> str:
+def _to_shareable_name(name: str) -> str:
     return Path(name).name if Path(name).is_absolute() else name
 
 
-def _robot_displays(manager: VisualizationManager) -> tuple[RobotModelDisplay | None, RobotModelDisplay | None]:
+def _find_robot_displays(manager: VisualizationManager) -> tuple[RobotModelDisplay | None, RobotModelDisplay | None]:
     """Return the displays of the old and the new robot, with None for a removed display."""
     models = manager.robot_models()
-    old = next((model for model in models if _description_topic(model) == TOPIC), None)
-    return old, next((model for model in models if _description_topic(model) != TOPIC), None)
+    old = next((model for model in models if _get_description_topic(model) == DESCRIPTION_TOPIC), None)
+    return old, next((model for model in models if _get_description_topic(model) != DESCRIPTION_TOPIC), None)
 
 
-def _description_topic(display: RobotModelDisplay) -> str:
+def _get_description_topic(display: RobotModelDisplay) -> str:
     return display.properties.text("Description Topic")
 
 
-def _compared_robots(manager: VisualizationManager) -> tuple[Robot | None, Robot | None]:
-    old, new = _robot_displays(manager)
+def _find_compared_robots(manager: VisualizationManager) -> tuple[Robot | None, Robot | None]:
+    old, new = _find_robot_displays(manager)
     return None if old is None else old.robot, None if new is None else new.robot
 
 
-def _display_id(display: RobotModelDisplay | None) -> str:
+def _get_display_id(display: RobotModelDisplay | None) -> str:
     return "" if display is None else display.id
 
 
-def _link_marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Mark], dict[str, Mark]]:
+def _find_link_marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[str, Mark], dict[str, Mark]]:
     """Return the marks of the links that differ by name, for the old and for the new robot."""
     old_marks: dict[str, Mark] = {name: "removed" for name in old.links if name not in comparison.links}
     old_names = {new_name: name for name, new_name in comparison.links.items()}
@@ -176,7 +179,7 @@ def _link_marks(comparison: Comparison, old: Robot, new: Robot) -> tuple[dict[st
     return old_marks, new_marks
 
 
-def _links_of_same_shape(comparison: Comparison) -> dict[str, str]:
+def _find_links_of_same_shape(comparison: Comparison) -> dict[str, str]:
     """Return the links with unchanged visuals and collisions: new names by old names."""
     changed_links = {
         difference.name
@@ -186,8 +189,8 @@ def _links_of_same_shape(comparison: Comparison) -> dict[str, str]:
     return {old: new for old, new in comparison.links.items() if new not in changed_links}
 
 
-def _compared_item(difference: Difference, old: Robot, new: Robot, pair: Pair) -> ComparedItem:
-    kind, name, in_old = _element_of(difference, old, new)
+def _make_compared_item(difference: Difference, old: Robot, new: Robot, pair: Pair) -> ComparedItem:
+    kind, name, in_old = _find_element(difference, old, new)
     return ComparedItem(
         subject=difference.subject,
         name=difference.name,
@@ -199,12 +202,12 @@ def _compared_item(difference: Difference, old: Robot, new: Robot, pair: Pair) -
         element=name,
         element_kind=kind,
         in_old=in_old,
-        old_place=_compared_place(difference.old_place, pair.old),
-        new_place=_compared_place(difference.new_place, pair.new),
+        old_place=_make_compared_location(difference.old_place, pair.old),
+        new_place=_make_compared_location(difference.new_place, pair.new),
     )
 
 
-def _element_of(difference: Difference, old: Robot, new: Robot) -> tuple[Literal["link", "joint"], str, bool]:
+def _find_element(difference: Difference, old: Robot, new: Robot) -> tuple[Literal["link", "joint"], str, bool]:
     """Return the link or joint of a difference.
 
     Returns:
@@ -222,7 +225,7 @@ def _element_of(difference: Difference, old: Robot, new: Robot) -> tuple[Literal
     return "link", "", False
 
 
-def _compared_place(location: DifferenceLocation | None, model: Model) -> ComparedLocation | None:
+def _make_compared_location(location: DifferenceLocation | None, model: Model) -> ComparedLocation | None:
     if location is None:
         return None
     span = location.span

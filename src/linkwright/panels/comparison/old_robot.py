@@ -22,9 +22,9 @@ from linkwright.nodes.joint_layout import JointSettings, make_layout
 from linkwright.nodes.robot_state_publisher import MOVING_TYPES, RobotTransforms
 from linkwright.urdf import Robot
 
-PREFIX = "old"
+FRAME_PREFIX = "old"
 """The TF Prefix of the frames of the old robot."""
-TOPIC = "/old/robot_description"
+DESCRIPTION_TOPIC = "/old/robot_description"
 """The topic of the description of the old robot."""
 
 
@@ -41,7 +41,7 @@ class OldRobot:
 
     def __init__(self, node: Node, listener: Node) -> None:
         self._listener = listener
-        self._text = node.create_publisher(String, TOPIC, DESCRIPTION_QOS)
+        self._text = node.create_publisher(String, DESCRIPTION_TOPIC, DESCRIPTION_QOS)
         self._fixed = node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
         self._tf_publisher = node.create_publisher(TFMessage, "/tf", TF_QOS)
         self._positions: dict[str, float] = {}
@@ -63,14 +63,14 @@ class OldRobot:
             comparison: the links and joints that correspond.
         """
         now_ns = self._listener.get_clock().now_ns()
-        self._transforms = RobotTransforms(old, f"{PREFIX}/")
-        self._followed_joints = followed_joints(old, new, comparison.joints)
-        self._zero_positions = _initial_positions(old, self._followed_joints)
+        self._transforms = RobotTransforms(old, f"{FRAME_PREFIX}/")
+        self._followed_joints = find_leading_joints(old, new, comparison.joints)
+        self._zero_positions = _find_initial_positions(old, self._followed_joints)
         fixed_batch = self._transforms.fixed_transforms(now_ns)
         parent, pose = _attach_root(old, new, comparison.links)
         batch = TransformBatch(
             (*fixed_batch.parents, parent),
-            (*fixed_batch.children, f"{PREFIX}/{old.root}"),
+            (*fixed_batch.children, f"{FRAME_PREFIX}/{old.root}"),
             now_ns,
             np.vstack([fixed_batch.poses, pose[np.newaxis]]),
         )
@@ -90,8 +90,8 @@ class OldRobot:
         self._tf_publisher.publish(TFMessage(batch=batch))
 
 
-def followed_joints(old: Robot, new: Robot, same_names: Mapping[str, str]) -> dict[str, str]:
-    """Return, by old names, the joints of the new robot that determine the positions of the old robot's joints.
+def find_leading_joints(old: Robot, new: Robot, same_names: Mapping[str, str]) -> dict[str, str]:
+    """Return the joints of the new robot that move the old robot's joints, by old names.
 
     Both joints are revolute or continuous, or both are prismatic.
     """
@@ -103,7 +103,7 @@ def followed_joints(old: Robot, new: Robot, same_names: Mapping[str, str]) -> di
     }
 
 
-def _initial_positions(robot: Robot, leaders: Mapping[str, str]) -> dict[str, float]:
+def _find_initial_positions(robot: Robot, leaders: Mapping[str, str]) -> dict[str, float]:
     """Return the initial positions of the movable joints by name, in rad or m.
 
     Joints that mimic another movable joint are omitted, unless they take the position of a joint of the new robot.

@@ -19,8 +19,8 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.page.audience import Page
 from linkwright.page.protocol import editing
 from linkwright.page.protocol.message import PageMessage
-from linkwright.panels.description import item_of
-from linkwright.panels.editing.parts import files_of, parts_of, request_of
+from linkwright.panels.description import make_item
+from linkwright.panels.editing.parts import find_parts, make_edit_request, make_edited_files
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.urdf import Robot
 
@@ -80,11 +80,11 @@ class EditingFeature(PageFeature):
 
     async def _handle_request(self, page: Page, message: PageMessage) -> None:
         if isinstance(message, editing.RequestEditableParts):
-            page.send(self._editable_parts(page, message))
+            page.send(self._find_editable_parts(page, message))
             page.send(editing.EditHistory(self._history.can_undo, self._history.can_redo))
             return
         if not page.is_local:
-            raise EditRefusedError(elsewhere())
+            raise EditRefusedError(make_other_machine_finding())
         if isinstance(message, editing.PreviewEdit):
             if self._newest_numbers.get(page) == message.number:
                 await self._preview(page, message)
@@ -127,8 +127,8 @@ class EditingFeature(PageFeature):
             page.send(editing.EditHistory(self._history.can_undo, self._history.can_redo))
 
     async def _preview(self, page: Page, message: editing.PreviewEdit) -> None:
-        robot, description = self._robot_and_description(page, message.display)
-        refusal_reason = _refusal_reason(robot, description)
+        robot, description = self._find_robot_and_description(page, message.display)
+        refusal_reason = _find_refusal_reason(robot, description)
         if description is None or refusal_reason is not None:
             raise EditRefusedError(Diagnostic("EDIT101", refusal_reason or phrase("there is no robot")))
         for values in (message.xyz, message.rpy):
@@ -136,16 +136,18 @@ class EditingFeature(PageFeature):
                 raise EditRefusedError(Diagnostic("EDIT102", phrase("xyz and rpy must have three numbers each")))
         plan = await asyncio.to_thread(_plan_request, description, message, self.context.library.unsaved_texts)
         self._previewed_plans[page] = message.number, plan
-        page.send(editing.EditPreview(message.number, files_of(plan), list(plan.side_effects), None))
+        page.send(editing.EditPreview(message.number, make_edited_files(plan), list(plan.side_effects), None))
 
-    def _editable_parts(self, page: Page, message: editing.RequestEditableParts) -> editing.EditableParts:
-        robot, description = self._robot_and_description(page, message.display)
-        refusal_reason = _refusal_reason(robot, description) if page.is_local else elsewhere().message
-        parts = [] if robot is None else parts_of(robot, message.link)
-        problem = "" if refusal_reason is None else item_of(Diagnostic("EDIT101", refusal_reason)).message
+    def _find_editable_parts(self, page: Page, message: editing.RequestEditableParts) -> editing.EditableParts:
+        robot, description = self._find_robot_and_description(page, message.display)
+        refusal_reason = (
+            _find_refusal_reason(robot, description) if page.is_local else make_other_machine_finding().message
+        )
+        parts = [] if robot is None else find_parts(robot, message.link)
+        problem = "" if refusal_reason is None else make_item(Diagnostic("EDIT101", refusal_reason)).message
         return editing.EditableParts(message.display, message.link, problem, parts)
 
-    def _robot_and_description(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
+    def _find_robot_and_description(self, page: Page, display: str) -> tuple[Robot | None, Description | None]:
         """Return the robot of a display, and its description if the library stores the same text."""
         display_model = next(
             (candidate for candidate in self.managers.of(page).robot_models() if candidate.id == display), None
@@ -161,19 +163,21 @@ class EditingFeature(PageFeature):
     def _refuse(self, page: Page, message: PageMessage, diagnostic: Diagnostic) -> None:
         if isinstance(message, editing.PreviewEdit):
             self._previewed_plans.pop(page, None)
-            page.send(editing.EditPreview(message.number, [], [], item_of(diagnostic)))
+            page.send(editing.EditPreview(message.number, [], [], make_item(diagnostic)))
         else:
-            page.send(editing.EditWritten([], item_of(diagnostic), is_saved=False))
+            page.send(editing.EditWritten([], make_item(diagnostic), is_saved=False))
 
 
 def _plan_request(
     description: Description, message: editing.PreviewEdit, unsaved: Mapping[str | os.PathLike[str], str]
 ) -> EditPlan:
     """Return the plan of an edit of the files' current content or unsaved texts."""
-    return plan_edit(read_again(description, unsaved), request_of(message), Workspace(Path(description.name)).refusal)
+    return plan_edit(
+        read_again(description, unsaved), make_edit_request(message), Workspace(Path(description.name)).refusal
+    )
 
 
-def _refusal_reason(robot: Robot | None, description: Description | None) -> Phrase | None:
+def _find_refusal_reason(robot: Robot | None, description: Description | None) -> Phrase | None:
     if robot is None:
         return phrase("there is no robot")
     if description is not None and description.document.root.tag == "sdf":
@@ -202,7 +206,7 @@ def _edit_unsaved(plan: EditPlan, unsaved: Mapping[str, UnsavedText]) -> None:
             own_text.owner.edit(own_text.path, own_text.revision, text)
 
 
-def elsewhere() -> Diagnostic:
+def make_other_machine_finding() -> Diagnostic:
     """Return the finding that a page on another machine may not write files (EDIT109)."""
     message = phrase("files can be edited only in pages that are open on the machine with the files")
     return Diagnostic("EDIT109", message, hint=phrase("open the page on that machine, or through an SSH tunnel"))

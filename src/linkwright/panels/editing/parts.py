@@ -17,54 +17,57 @@ _CONTEXT_LINES = 1
 """The number of unchanged lines that are shown before and after a change."""
 
 
-def parts_of(robot: Robot, link_name: str) -> list[EditablePart]:
-    """Return the editable parts of a link: parent joint and axis, visuals, collisions, inertial."""
+def find_parts(robot: Robot, link_name: str) -> list[EditablePart]:
+    """Return the editable parts of a link.
+
+    These are the parent joint and its axis, the visuals, the collisions and the inertial.
+    """
     link = robot.links.get(link_name)
     if link is None:
         return []
     return [
-        *(part for joint in robot.joints.values() if joint.child == link_name for part in _joint_parts(joint)),
-        *(_shape_part("visual", link_name, index, shape) for index, shape in enumerate(link.visuals)),
-        *(_shape_part("collision", link_name, index, shape) for index, shape in enumerate(link.collisions)),
-        *(_inertial_part(link_name, inertial) for inertial in (link.inertial,) if inertial is not None),
+        *(part for joint in robot.joints.values() if joint.child == link_name for part in _find_joint_parts(joint)),
+        *(_make_shape_part("visual", link_name, index, shape) for index, shape in enumerate(link.visuals)),
+        *(_make_shape_part("collision", link_name, index, shape) for index, shape in enumerate(link.collisions)),
+        *(_make_inertial_part(link_name, inertial) for inertial in (link.inertial,) if inertial is not None),
     ]
 
 
-def request_of(message: PreviewEdit) -> EditRequest:
+def make_edit_request(message: PreviewEdit) -> EditRequest:
     """Return the edit that a message of a page describes."""
     return EditRequest(message.part, message.name, message.index, message.xyz, message.rpy, message.together)
 
 
-def files_of(plan: EditPlan) -> list[EditedFile]:
+def make_edited_files(plan: EditPlan) -> list[EditedFile]:
     """Return the files that an edit changes, each as a unified diff without its header."""
-    return [EditedFile(path, list(_diff(plan.old_texts[path], text))) for path, text in plan.texts.items()]
+    return [EditedFile(path, list(_make_diff(plan.old_texts[path], text))) for path, text in plan.texts.items()]
 
 
-def _diff(before: str, after: str) -> Iterator[str]:
+def _make_diff(before: str, after: str) -> Iterator[str]:
     lines = unified_diff(before.splitlines(), after.splitlines(), lineterm="", n=_CONTEXT_LINES)
     yield from (line for line in lines if not line.startswith(("---", "+++")))
 
 
-def _joint_parts(joint: Joint) -> Iterator[EditablePart]:
+def _find_joint_parts(joint: Joint) -> Iterator[EditablePart]:
     xyz, rpy = _xyz_and_rpy(joint.origin)
-    yield EditablePart("joint", joint.name, 0, joint.type, xyz, rpy, *_origin_text(joint.element, "origin"))
+    yield EditablePart("joint", joint.name, 0, joint.type, xyz, rpy, *_find_origin_text(joint.element, "origin"))
     if joint.type not in WITHOUT_AXIS:
         yield EditablePart(
-            "axis", joint.name, 0, joint.type, list(joint.axis), [], *_origin_text(joint.element, "axis")
+            "axis", joint.name, 0, joint.type, list(joint.axis), [], *_find_origin_text(joint.element, "axis")
         )
 
 
-def _shape_part(part: EditedPart, link: str, index: int, shape: Visual | Collision) -> EditablePart:
+def _make_shape_part(part: EditedPart, link: str, index: int, shape: Visual | Collision) -> EditablePart:
     geometry = shape.geometry
     title = PurePosixPath(geometry.filename).name if isinstance(geometry, Mesh) else type(geometry).__name__.lower()
     xyz, rpy = _xyz_and_rpy(shape.origin)
-    return EditablePart(part, link, index, shape.name or title, xyz, rpy, *_origin_text(shape.element, "origin"))
+    return EditablePart(part, link, index, shape.name or title, xyz, rpy, *_find_origin_text(shape.element, "origin"))
 
 
-def _inertial_part(link: str, inertial: Inertial) -> EditablePart:
+def _make_inertial_part(link: str, inertial: Inertial) -> EditablePart:
     xyz, rpy = _xyz_and_rpy(inertial.origin)
     return EditablePart(
-        "inertial", link, 0, f"{inertial.mass:g} kg", xyz, rpy, *_origin_text(inertial.element, "origin")
+        "inertial", link, 0, f"{inertial.mass:g} kg", xyz, rpy, *_find_origin_text(inertial.element, "origin")
     )
 
 
@@ -77,7 +80,7 @@ def _xyz_and_rpy(origin: Pose) -> tuple[list[float], list[float]]:
     return list(origin.xyz), list(rpy)
 
 
-def _origin_text(owner: Element | None, tag: str) -> tuple[str, str, int]:
+def _find_origin_text(owner: Element | None, tag: str) -> tuple[str, str, int]:
     """Return ``xyz`` and ``rpy`` of a child element as text, and the element's file and line.
 
     If the child is missing, the text is empty, and the owner determines file and line. If the position is unknown,

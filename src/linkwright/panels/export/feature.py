@@ -13,7 +13,7 @@ from linkwright.diagnostics import LinkwrightError, display_path, join_messages
 from linkwright.page.audience import Page
 from linkwright.page.files import Download
 from linkwright.page.protocol.export import ExportFailed, ExportReady, RequestExport
-from linkwright.panels.export.snapshot import Snapshot, snapshot_of
+from linkwright.panels.export.snapshot import Snapshot, take_configuration_snapshot
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 
@@ -31,15 +31,15 @@ class Format:
 
 
 def _write_html(snapshot: Snapshot) -> bytes:
-    from linkwright.panels.export.html import html_of
+    from linkwright.panels.export.html import write_html
 
-    return html_of(snapshot)
+    return write_html(snapshot)
 
 
 def _write_glb(snapshot: Snapshot) -> bytes:
-    from linkwright.panels.export.gltf import glb_of
+    from linkwright.panels.export.gltf import write_glb
 
-    return glb_of(snapshot)
+    return write_glb(snapshot)
 
 
 FORMATS = {
@@ -49,7 +49,7 @@ FORMATS = {
 """The formats by the extension of the file."""
 
 
-def format_of(name: str) -> Format | None:
+def find_format(name: str) -> Format | None:
     """Return the format for the extension of a file name, or None if it is not supported."""
     return FORMATS.get(name.rpartition(".")[2].lower()) if "." in name else None
 
@@ -85,7 +85,7 @@ class ExportFeature(PageFeature):
 
     async def _export(self, page: Page, message: RequestExport) -> None:
         try:
-            snapshot = snapshot_of(self.viewer, self.managers.of(page), message.view)
+            snapshot = take_configuration_snapshot(self.viewer, self.managers.of(page), message.view)
             data = await asyncio.to_thread(partial(export_snapshot, snapshot, message.format))
         except LinkwrightError as error:
             page.send(ExportFailed(join_messages(error.diagnostics)))

@@ -54,11 +54,11 @@ class GltfFile:
         entries.append({name: value for name, value in content.items() if value is not None})
         return len(entries) - 1
 
-    def entry(self, kind: str, index: int) -> dict[str, Any]:
+    def get_entry(self, kind: str, index: int) -> dict[str, Any]:
         """Return an entry of a list. Changes to the returned dict change the document."""
         return self._lists[kind][index]
 
-    def vertices(self, values: NDArray[Any], *, bounded: bool = False) -> int:
+    def add_vertices(self, values: NDArray[Any], *, bounded: bool = False) -> int:
         """Add an array of shape (N, 2 to 4) as float32, and return its index.
 
         If `bounded` is true, the minimum and maximum of the array are added, as glTF requires for positions.
@@ -76,7 +76,7 @@ class GltfFile:
             **bounds,
         )
 
-    def indices(self, values: NDArray[Any]) -> int:
+    def add_indices(self, values: NDArray[Any]) -> int:
         """Add the vertex indices of triangles, and return the index of the array."""
         is_short = values.size == 0 or int(values.max()) < 0xFFFF
         array = np.ascontiguousarray(values, dtype="<u2" if is_short else "<u4").reshape(-1)
@@ -88,14 +88,14 @@ class GltfFile:
             type="SCALAR",
         )
 
-    def texture(self, data: bytes, content_type: str) -> int:
+    def add_texture(self, data: bytes, content_type: str) -> int:
         """Add a PNG or JPEG file as a repeating texture, and return the texture's index."""
         if not self._lists.get("samplers"):
             self.add("samplers", magFilter=_LINEAR, minFilter=_LINEAR_MIPMAPS, wrapS=_REPEAT, wrapT=_REPEAT)
         image = self.add("images", bufferView=self._add_view(data), mimeType=content_type)
         return self.add("textures", source=image, sampler=0)
 
-    def binary(self, roots: list[int]) -> bytes:
+    def to_binary(self, roots: list[int]) -> bytes:
         """Return the content of the .glb file with these root nodes in its scene."""
         document: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": self._generator},
@@ -106,9 +106,9 @@ class GltfFile:
         if self._binary:
             document["buffers"] = [{"byteLength": len(self._binary)}]
         text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
-        chunks = [_chunk(_JSON, text, b" ")]
+        chunks = [_make_chunk(_JSON, text, b" ")]
         if self._binary:
-            chunks.append(_chunk(_BINARY, bytes(self._binary), b"\0"))
+            chunks.append(_make_chunk(_BINARY, bytes(self._binary), b"\0"))
         body = b"".join(chunks)
         return struct.pack("<III", _MAGIC, _VERSION, 12 + len(body)) + body
 
@@ -119,7 +119,7 @@ class GltfFile:
         return index
 
 
-def _chunk(kind: int, data: bytes, padding: bytes) -> bytes:
+def _make_chunk(kind: int, data: bytes, padding: bytes) -> bytes:
     data += padding * (-len(data) % 4)
     return struct.pack("<II", len(data), kind) + data
 
@@ -129,7 +129,7 @@ _Y_UP = [-sqrt(0.5), 0.0, 0.0, sqrt(0.5)]
 """The rotation from z up, as in ROS, to y up, as in glTF: x, y, z, w."""
 
 
-def glb_of(snapshot: Snapshot) -> bytes:
+def write_glb(snapshot: Snapshot) -> bytes:
     """Return the visuals of a robot in its current pose, as a .glb file.
 
     The colors of the page are converted to the linear values of glTF.
@@ -162,24 +162,24 @@ class _RobotWriter:
 
     def write(self) -> bytes:
         robot, scene = self._snapshot.robot, self._snapshot.scene
-        poses = self._joint_poses()
-        nodes = {link.name: self._link(link) for link in scene.links}
+        poses = self._compute_joint_poses()
+        nodes = {link.name: self._add_link(link) for link in scene.links}
         for joint in robot.joints.values():
             x, y, z, *quaternion = poses[joint.name]
-            child = self._gltf.entry("nodes", nodes[joint.child])
+            child = self._gltf.get_entry("nodes", nodes[joint.child])
             child.update(translation=[x, y, z], rotation=list(normalized(*quaternion)))
             child["extras"] = {"joint": joint.name, "type": joint.type, "axis": list(joint.axis)}
-            self._gltf.entry("nodes", nodes[joint.parent]).setdefault("children", []).append(nodes[joint.child])
+            self._gltf.get_entry("nodes", nodes[joint.parent]).setdefault("children", []).append(nodes[joint.child])
         root_node = self._gltf.add("nodes", name=robot.name, rotation=_Y_UP, children=[nodes[robot.root]])
-        return self._gltf.binary([root_node])
+        return self._gltf.to_binary([root_node])
 
-    def _joint_poses(self) -> Mapping[str, list[float]]:
+    def _compute_joint_poses(self) -> Mapping[str, list[float]]:
         joints = list(self._snapshot.robot.joints.values())
         positions = np.array([self._snapshot.positions.get(joint.name, 0.0) for joint in joints])
         poses = JointMotion(joints).poses(positions)
         return {joint.name: pose.tolist() for joint, pose in zip(joints, poses, strict=True)}
 
-    def _link(self, link: LinkScene) -> int:
+    def _add_link(self, link: LinkScene) -> int:
         shapes = [self._add_shape(link, index, shape) for index, shape in enumerate(link.visuals)]
         return self._gltf.add("nodes", name=link.name, children=shapes or None)
 
@@ -198,17 +198,17 @@ class _RobotWriter:
     def _add_mesh(self, link: LinkScene, shape: Shape) -> int:
         source = (shape.url,) if shape.kind == "mesh" else (shape.kind, *shape.size)
         primitives = []
-        for index, part in enumerate(self._mesh_parts(link, shape)):
-            appearance = _appearance(shape, part, self._texture_file(shape))
+        for index, part in enumerate(self._read_mesh_parts(link, shape)):
+            appearance = _appearance(shape, part, self._read_texture(shape))
             primitives.append(
                 {**self._add_geometry((*source, index), part), "material": self._add_material(appearance)}
             )
         key = (*source, *(primitive["material"] for primitive in primitives))
         if key not in self._meshes:
-            self._meshes[key] = self._gltf.add("meshes", name=_mesh_name(shape), primitives=primitives)
+            self._meshes[key] = self._gltf.add("meshes", name=_get_mesh_name(shape), primitives=primitives)
         return self._meshes[key]
 
-    def _mesh_parts(self, link: LinkScene, shape: Shape) -> list[MeshPart]:
+    def _read_mesh_parts(self, link: LinkScene, shape: Shape) -> list[MeshPart]:
         if shape.kind == "box":
             return [MeshPart(box(shape.size), None)]
         if shape.kind == "cylinder":
@@ -237,20 +237,20 @@ class _RobotWriter:
     def _add_geometry(self, key: tuple[Any, ...], part: MeshPart) -> dict[str, Any]:
         if key not in self._geometries:
             triangles = part.triangles
-            attributes = {"POSITION": self._gltf.vertices(triangles.positions, bounded=True)}
+            attributes = {"POSITION": self._gltf.add_vertices(triangles.positions, bounded=True)}
             if triangles.normals is not None:
-                attributes["NORMAL"] = self._gltf.vertices(triangles.normals)
+                attributes["NORMAL"] = self._gltf.add_vertices(triangles.normals)
             if triangles.coordinates is not None:
-                attributes["TEXCOORD_0"] = self._gltf.vertices(triangles.coordinates)
+                attributes["TEXCOORD_0"] = self._gltf.add_vertices(triangles.coordinates)
             if triangles.colors is not None:
-                attributes["COLOR_0"] = self._gltf.vertices(_linear_colors(triangles.colors))
-            indices = self._gltf.indices(triangles.indices)
+                attributes["COLOR_0"] = self._gltf.add_vertices(_to_linear_colors(triangles.colors))
+            indices = self._gltf.add_indices(triangles.indices)
             self._geometries[key] = {"attributes": attributes, "indices": indices}
         return self._geometries[key]
 
     # --- materials ---------------------------------------------------------------------------------------------
 
-    def _texture_file(self, shape: Shape) -> bytes | None:
+    def _read_texture(self, shape: Shape) -> bytes | None:
         """Return the texture that the URDF sets, as PNG or JPEG.
 
         None means that there is no texture, or that it cannot be read.
@@ -258,13 +258,13 @@ class _RobotWriter:
         if shape.texture is None:
             return None
         try:
-            return _as_png(self._files.path(shape.texture))
+            return _read_as_png(self._files.path(shape.texture))
         except (FileRefusedError, OSError, ValueError):
             return None  # The page also draws the shape without a texture.
 
     def _add_material(self, appearance: _Appearance) -> int:
         if appearance not in self._materials:
-            red, green, blue, _ = _linear_colors(np.array([[*appearance.color, 1.0]]))[0].tolist()
+            red, green, blue, _ = _to_linear_colors(np.array([[*appearance.color, 1.0]]))[0].tolist()
             surface: dict[str, Any] = {
                 "baseColorFactor": [red, green, blue, appearance.alpha],
                 "metallicFactor": 0.0,
@@ -273,7 +273,7 @@ class _RobotWriter:
             if appearance.image is not None:
                 if appearance.image not in self._textures:
                     content_type = "image/jpeg" if appearance.image.startswith(b"\xff\xd8") else "image/png"
-                    self._textures[appearance.image] = self._gltf.texture(appearance.image, content_type)
+                    self._textures[appearance.image] = self._gltf.add_texture(appearance.image, content_type)
                 surface["baseColorTexture"] = {"index": self._textures[appearance.image]}
             self._materials[appearance] = self._gltf.add(
                 "materials",
@@ -322,7 +322,7 @@ def _appearance(shape: Shape, part: MeshPart, texture: bytes | None) -> _Appeara
     return _Appearance(material.color, float(alpha), image, is_mesh, part.triangles.colors is not None)
 
 
-def _as_png(path: Path) -> bytes:
+def _read_as_png(path: Path) -> bytes:
     """Return the content of an image file, converted to PNG unless it is PNG or JPEG."""
     data = path.read_bytes()
     if data.startswith((b"\x89PNG", b"\xff\xd8\xff")):
@@ -338,7 +338,7 @@ def _as_png(path: Path) -> bytes:
     return file.getvalue()
 
 
-def _linear_colors(colors: Any) -> Any:
+def _to_linear_colors(colors: Any) -> Any:
     """Convert sRGB colors to the linear values of glTF, with unchanged alpha."""
     srgb = np.asarray(colors, dtype=np.float64)
     linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
@@ -346,7 +346,7 @@ def _linear_colors(colors: Any) -> Any:
     return linear
 
 
-def _mesh_name(shape: Shape) -> str:
+def _get_mesh_name(shape: Shape) -> str:
     return urlsplit(shape.url).path.rpartition("/")[2] if shape.url else shape.kind
 
 

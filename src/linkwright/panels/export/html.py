@@ -18,7 +18,7 @@ from linkwright.page.files import without_secrets
 from linkwright.page.protocol.message import encode
 from linkwright.page.protocol.robot import RobotScene
 from linkwright.page.server import PAGE_FOLDER
-from linkwright.panels.export.snapshot import FileSet, Snapshot, mesh_addresses
+from linkwright.panels.export.snapshot import FileSet, Snapshot, find_mesh_addresses
 
 _PROGRAM = f"Linkwright {__version__}"
 _PAGE = """\
@@ -43,17 +43,19 @@ _PAGE = """\
 """
 
 
-def html_of(snapshot: Snapshot) -> bytes:
+def write_html(snapshot: Snapshot) -> bytes:
     """Return the HTML page of a snapshot.
 
     Raises:
         LinkwrightError: VIEW202, the page of this installation was not built.
     """
-    return recorded_json(snapshot).join(page_around(snapshot.name)).encode()
+    return recording_to_json(snapshot).join(split_page(snapshot.name)).encode()
 
 
-def page_around(title: str) -> tuple[str, str]:
-    """Return the parts of the page before and after the recorded messages, for several snapshots with one program.
+def split_page(title: str) -> tuple[str, str]:
+    """Return the parts of the page before and after the recorded messages.
+
+    With both, one program can show several snapshots.
 
     Args:
         title: the title of the page.
@@ -63,7 +65,7 @@ def page_around(title: str) -> tuple[str, str]:
     """
     folder = PAGE_FOLDER / "export"
     try:
-        script = _script(folder)
+        script = _read_script(folder)
         style = (folder / "export.css").read_text(encoding="utf-8")
     except OSError:
         hint = phrase("run `make page` in a checkout of Linkwright")
@@ -77,18 +79,20 @@ def page_around(title: str) -> tuple[str, str]:
     script = script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
     head_template, end_template = _PAGE.split("{recorded}")
     style = style.replace("</style", "<\\/style")
-    head = head_template.format(policy=_policy(script), program=_PROGRAM, title=html.escape(title), style=style)
+    head = head_template.format(
+        policy=_make_security_policy(script), program=_PROGRAM, title=html.escape(title), style=style
+    )
     return head, end_template.format(script=script)
 
 
-def _script(folder: Path) -> str:
+def _read_script(folder: Path) -> str:
     compressed_script = folder / "export.js.gz"  # `npm run build` alone does not create this file.
     if compressed_script.is_file():
         return gzip.decompress(compressed_script.read_bytes()).decode()
     return (folder / "export.js").read_text(encoding="utf-8")
 
 
-def _policy(script: str) -> str:
+def _make_security_policy(script: str) -> str:
     """Return a content security policy that allows only this script and embedded content."""
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
@@ -97,10 +101,10 @@ def _policy(script: str) -> str:
     )
 
 
-def recorded_json(snapshot: Snapshot) -> str:
+def recording_to_json(snapshot: Snapshot) -> str:
     """Return messages, binary frames and files for the page, as JSON to embed in HTML."""
     robots = [message for message in snapshot.messages if isinstance(message, RobotScene)]
-    files = FileSet(snapshot.meshes).collect([*mesh_addresses(robots), *snapshot.marker_meshes])
+    files = FileSet(snapshot.meshes).collect([*find_mesh_addresses(robots), *snapshot.marker_meshes])
     messages = ",".join(encode(message) for message in snapshot.messages)
     other_values = {
         "program": _PROGRAM,

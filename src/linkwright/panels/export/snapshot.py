@@ -45,7 +45,7 @@ Pose = NDArray[np.float64]
 """A pose: x, y, z in meters, qx, qy, qz, qw, shape (7,)."""
 
 
-def current_positions(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:
+def compute_positions(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, float]:
     """Return the positions (rad or m) of the movable joints by name, computed from link poses.
 
     Joints whose links have no known pose are omitted.
@@ -59,13 +59,13 @@ def current_positions(robot: Robot, poses: Mapping[str, Pose]) -> dict[str, floa
         if joint.type not in ("revolute", "continuous", "prismatic"):
             continue
         if joint.parent in poses and joint.child in poses:
-            position = _position(joint, poses[joint.parent], poses[joint.child])
+            position = _compute_position(joint, poses[joint.parent], poses[joint.child])
             if isfinite(position):
                 positions[joint.name] = position
     return positions
 
 
-def _position(joint: Joint, parent: Pose, child: Pose) -> float:
+def _compute_position(joint: Joint, parent: Pose, child: Pose) -> float:
     inverse_parent = quaternion_inverse(parent[3:])
     axis = np.asarray(joint.axis, dtype=np.float64)
     length = float(np.linalg.norm(axis))
@@ -79,10 +79,10 @@ def _position(joint: Joint, parent: Pose, child: Pose) -> float:
     relative_rotation = quaternion_multiply(quaternion_inverse(origin), quaternion_multiply(inverse_parent, child[3:]))
     angle = 2.0 * atan2(float(np.dot(relative_rotation[:3], axis)), float(relative_rotation[3]))
     angle = (angle + pi) % (2.0 * pi) - pi
-    return _within_limits(joint, angle)
+    return _move_within_limits(joint, angle)
 
 
-def _within_limits(joint: Joint, angle: float) -> float:
+def _move_within_limits(joint: Joint, angle: float) -> float:
     """Return the angle, or an equivalent angle within the limits of the joint if there is one."""
     if joint.type == "continuous" or joint.limit is None:
         return angle
@@ -98,7 +98,7 @@ _MATERIAL_FILE = re.compile(r"^[ \t]*mtllib[ \t]+(.+?)[ \t]*\r?$", re.MULTILINE)
 _MATERIAL_MAP = re.compile(r"^[ \t]*(?:map_\w+|bump|norm|disp)[ \t]+(.+?)[ \t]*\r?$", re.MULTILINE)
 
 
-def mesh_addresses(scenes: Iterable[RobotScene]) -> list[str]:
+def find_mesh_addresses(scenes: Iterable[RobotScene]) -> list[str]:
     """Return the addresses of the meshes and textures of robots, without duplicates."""
     links = chain.from_iterable(scene.links for scene in scenes)
     shapes = chain.from_iterable((*link.visuals, *link.collisions) for link in links)
@@ -144,11 +144,11 @@ class FileSet:
             except (FileRefusedError, OSError):
                 continue
             folder = address.rpartition("/")[0]
-            pending += [f"{folder}/{name}" for name in referenced_files(path.suffix.lower(), contents[address])]
+            pending += [f"{folder}/{name}" for name in find_referenced_files(path.suffix.lower(), contents[address])]
         return contents
 
 
-def referenced_files(suffix: str, data: bytes) -> list[str]:
+def find_referenced_files(suffix: str, data: bytes) -> list[str]:
     """Return the files that a mesh or material file refers to, as relative paths.
 
     Args:
@@ -214,7 +214,9 @@ class Snapshot:
     spacing: float | None = None
 
 
-def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View | None = None) -> Snapshot:
+def take_configuration_snapshot(
+    viewer: FeatureHost, manager: VisualizationManager, view: View | None = None
+) -> Snapshot:
     """Return a snapshot of the current state of a configuration.
 
     Args:
@@ -237,18 +239,18 @@ def snapshot_of(viewer: FeatureHost, manager: VisualizationManager, view: View |
     snapshot = take_snapshot(models[0], opening_messages, frames, viewer.context.meshes)
     files = viewer.context.library.files
     outside_paths = [
-        path for model in models for path in files_outside(files(model.text), model.scene, snapshot.meshes)
+        path for model in models for path in find_outside_files(files(model.text), model.scene, snapshot.meshes)
     ]
     return dataclasses.replace(
         snapshot,
         outside_files=list(dict.fromkeys(outside_paths)),
-        problems=[problem for model in models for problem in _problems(model)],
+        problems=[problem for model in models for problem in _find_problems(model)],
         awaits_size=manager.config.awaits_size,
         spacing=manager.config.spacing,
     )
 
 
-def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
+def find_outside_files(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) -> list[Path]:
     """Return the files of a description that recipients of an export may not be allowed to see.
 
     As in ROS, includes, ``load_yaml`` and ``file://`` can read any file of the machine.
@@ -263,7 +265,7 @@ def files_outside(read: Sequence[Path], scene: RobotScene, meshes: MeshFolders) 
     """
     files = FileSet(meshes)
     file_paths = dict.fromkeys(Path(normpath(path.absolute())) for path in read)  # Paths may contain `..`.
-    for address in mesh_addresses([scene]):
+    for address in find_mesh_addresses([scene]):
         with suppress(FileRefusedError):
             file_paths[files.path(address)] = None
     main_folder = read[0].absolute().parent if read else None
@@ -291,10 +293,10 @@ def take_snapshot(
     robot, scene = model.robot, model.scene
     if robot is None:
         raise no_robot_error()
-    frames = [frame for payload in payloads if isinstance(frame := _full_content(payload), bytes)]
+    frames = [frame for payload in payloads if isinstance(frame := _get_full_content(payload), bytes)]
     table = next(message for message in opening if isinstance(message, FrameTable))
-    poses = _poses(table, frames)
-    positions = current_positions(robot, {link.name: poses[link.frame] for link in scene.links if link.frame in poses})
+    poses = _read_poses(table, frames)
+    positions = compute_positions(robot, {link.name: poses[link.frame] for link in scene.links if link.frame in poses})
     messages: list[ServerMessage] = []
     for message in opening:
         if isinstance(message, Tree):
@@ -307,18 +309,18 @@ def take_snapshot(
             messages.append(replace(message, run=""))
         elif isinstance(message, _UNCHANGED_MESSAGES):
             messages.append(message)
-    controls = _joint_controls(robot)
+    controls = _make_joint_controls(robot)
     messages[-1:-1] = [
         Joints(controls),
         JointPositions({control.name: positions.get(control.name, 0.0) for control in controls}),
     ]
-    problems = _problems(model)
+    problems = _find_problems(model)
     return Snapshot(
-        robot.name, robot, scene, positions, messages, frames, meshes.copy(), problems, _marker_meshes(payloads)
+        robot.name, robot, scene, positions, messages, frames, meshes.copy(), problems, _find_marker_meshes(payloads)
     )
 
 
-def _problems(model: RobotModelDisplay) -> list[Diagnostic]:
+def _find_problems(model: RobotModelDisplay) -> list[Diagnostic]:
     """Return the findings about shapes of a robot that cannot be drawn."""
     return [
         Diagnostic(
@@ -337,21 +339,21 @@ def no_robot_error() -> LinkwrightError:
     return LinkwrightError(Diagnostic("VIEW201", phrase("no robot can be exported, because none is shown"), hint=hint))
 
 
-def _full_content(payload: Payload) -> bytes | str | None:
+def _get_full_content(payload: Payload) -> bytes | str | None:
     """Return the full content of a payload, as for a new page, or None if it is empty."""
     if isinstance(payload, ScaledData):
         return payload.full_frame
     return payload if isinstance(payload, (bytes, str)) else payload.since(0)[0]
 
 
-def _marker_meshes(payloads: Sequence[Payload]) -> list[str]:
+def _find_marker_meshes(payloads: Sequence[Payload]) -> list[str]:
     from linkwright.rviz.markers.shapes import MarkerStore
 
     shapes = [shape for payload in payloads if isinstance(payload, MarkerStore) for shape in payload.shapes]
     return [shape.mesh.url for shape in shapes if shape.mesh is not None and shape.mesh.url is not None]
 
 
-def _poses(table: FrameTable, frames: Sequence[bytes]) -> dict[str, NDArray[np.float64]]:
+def _read_poses(table: FrameTable, frames: Sequence[bytes]) -> dict[str, NDArray[np.float64]]:
     for frame in frames:
         revision, poses = unpack_transforms(frame)
         if revision == table.revision:
@@ -378,7 +380,7 @@ def _without_paths(properties: Sequence[Property]) -> list[Property]:
     ]
 
 
-def _joint_controls(robot: Robot) -> list[JointControl]:
+def _make_joint_controls(robot: Robot) -> list[JointControl]:
     """Return a slider for each movable joint, as in joint_state_publisher_gui."""
     layout = make_layout(robot, JointSettings())
     controls = []

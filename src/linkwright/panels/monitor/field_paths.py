@@ -104,11 +104,11 @@ class FieldPath:
             owners.append(element)
             element = getattr(element, step.name)
             for key in step.keys:
-                index = key if isinstance(key, int) else _index_of(key, element, owners)
+                index = key if isinstance(key, int) else _find_index(key, element, owners)
                 if index is None or index >= len(element):
                     return None
                 element = element[index]
-        return _number(element)
+        return _to_number(element)
 
     @staticmethod
     def _check_keys(step: _Step, kind: FieldType) -> None:
@@ -127,7 +127,7 @@ def is_number(kind: FieldType) -> bool:
     return kind.base in SECONDS if primitive is None else primitive.python is not str
 
 
-def element_names(owners: Sequence[Any], values: Any) -> Sequence[str] | None:
+def find_element_names(owners: Sequence[Any], values: Any) -> Sequence[str] | None:
     """Return the names of an array's elements in order, or None if they have no names.
 
     Args:
@@ -147,12 +147,12 @@ def element_names(owners: Sequence[Any], values: Any) -> Sequence[str] | None:
     return None
 
 
-def _index_of(name: str, values: Any, owners: Sequence[Any]) -> int | None:
-    names = element_names(owners, values)
+def _find_index(name: str, values: Any, owners: Sequence[Any]) -> int | None:
+    names = find_element_names(owners, values)
     return list(names).index(name) if names is not None and name in names else None
 
 
-def _number(value: Any) -> float:
+def _to_number(value: Any) -> float:
     if isinstance(value, Message):
         return float(value.nanoseconds) / NANOSECONDS_PER_SECOND  # type: ignore[attr-defined]  # a Time or a Duration
     return float(value[0]) if isinstance(value, bytes) else float(value)
@@ -163,7 +163,7 @@ _MAX_ELEMENTS = 64
 """The number of elements of an array that are offered. Users can enter the index of any other element."""
 
 
-def plot_fields(message_class: type[Message], message: Message | None = None) -> list[PlotField]:
+def find_plot_fields(message_class: type[Message], message: Message | None = None) -> list[PlotField]:
     """Return the paths of the numbers in a message type, in the order of its fields.
 
     Args:
@@ -172,14 +172,14 @@ def plot_fields(message_class: type[Message], message: Message | None = None) ->
             array.
     """
     fields: list[PlotField] = []
-    for path, type_name in _number_fields(message_class, message, "", []):
+    for path, type_name in _iterate_number_fields(message_class, message, "", []):
         fields.append(PlotField(path, type_name))
         if len(fields) == _MAX_FIELDS:
             break
     return fields
 
 
-def _number_fields(
+def _iterate_number_fields(
     cls: type[Message], message: Message | None, prefix: str, owners: Sequence[Any]
 ) -> Iterator[tuple[str, str]]:
     for field in definition_of(cls).fields:
@@ -187,29 +187,29 @@ def _number_fields(
         value = None if message is None else getattr(message, field.name)
         nested_owners = [*owners, message]
         if field.type.container is Container.ONE:
-            yield from _value(field, value, path, nested_owners)
+            yield from _iterate_value_fields(field, value, path, nested_owners)
         elif value is None:
-            yield from _value(field, None, f"{path}[0]", nested_owners)
+            yield from _iterate_value_fields(field, None, f"{path}[0]", nested_owners)
         else:
-            yield from _element_fields(field, value, path, nested_owners)
+            yield from _iterate_element_fields(field, value, path, nested_owners)
 
 
-def _element_fields(field: Field, values: Any, path: str, owners: Sequence[Any]) -> Iterator[tuple[str, str]]:
+def _iterate_element_fields(field: Field, values: Any, path: str, owners: Sequence[Any]) -> Iterator[tuple[str, str]]:
     if not is_number(field.type) and field.type.primitive is not None:
         return
-    names = element_names(owners, values)
+    names = find_element_names(owners, values)
     uses_indices = names is None or len(set(names)) < len(names) or any(_is_ambiguous(name) for name in names)
     for index in range(min(len(values), _MAX_ELEMENTS)):
         key = str(index) if uses_indices or names is None else names[index]
-        yield from _value(field, values[index], f"{path}[{key}]", owners)
+        yield from _iterate_value_fields(field, values[index], f"{path}[{key}]", owners)
 
 
-def _value(field: Field, value: Any, path: str, owners: Sequence[Any]) -> Iterator[tuple[str, str]]:
+def _iterate_value_fields(field: Field, value: Any, path: str, owners: Sequence[Any]) -> Iterator[tuple[str, str]]:
     if is_number(field.type):
         primitive = field.type.primitive
         yield path, "seconds" if primitive is None else primitive.idl_name
     elif field.type.primitive is None:
-        yield from _number_fields(get_message(field.type.base), value, f"{path}.", owners)
+        yield from _iterate_number_fields(get_message(field.type.base), value, f"{path}.", owners)
 
 
 def _is_ambiguous(name: str) -> bool:

@@ -10,7 +10,7 @@ from linkwright.graph import MessageInfo
 from linkwright.page.audience import Page
 from linkwright.page.protocol.message import ServerMessage, encode
 from linkwright.page.protocol.monitor import LogLine, LogLines, WatchLog
-from linkwright.panels.monitor.topic_tap import Paced, TopicTap
+from linkwright.panels.monitor.topic_tap import RateLimiter, TopicTap
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 _TOPIC = "/rosout"
@@ -18,7 +18,7 @@ _SEND_PERIOD_S = 0.1
 _MAX_QUEUED = 1000
 """The largest number of queued records for a page. If there are more, only the newest are sent."""
 
-_MAX_PAST = 1000
+_MAX_PAST_RECORDS = 1000
 """The number of past records that a page receives when it starts to watch."""
 
 
@@ -63,9 +63,9 @@ class LogFeature(PageFeature):
         super().__init__(viewer)
         self._queues: dict[Page, _PageQueue] = {}
         self._watching_pages: set[Page] = set()
-        self._past_lines: deque[LogLine] = deque(maxlen=_MAX_PAST)
+        self._past_lines: deque[LogLine] = deque(maxlen=_MAX_PAST_RECORDS)
         self._tap: TopicTap | None = None
-        self._sender = Paced(self._send, _SEND_PERIOD_S)
+        self._sender = RateLimiter(self._send, _SEND_PERIOD_S)
 
     def opening_messages(self) -> list[ServerMessage]:
         """Subscribe if this is the first page, and return no messages."""

@@ -25,7 +25,7 @@ class NodeGraphFeature(PageFeature):
         if not message.watched:
             self.remove_page(page)
             return
-        self._sent_graphs[page] = graph = node_graph(self.context.node.graph)
+        self._sent_graphs[page] = graph = make_node_graph(self.context.node.graph)
         page.send(graph)
         self.context.graph_changes.watch(self._publish)
 
@@ -41,14 +41,14 @@ class NodeGraphFeature(PageFeature):
         self.context.graph_changes.unwatch(self._publish)
 
     def _publish(self) -> None:
-        graph = node_graph(self.context.node.graph)
+        graph = make_node_graph(self.context.node.graph)
         for page, sent_graph in self._sent_graphs.items():
             if graph != sent_graph:
                 self._sent_graphs[page] = graph
                 page.send(graph)
 
 
-def node_graph(graph: GraphQueries) -> NodeGraph:
+def make_node_graph(graph: GraphQueries) -> NodeGraph:
     """Return the current nodes and topics.
 
     As in ROS, nodes with the same name count as one node.

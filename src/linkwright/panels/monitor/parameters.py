@@ -24,7 +24,7 @@ from linkwright.page.protocol.monitor import (
     SetParameter,
     WatchParameters,
 )
-from linkwright.panels.monitor.topic_tap import Paced, TopicTap
+from linkwright.panels.monitor.topic_tap import RateLimiter, TopicTap
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.parameter_responses import NoParameterResponseError, wait_for_response, wait_for_services
 
@@ -42,7 +42,7 @@ _BOOLS = {"true": True, "false": False}
 _INT64_RANGE = range(-(2**63), 2**63)
 
 
-def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
+def make_parameter_row(descriptor: Any, value: Any) -> ParameterRow:
     """Return the row of a parameter for pages.
 
     Args:
@@ -54,7 +54,7 @@ def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
     if limits:
         minimum, maximum = str(limits[0].from_value), str(limits[0].to_value)
         step = str(limits[0].step) if limits[0].step else ""
-    kind, values = value_texts(value)
+    kind, values = format_value(value)
     return ParameterRow(
         name=descriptor.name,
         kind=kind,
@@ -68,16 +68,16 @@ def parameter_row(descriptor: Any, value: Any) -> ParameterRow:
     )
 
 
-def value_texts(value: Any) -> tuple[ParameterKind, list[str]]:
+def format_value(value: Any) -> tuple[ParameterKind, list[str]]:
     """Return the kind of a rcl_interfaces/msg/ParameterValue, and the texts of its elements."""
     plain = plain_value(value)
     kind = ParameterType(value.type)
     if kind is ParameterType.NOT_SET:
         return _KIND_NAMES[kind], []
-    return _KIND_NAMES[kind], [_text(element) for element in (plain if kind.is_array else [plain])]
+    return _KIND_NAMES[kind], [_format_element(element) for element in (plain if kind.is_array else [plain])]
 
 
-def parameter_of(request: SetParameter) -> Parameter:
+def parse_parameter(request: SetParameter) -> Parameter:
     """Return the parameter that a page requests to set.
 
     Raises:
@@ -87,7 +87,7 @@ def parameter_of(request: SetParameter) -> Parameter:
     if kind is ParameterType.NOT_SET:
         return Parameter(request.name, kind)
     element = request.kind.removesuffix("_array")
-    values = [_value(element, text) for text in request.values]
+    values = [_parse_element(element, text) for text in request.values]
     if kind.is_array:
         return Parameter(request.name, kind, values)
     if len(values) != 1:
@@ -95,13 +95,13 @@ def parameter_of(request: SetParameter) -> Parameter:
     return Parameter(request.name, kind, values[0])
 
 
-def _text(value: Any) -> str:
+def _format_element(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return str(value[0]) if isinstance(value, bytes) else str(value)
 
 
-def _value(kind: str, text: str) -> Any:
+def _parse_element(kind: str, text: str) -> Any:
     if kind == "string":
         return text
     try:
@@ -138,7 +138,7 @@ class RemoteNode:
         self._client = AsyncParameterClient(node, name)
         self._rows: dict[str, ParameterRow] = {}
         self._tasks: set[asyncio.Task[None]] = set()
-        self._publisher = Paced(self._publish_rows, _PUBLISH_PERIOD_S)
+        self._publisher = RateLimiter(self._publish_rows, _PUBLISH_PERIOD_S)
 
     def close(self) -> None:
         """Cancel requests, and destroy the clients."""
@@ -158,7 +158,7 @@ class RemoteNode:
         for parameter in event.changed_parameters:
             row = self._rows.get(parameter.name)
             if row is not None:
-                row.kind, row.values = value_texts(parameter.value)
+                row.kind, row.values = format_value(parameter.value)
         if any(parameter.name not in self._rows for parameter in event.new_parameters):
             self.refresh()
         elif self.parameters is not None:
@@ -179,17 +179,17 @@ class RemoteNode:
 
     async def _refresh(self) -> None:
         try:
-            names = await self._parameter_names()
-            values = (await self._response_to(self._client.get_parameters(names))).values if names else []
+            names = await self._request_parameter_names()
+            values = (await self._wait_for_response(self._client.get_parameters(names))).values if names else []
             descriptors = (
-                (await self._response_to(self._client.describe_parameters(names))).descriptors if names else []
+                (await self._wait_for_response(self._client.describe_parameters(names))).descriptors if names else []
             )
         except NoParameterResponseError as error:
             self.parameters = NodeParameters(self.name, [], str(error))
             self._publish(self.parameters)
             return
         pairs = zip(descriptors, values, strict=False)
-        self._rows = {descriptor.name: parameter_row(descriptor, value) for descriptor, value in pairs}
+        self._rows = {descriptor.name: make_parameter_row(descriptor, value) for descriptor, value in pairs}
         self._publish_rows()
 
     def _publish_rows(self) -> None:
@@ -199,7 +199,7 @@ class RemoteNode:
     async def _set(self, request: SetParameter, on_result: Callable[[ParameterResult], None]) -> None:
         try:
             await wait_for_services(self._client)
-            response = await self._response_to(self._client.set_parameters([parameter_of(request)]))
+            response = await self._wait_for_response(self._client.set_parameters([parse_parameter(request)]))
         except (ValueError, NoParameterResponseError) as error:
             on_result(ParameterResult(self.name, request.name, False, str(error)))
             return
@@ -209,19 +209,19 @@ class RemoteNode:
     async def _dump(self, on_result: Callable[[ParameterDump], None]) -> None:
         file = f"{self.name.strip('/').replace('/', '__')}.yaml"
         try:
-            names = await self._parameter_names()
-            values = (await self._response_to(self._client.get_parameters(names))).values if names else []
+            names = await self._request_parameter_names()
+            values = (await self._wait_for_response(self._client.get_parameters(names))).values if names else []
         except NoParameterResponseError as error:
             on_result(ParameterDump(self.name, file, "", str(error)))
             return
         plain_values = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
         on_result(ParameterDump(self.name, file, format_parameter_file(self.name, plain_values), None))
 
-    async def _parameter_names(self) -> list[str]:
+    async def _request_parameter_names(self) -> list[str]:
         await wait_for_services(self._client)
-        return sorted((await self._response_to(self._client.list_parameters())).result.names)
+        return sorted((await self._wait_for_response(self._client.list_parameters())).result.names)
 
-    async def _response_to(self, future: Awaitable[Any]) -> Any:
+    async def _wait_for_response(self, future: Awaitable[Any]) -> Any:
         return await wait_for_response(self._client, future)
 
 
@@ -322,14 +322,14 @@ class ParametersFeature(PageFeature):
         )
         for page, request in self._requests.items():
             if request.wants_list and request.sent != node_list:
-                reappeared_node = self._reappeared_node(request, node_list)
+                reappeared_node = self._find_reappeared_node(request, node_list)
                 request.sent = node_list
                 page.send(node_list)
                 if reappeared_node is not None:
                     reappeared_node.refresh()
 
-    def _reappeared_node(self, request: _Request, node_list: ParameterNodes) -> RemoteNode | None:
-        """Return the node that a page watches if the node has reappeared after it was missing, or None."""
+    def _find_reappeared_node(self, request: _Request, node_list: ParameterNodes) -> RemoteNode | None:
+        """Return the watched node if it has reappeared after it was missing, or None."""
         if (
             request.sent is None
             or request.node is None

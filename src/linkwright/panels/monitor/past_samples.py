@@ -21,7 +21,7 @@ _MAX_MESSAGES = 3000
 """The largest number of messages to read, evenly spread, because reading one takes some ten microseconds."""
 
 
-def sample_of(path: FieldPath, message: Any, received_ns: int) -> tuple[float, float, float] | None:
+def read_sample(path: FieldPath, message: Any, received_ns: int) -> tuple[float, float, float] | None:
     """Return a sample of a field: receive time, stamp in the header (or NaN), and value.
 
     The times are in seconds since the epoch. The result is None if the message has no such field.
@@ -34,8 +34,8 @@ def sample_of(path: FieldPath, message: Any, received_ns: int) -> tuple[float, f
     return received_ns / NANOSECONDS_PER_SECOND, stamp_seconds, value
 
 
-def past_samples(path: FieldPath, cls: Any, messages: Sequence[Recorded]) -> NDArray[np.float64]:
-    """Return the samples of recorded messages of a class, shape (3, M). See `sample_of`."""
+def read_past_samples(path: FieldPath, cls: Any, messages: Sequence[Recorded]) -> NDArray[np.float64]:
+    """Return the samples of recorded messages of a class, shape (3, M). See `read_sample`."""
     step = -(-len(messages) // _MAX_MESSAGES) or 1
-    samples = [sample_of(path, deserialize(data, cls), stamp_ns) for _, stamp_ns, data in messages[::-1][::step]]
+    samples = [read_sample(path, deserialize(data, cls), stamp_ns) for _, stamp_ns, data in messages[::-1][::step]]
     return np.array([sample for sample in reversed(samples) if sample is not None], dtype=np.float64).reshape(-1, 3).T

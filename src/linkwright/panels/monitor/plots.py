@@ -23,14 +23,14 @@ from linkwright.page.protocol.monitor import (
     WatchSeries,
     pack_samples,
 )
-from linkwright.panels.monitor.field_paths import FieldPath, FieldPathError, plot_fields
-from linkwright.panels.monitor.past_samples import past_samples, sample_of
-from linkwright.panels.monitor.topic_tap import Paced, TopicTap
+from linkwright.panels.monitor.field_paths import FieldPath, FieldPathError, find_plot_fields
+from linkwright.panels.monitor.past_samples import read_past_samples, read_sample
+from linkwright.panels.monitor.topic_tap import RateLimiter, TopicTap
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.panels.timeline import TimelineFeature
 from linkwright.rviz.context import ViewerContext
 
-MAX_SENT = 256
+MAX_SENT_SAMPLES = 256
 """The largest number of samples of a series in a frame. 30 frames a second are enough for a topic at 7 kHz."""
 
 _MAX_QUEUED = 4096
@@ -53,16 +53,16 @@ class SampleQueue:
         self._stamps.append(stamp)
         self._values.append(value)
         if len(self._values) >= _MAX_QUEUED:
-            thinned_samples = thin_out(self._array(), MAX_SENT).tolist()
+            thinned_samples = thin_out(self._to_array(), MAX_SENT_SAMPLES).tolist()
             self._received, self._stamps, self._values = thinned_samples
 
     def take(self) -> NDArray[np.float64]:
         """Remove and return all samples, shape (3, M), thinned out to fit a frame."""
-        samples = thin_out(self._array(), MAX_SENT)
+        samples = thin_out(self._to_array(), MAX_SENT_SAMPLES)
         self._received, self._stamps, self._values = [], [], []
         return samples
 
-    def _array(self) -> NDArray[np.float64]:
+    def _to_array(self) -> NDArray[np.float64]:
         return np.array([self._received, self._stamps, self._values], dtype=np.float64)
 
 
@@ -98,7 +98,7 @@ _MAX_PAST_SAMPLES = 2048
 _MAX_PAST_BYTES = 64 << 20
 """The largest total size in bytes of the messages that are read for past samples."""
 
-_QUIET = 0.1
+_QUIET_S = 0.1
 """Seconds without a jump of time before past samples are read, because dragging causes many jumps."""
 
 _MAX_PAST_S = 600.0
@@ -127,7 +127,7 @@ class _Series:
         queued_samples, past, self.past = self.queue.take(), self.past, None
         return queued_samples if past is None else np.hstack([past, queued_samples])
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Discard the queued and the past samples, because the displayed time has jumped."""
         self.past = None
         self.queue.take()
@@ -139,7 +139,7 @@ class _PlottedTopic:
     def __init__(self, context: ViewerContext, topic: str, on_samples: Callable[[], None]) -> None:
         self._on_samples = on_samples
         self.series: list[_Series] = []
-        self.tap = TopicTap(context, topic, self._receive, changed=self._on_class_change)
+        self.tap = TopicTap(context, topic, self._receive, on_change=self._on_class_change)
 
     def add(self, series: _Series) -> None:
         """Start adding samples of the topic to a series."""
@@ -174,7 +174,7 @@ class _PlottedTopic:
                 continue
             text = series.path.text
             if text not in values:
-                values[text] = sample_of(series.path, message, info.received_timestamp)
+                values[text] = read_sample(series.path, message, info.received_timestamp)
             sample = values[text]
             if sample is not None:
                 series.queue.add(*sample)
@@ -195,9 +195,9 @@ class _PlottedTopic:
         messages = timeline.messages_before({self.tap.topic}, longest_duration, _MAX_PAST_BYTES)
         for series in valid_series:
             assert series.path is not None
-            samples = past_samples(series.path, cls, messages)
+            samples = read_past_samples(series.path, cls, messages)
             if samples.shape[1] > 0:
-                series.forget()  # the past samples include the queued samples
+                series.clear()  # the past samples include the queued samples
                 series.past = thin_out(samples, _MAX_PAST_SAMPLES)
         self._on_samples()
 
@@ -238,7 +238,7 @@ class PlotsFeature(PageFeature):
         self._pages: dict[Page, _PagePlots] = {}
         self._channels: dict[str, _PlottedTopic] = {}
         self._field_taps: dict[Page, TopicTap] = {}
-        self._sender = Paced(self._send, _SEND_PERIOD_S)
+        self._sender = RateLimiter(self._send, _SEND_PERIOD_S)
         self._timeline = viewer.add_feature(TimelineFeature)
         self._timeline.on_jump.append(self._on_jump)
         self._read_timer: asyncio.TimerHandle | None = None
@@ -295,13 +295,13 @@ class PlotsFeature(PageFeature):
     def _on_jump(self) -> None:
         for plots in self._pages.values():
             for series in plots.series.values():
-                series.forget()
+                series.clear()
         self._schedule_read()
 
     def _schedule_read(self) -> None:
         if self._read_timer is not None:
             self._read_timer.cancel()
-        self._read_timer = asyncio.get_running_loop().call_later(_QUIET, self._read_past)
+        self._read_timer = asyncio.get_running_loop().call_later(_QUIET_S, self._read_past)
 
     def _read_past(self) -> None:
         self._read_timer = None
@@ -354,20 +354,20 @@ class PlotsFeature(PageFeature):
         """
 
         def receive(message: Any, _: MessageInfo) -> None:
-            page.send(TopicFields(topic, message.TYPE_NAME, plot_fields(type(message), message), None))
+            page.send(TopicFields(topic, message.TYPE_NAME, find_plot_fields(type(message), message), None))
             self._close_field_tap(page)
 
-        tap = TopicTap(self.context, topic, receive, changed=lambda: page.send(self._fields_message(tap)))
+        tap = TopicTap(self.context, topic, receive, on_change=lambda: page.send(self._make_fields_message(tap)))
         self._field_taps[page] = tap
-        page.send(self._fields_message(tap))
+        page.send(self._make_fields_message(tap))
 
-    def _fields_message(self, tap: TopicTap) -> TopicFields:
-        cls = tap.message_class or self._class_without_publishers(tap)
+    def _make_fields_message(self, tap: TopicTap) -> TopicFields:
+        cls = tap.message_class or self._find_class_without_publishers(tap)
         if tap.error is not None or cls is None:
             return TopicFields(tap.topic, "", [], tap.error)
-        return TopicFields(tap.topic, cls.TYPE_NAME, plot_fields(cls), None)
+        return TopicFields(tap.topic, cls.TYPE_NAME, find_plot_fields(cls), None)
 
-    def _class_without_publishers(self, tap: TopicTap) -> Any:
+    def _find_class_without_publishers(self, tap: TopicTap) -> Any:
         """Return the message class of a topic's subscriptions, or None if they differ in class."""
         from linkwright.messages import get_message
 

@@ -15,12 +15,12 @@ from linkwright.page.audience import Page
 from linkwright.page.protocol.monitor import AimTeleop, Drive, TeleopState, TeleopTarget
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
-_STOP_DELAY = 0.4
+_STOP_DELAY_S = 0.4
 """The robot is stopped after this many seconds without a velocity from the page."""
 
 
 class TeleopFeature(PageFeature):
-    """The feature that publishes velocities from teleop pads, with a publisher for each open pad."""
+    """The feature that publishes the velocities of teleop pads, one publisher for each pad."""
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
@@ -78,7 +78,7 @@ class _Pad:
         self._cancel_stop()
         self._topic.publish(velocity.linear, velocity.angular)
         if any(velocity.linear) or any(velocity.angular):
-            self._stop_timer = asyncio.get_running_loop().call_later(_STOP_DELAY, self._stop)
+            self._stop_timer = asyncio.get_running_loop().call_later(_STOP_DELAY_S, self._stop)
 
     def close(self) -> None:
         """Stop the robot, and destroy the publisher."""

@@ -20,7 +20,7 @@ from linkwright.graph.qos.profile import QoSPresetProfiles
 from linkwright.rviz.context import ViewerContext
 
 
-class Paced:
+class RateLimiter:
     """A limiter of the rate at which a function is called.
 
     Args:
@@ -28,9 +28,9 @@ class Paced:
         period: the minimum time between two calls, in seconds.
     """
 
-    def __init__(self, work: Callable[[], None], period: float) -> None:
+    def __init__(self, work: Callable[[], None], period_s: float) -> None:
         self._work = work
-        self._period = period
+        self._period = period_s
         self._loop = asyncio.get_running_loop()
         self._last_call_time = float("-inf")
         self._timer: asyncio.TimerHandle | None = None
@@ -74,10 +74,10 @@ class TopicTap:
         self,
         context: ViewerContext,
         topic: str,
-        take: Callable[[Any, MessageInfo], None],
+        on_message: Callable[[Any, MessageInfo], None],
         *,
         raw: bool = False,
-        changed: Callable[[], None] | None = None,
+        on_change: Callable[[], None] | None = None,
     ) -> None:
         self.topic = topic
         self.error: str | None = None
@@ -86,9 +86,9 @@ class TopicTap:
         """The class of the messages, or None while it is not known."""
         self._node = context.node
         self._changes = context.graph_changes
-        self._take = take
+        self._take = on_message
         self._raw = raw
-        self._changed = changed
+        self._changed = on_change
         self._subscription: Subscription[Any] | None = None
         self._qos: QoSProfile | None = None
         self._changes.watch(self._on_graph_change)

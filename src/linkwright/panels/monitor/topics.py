@@ -22,7 +22,7 @@ from linkwright.page.protocol.monitor import (
     TopicTraffic,
     WatchTopics,
 )
-from linkwright.panels.monitor.topic_tap import Paced, TopicTap
+from linkwright.panels.monitor.topic_tap import RateLimiter, TopicTap
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.rviz.context import ViewerContext
@@ -35,7 +35,7 @@ _MAX_INLINE_ELEMENTS = 8
 _MAX_TEXT_LENGTH = 400
 
 
-def message_tree(message: Message) -> list[MessageField]:
+def make_message_tree(message: Message) -> list[MessageField]:
     """Return the fields of a message, in order."""
     return _TreeBuilder().fields(message)
 
@@ -51,38 +51,38 @@ class _TreeBuilder:
                 break
             value = getattr(message, message_field.name)
             if message_field.type.container is Container.ONE:
-                rows.append(self._value_row(message_field.name, message_field, value))
+                rows.append(self._make_value_row(message_field.name, message_field, value))
             else:
-                rows.append(self._array_row(message_field, value))
+                rows.append(self._make_array_row(message_field, value))
         return rows
 
-    def _value_row(self, name: str, field: Field, value: Any) -> MessageField:
+    def _make_value_row(self, name: str, field: Field, value: Any) -> MessageField:
         self._remaining_rows -= 1
         type_text = field.type._replace(container=Container.ONE, size=None).to_idl_text()
         if isinstance(value, Message):
             return MessageField(name, type_text, "", self.fields(value))
-        return MessageField(name, type_text, _text(value))
+        return MessageField(name, type_text, _format_value(value))
 
-    def _array_row(self, field: Field, values: Any) -> MessageField:
+    def _make_array_row(self, field: Field, values: Any) -> MessageField:
         self._remaining_rows -= 1
         type_text = field.type.to_idl_text()
         count = len(values)
         if field.type.primitive is None:
             row = MessageField(field.name, type_text, "")
         else:
-            element_texts = ", ".join(_text(value) for value in values[:_MAX_INLINE_ELEMENTS])
+            element_texts = ", ".join(_format_value(value) for value in values[:_MAX_INLINE_ELEMENTS])
             row = MessageField(
                 field.name, type_text, f"[{element_texts}{', ...' if count > _MAX_INLINE_ELEMENTS else ''}]"
             )
         for index in range(min(count, _MAX_ELEMENTS)):
             if self._remaining_rows <= 0:
                 break
-            row.children.append(self._value_row(f"[{index}]", field, values[index]))
+            row.children.append(self._make_value_row(f"[{index}]", field, values[index]))
         row.omitted = count - len(row.children)
         return row
 
 
-def _text(value: Any) -> str:
+def _format_value(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, bytes):
@@ -123,7 +123,7 @@ class _Gauge:
         self.topic = topic
         self.window = TrafficWindow(_MAX_WINDOW_MESSAGES, _WINDOW_NS)
         self.last: tuple[bytes, float] | None = None
-        self.tap = TopicTap(context, topic, self._receive, raw=True, changed=feature.send_figures_soon)
+        self.tap = TopicTap(context, topic, self._receive, raw=True, on_change=feature.schedule_figures)
 
     def message(self) -> TopicMessage | None:
         """Return the last message, or None if there is none or it cannot be decoded."""
@@ -133,7 +133,7 @@ class _Gauge:
             return None
         data, receive_time = self.last
         try:
-            return TopicMessage(self.topic, receive_time, message_tree(deserialize(data, self.tap.message_class)))
+            return TopicMessage(self.topic, receive_time, make_message_tree(deserialize(data, self.tap.message_class)))
         except LinkwrightError:
             self.tap.error = "a message of the topic could not be read"
             return None
@@ -147,7 +147,7 @@ class _Gauge:
     def _receive(self, data: Any, info: MessageInfo) -> None:
         self.window.add(time.monotonic_ns(), len(data))
         self.last = (data, info.received_timestamp / NANOSECONDS_PER_SECOND)
-        self._feature.message_received(self.topic)
+        self._feature.on_message_received(self.topic)
 
 
 class TopicsFeature(PageFeature):
@@ -160,8 +160,8 @@ class TopicsFeature(PageFeature):
         super().__init__(viewer)
         self._requests: dict[Page, _Request] = {}
         self._gauges: dict[str, _Gauge] = {}
-        self._figures_sender = Paced(self._send_figures, _FIGURES_PERIOD_S)
-        self._messages_sender = Paced(self._send_messages, _MESSAGES_PERIOD_S)
+        self._figures_sender = RateLimiter(self._send_figures, _FIGURES_PERIOD_S)
+        self._messages_sender = RateLimiter(self._send_messages, _MESSAGES_PERIOD_S)
 
     def receive(self, page: Page, message: WatchTopics) -> None:
         """Replace the topics that a page lists, measures and expands."""
@@ -189,14 +189,14 @@ class TopicsFeature(PageFeature):
         self._requests.clear()
         self._update_subscriptions()
 
-    def message_received(self, topic: str) -> None:
+    def on_message_received(self, topic: str) -> None:
         """Schedule sending a topic's new message to the pages that show the topic."""
         for request in self._requests.values():
             if topic in request.opened_topics:
                 request.due.add(topic)
                 self._messages_sender.request()
 
-    def send_figures_soon(self) -> None:
+    def schedule_figures(self) -> None:
         """Send measurements as soon as the period since the last measurements has passed."""
         self._figures_sender.request()
 
@@ -224,13 +224,13 @@ class TopicsFeature(PageFeature):
             self._messages_sender.request()
 
     def _send_topic_lists(self) -> None:
-        topic_list = TopicList(self._topic_rows())
+        topic_list = TopicList(self._make_topic_rows())
         for page, request in self._requests.items():
             if request.wants_list and request.sent != topic_list:
                 request.sent = topic_list
                 page.send(topic_list)
 
-    def _topic_rows(self) -> list[TopicRow]:
+    def _make_topic_rows(self) -> list[TopicRow]:
         rows: dict[str, TopicRow] = {}
         for endpoint in self.context.node.graph.endpoints():
             if endpoint.kind not in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):
@@ -247,7 +247,7 @@ class TopicsFeature(PageFeature):
 
     def _send_figures(self) -> None:
         for page, request in self._requests.items():
-            gauges = self._sorted_gauges(request.measured_topics | request.opened_topics)
+            gauges = self._find_gauges(request.measured_topics | request.opened_topics)
             if gauges:
                 page.send(TopicFigures([gauge.measure() for gauge in gauges]))
         if self._gauges:
@@ -256,7 +256,7 @@ class TopicsFeature(PageFeature):
     def _send_messages(self) -> None:
         messages: dict[str, TopicMessage | None] = {}
         for page, request in self._requests.items():
-            for gauge in self._sorted_gauges(request.due):
+            for gauge in self._find_gauges(request.due):
                 if gauge.topic not in messages:
                     messages[gauge.topic] = gauge.message()
                 message = messages[gauge.topic]
@@ -264,5 +264,5 @@ class TopicsFeature(PageFeature):
                     page.send(message)
             request.due.clear()
 
-    def _sorted_gauges(self, topics: Iterable[str]) -> list[_Gauge]:
+    def _find_gauges(self, topics: Iterable[str]) -> list[_Gauge]:
         return [self._gauges[topic] for topic in sorted(topics)]

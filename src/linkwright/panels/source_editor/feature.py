@@ -18,13 +18,13 @@ from linkwright.diagnostics.extras import EXTRAS, install_hint
 from linkwright.page.audience import Page
 from linkwright.page.protocol import source_editor as messages
 from linkwright.page.protocol.message import PageMessage
-from linkwright.panels.description import DescriptionFeature, item_of
-from linkwright.panels.editing.feature import EditingFeature, elsewhere
+from linkwright.panels.description import DescriptionFeature, make_item
+from linkwright.panels.editing.feature import EditingFeature, make_other_machine_finding
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.panels.source_editor.files import FileContent, SourceFiles, with_line_ends
 from linkwright.panels.source_editor.language_process import LanguageProcess
 
-_PERIOD_S = 0.4
+_CHECK_PERIOD_S = 0.4
 """Seconds between two checks of the files on the disk."""
 
 
@@ -113,11 +113,11 @@ class SourceEditorFeature(PageFeature):
             if page not in self.context.pages:
                 continue
             try:
-                await self._do(page, message)
+                await self._handle_request(page, message)
             except Exception as error:  # noqa: BLE001  # editing must continue after an error of this program
                 self.context.node.get_logger().error(f"A source file request failed: {type(error).__name__}: {error}")
 
-    async def _do(self, page: Page, message: Any) -> None:
+    async def _handle_request(self, page: Page, message: Any) -> None:
         if isinstance(message, messages.OpenEditor):
             page.send(self._open(page, message.file))
             return
@@ -125,7 +125,7 @@ class SourceEditorFeature(PageFeature):
         if editor is None:
             return
         if isinstance(message, messages.RequestSourceFile):
-            editor.files.known = self._description_files(page)
+            editor.files.known = self._find_description_files(page)
             await self._send_file(page, editor, message.path)
         elif isinstance(message, messages.CloseSourceFile):
             editor.open_files.pop(message.path, None)
@@ -133,7 +133,7 @@ class SourceEditorFeature(PageFeature):
             if (open_file := editor.open_files.get(message.path)) is not None:
                 self._start(self._show_unsaved(page, message, open_file.content.text or ""))
         elif isinstance(message, messages.RequestSourceFolder):
-            folders, files = await asyncio.to_thread(editor.files.names, Path(message.path))
+            folders, files = await asyncio.to_thread(editor.files.list_names, Path(message.path))
             page.send(messages.SourceFolder(message.path, folders, files))
         else:
             refusal: Diagnostic | None = None
@@ -143,7 +143,7 @@ class SourceEditorFeature(PageFeature):
                 refusal = error.diagnostic
             open_file = editor.open_files.get(message.path)
             version = 0 if open_file is None else open_file.version
-            item = None if refusal is None else item_of(refusal)
+            item = None if refusal is None else make_item(refusal)
             page.send(messages.SourceFileWritten(message.number, message.path, version, item))
             if open_file is not None and _differs(message, open_file, refusal):
                 await self._send_file(page, editor, message.path)
@@ -153,23 +153,23 @@ class SourceEditorFeature(PageFeature):
 
         If no file can be edited, the language server is ended, and the response gives the reason.
         """
-        description_files = self._description_files(page)
-        reason = _refusal_reason(page, file, description_files, self._workspace)
+        description_files = self._find_description_files(page)
+        reason = _find_refusal_reason(page, file, description_files, self._workspace)
         if reason is not None:
             self.remove_page(page)
             return messages.EditorOpened("", "", reason)
         files = SourceFiles(Workspace(Path(file), self._workspace), description_files)
         editor = self._editors.get(page)
         if editor is None:
-            self._editors[page] = _Editor(files, self._process(page))
+            self._editors[page] = _Editor(files, self._start_process(page))
         else:
             editor.files = files
         return messages.EditorOpened(str(files.folder), files.folder.as_uri(), "")
 
-    def _description_files(self, page: Page) -> frozenset[str]:
+    def _find_description_files(self, page: Page) -> frozenset[str]:
         return frozenset(self.viewer.add_feature(DescriptionFeature).files(page))
 
-    def _process(self, page: Page) -> LanguageProcess:
+    def _start_process(self, page: Page) -> LanguageProcess:
         numbers = count(1)
 
         def on_end() -> None:
@@ -234,10 +234,10 @@ class SourceEditorFeature(PageFeature):
     async def _watch(self) -> None:
         """Send pages the files that other programs have changed."""
         while True:
-            await asyncio.sleep(_PERIOD_S)
+            await asyncio.sleep(_CHECK_PERIOD_S)
             for page, editor in list(self._editors.items()):
                 stamps = {path: known.stamp for path, known in editor.open_files.items()}
-                changed = await asyncio.to_thread(_changed_paths, stamps)
+                changed = await asyncio.to_thread(_find_changed_paths, stamps)
                 for path in changed:
                     self._waiting.put_nowait((page, messages.RequestSourceFile(path)))
 
@@ -253,10 +253,10 @@ def _differs(message: PageMessage, open_file: _OpenFile, refusal: Diagnostic | N
 
 def _read(files: SourceFiles, path: str) -> tuple[tuple[int, ...], FileContent]:
     """Return a stamp of a file, computed before its content is read, and the content."""
-    return _stamp(path), files.read(Path(path))
+    return _compute_stamp(path), files.read(Path(path))
 
 
-def _stamp(path: str) -> tuple[int, ...]:
+def _compute_stamp(path: str) -> tuple[int, ...]:
     """Return numbers that change with the content of a file.
 
     The tuple is empty if there is no file.
@@ -268,15 +268,17 @@ def _stamp(path: str) -> tuple[int, ...]:
     return status.st_ino, status.st_size, status.st_mtime_ns, status.st_mode
 
 
-def _changed_paths(stamps: dict[str, tuple[int, ...]]) -> list[str]:
+def _find_changed_paths(stamps: dict[str, tuple[int, ...]]) -> list[str]:
     """Return the paths of the files whose stamps have changed."""
-    return [path for path, stamp in stamps.items() if _stamp(path) != stamp]
+    return [path for path, stamp in stamps.items() if _compute_stamp(path) != stamp]
 
 
-def _refusal_reason(page: Page, file: str, description_files: frozenset[str], workspace: Path | None) -> Phrase | None:
+def _find_refusal_reason(
+    page: Page, file: str, description_files: frozenset[str], workspace: Path | None
+) -> Phrase | None:
     """Return the reason why a page may not edit the workspace of a file, or None."""
     if not page.is_local:
-        return elsewhere().message
+        return make_other_machine_finding().message
     if find_spec(EXTRAS["lsp"]) is None:
         return phrase("the editor needs the language server: {hint}", hint=install_hint("lsp"))
     if workspace is None and (file not in description_files or file.startswith("<")):

@@ -78,17 +78,17 @@ class SourceFiles:
 
     def read(self, path: Path) -> FileContent:
         """Return the content of a file."""
-        reason = self._reading_refusal(path)
+        reason = self._find_reading_refusal(path)
         if reason is not None:
             return FileContent(None, reason)
         try:
             data = read_bytes(path)
             text = decode(data, str(path))
         except LinkwrightError as error:
-            is_new = not os.path.lexists(path) and self._creating_refusal(Path(os.path.realpath(path))) is None
+            is_new = not os.path.lexists(path) and self._find_creating_refusal(Path(os.path.realpath(path))) is None
             return FileContent(None, error.diagnostics[0].message, is_new)
         if len(data) > MAX_BYTES:
-            return FileContent(text, _too_long(path))
+            return FileContent(text, _make_too_long_error(path))
         refusal = self._workspace.refusal(os.path.realpath(path))
         return FileContent(text, "" if refusal is None else refusal.message)
 
@@ -103,12 +103,12 @@ class SourceFiles:
         Raises:
             EditRefusedError: the file must not be written.
         """
-        real = os.path.realpath(path)
-        reason = self._reading_refusal(path)
-        refusal = Diagnostic("EDIT106", reason) if reason is not None else self._workspace.refusal(real)
+        real_path = os.path.realpath(path)
+        reason = self._find_reading_refusal(path)
+        refusal = Diagnostic("EDIT106", reason) if reason is not None else self._workspace.refusal(real_path)
         if refusal is not None:
             raise EditRefusedError(refusal)
-        return EditPlan({real: with_line_ends(text, previous_text)}, {real: previous_text})
+        return EditPlan({real_path: with_line_ends(text, previous_text)}, {real_path: previous_text})
 
     def create(self, path: Path, text: str = "") -> None:
         """Create a file in the workspace, with the folders above it.
@@ -116,33 +116,33 @@ class SourceFiles:
         Raises:
             EditRefusedError: the file exists or is outside the workspace, or it cannot be created.
         """
-        real = Path(os.path.realpath(path))
-        refusal = self._creating_refusal(real)
+        real_path = Path(os.path.realpath(path))
+        refusal = self._find_creating_refusal(real_path)
         if refusal is not None:
             raise EditRefusedError(refusal)
         try:
-            real.parent.mkdir(parents=True, exist_ok=True)
-            real.open("x").close()
+            real_path.parent.mkdir(parents=True, exist_ok=True)
+            real_path.open("x").close()
             if text:
-                write_whole_file(real, text)
+                write_whole_file(real_path, text)
         except FileExistsError:
-            message = phrase("'{path}' already exists", path=display_path(real))
+            message = phrase("'{path}' already exists", path=display_path(real_path))
             raise EditRefusedError(Diagnostic("EDIT108", message)) from None
         except OSError as error:
             reason = foreign(error.strerror or error)
-            message = phrase("cannot write '{path}': {reason}", path=display_path(real), reason=reason)
+            message = phrase("cannot write '{path}': {reason}", path=display_path(real_path), reason=reason)
             raise EditRefusedError(Diagnostic("EDIT108", message)) from None
 
-    def names(self, folder: Path) -> tuple[list[str], list[str]]:
+    def list_names(self, folder: Path) -> tuple[list[str], list[str]]:
         """Return the sorted names of the subfolders and text files in a folder of the workspace.
 
         Hidden and generated folders are omitted, and so are files with the suffix of a binary format.
         """
-        real = Path(os.path.realpath(folder))
-        if not real.is_relative_to(self.folder) or _is_hidden(real, self.folder):
+        real_path = Path(os.path.realpath(folder))
+        if not real_path.is_relative_to(self.folder) or _is_hidden(real_path, self.folder):
             return [], []
         try:
-            entries = [entry for entry in os.scandir(real) if not entry.name.startswith(".")]
+            entries = [entry for entry in os.scandir(real_path) if not entry.name.startswith(".")]
         except OSError:
             return [], []
         folders = [entry.name for entry in entries if entry.is_dir() and entry.name not in _GENERATED]
@@ -151,27 +151,30 @@ class SourceFiles:
         ]
         return sorted(folders, key=str.lower)[:_MAX_NAMES], sorted(files, key=str.lower)[:_MAX_NAMES]
 
-    def _creating_refusal(self, real: Path) -> Diagnostic | None:
+    def _find_creating_refusal(self, real_path: Path) -> Diagnostic | None:
         """Return the reason why a file must not be created, or None."""
-        if not real.is_relative_to(self.folder) or _is_hidden(real, self.folder):
+        if not real_path.is_relative_to(self.folder) or _is_hidden(real_path, self.folder):
             reason = phrase("new files can only be created in '{folder}'", folder=str(self.folder))
             return Diagnostic("EDIT106", reason)
-        existing = next(folder for folder in real.parents if folder.is_dir())
+        existing = next(folder for folder in real_path.parents if folder.is_dir())
         return self._workspace.refusal(str(existing))
 
-    def _reading_refusal(self, path: Path) -> Phrase | None:
+    def _find_reading_refusal(self, path: Path) -> Phrase | None:
         """Return the reason why a file must not be read, or None."""
-        real = Path(os.path.realpath(path))
+        real_path = Path(os.path.realpath(path))
         if str(path) in self.known:
             return None
-        packages = (folder for folder in real.parents if (folder / "package.xml").is_file())
-        if any(real.is_relative_to(folder) and not _is_hidden(real, folder) for folder in (self.folder, *packages)):
+        packages = (folder for folder in real_path.parents if (folder / "package.xml").is_file())
+        if any(
+            real_path.is_relative_to(folder) and not _is_hidden(real_path, folder)
+            for folder in (self.folder, *packages)
+        ):
             return None
         name, folder = display_path(path), str(self.folder)
         return phrase("'{path}' is outside the workspace '{folder}'", path=name, folder=folder)
 
 
-def _too_long(path: Path) -> Phrase:
+def _make_too_long_error(path: Path) -> Phrase:
     return phrase(
         "'{path}' is longer than {count} bytes, so it is not edited", path=display_path(path), count=MAX_BYTES
     )

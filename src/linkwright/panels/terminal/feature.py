@@ -1,4 +1,4 @@
-"""The page feature for terminals, which is disabled unless the program was started with terminals."""
+"""The page feature for terminals, which a program must enable."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from linkwright.page.program_pages import ProgramPages
 from linkwright.page.protocol import terminal as messages
 from linkwright.page.protocol.message import PageMessage, ServerMessage
 from linkwright.panels.page_feature import FeatureHost, PageFeature
-from linkwright.panels.terminal.environment import terminal_environment
+from linkwright.panels.terminal.environment import make_terminal_environment
 from linkwright.panels.terminal.opening import open_pty
 from linkwright.panels.terminal.pty import TerminalProgram, TerminalSize
 from linkwright.panels.terminal.terminal import Terminal
@@ -28,7 +28,7 @@ MAX_TERMINALS = 16
 _GRACE_S = 0.5
 """Seconds for which the programs in a terminal may continue after it was closed."""
 
-_MAX_SIDE = 1000
+_MAX_COLUMNS_OR_ROWS = 1000
 """The largest number of columns or rows."""
 
 _SHELL = (sys.executable, "-m", "linkwright", "shell")
@@ -61,8 +61,12 @@ class TerminalFeature(PageFeature):
             messages.ShowTerminal: self._show,
             messages.HideTerminal: self._hide,
             messages.WriteTerminal: self._write,
-            messages.ResizeTerminal: lambda page, message: self._own(page, message).resize(_size(message)),
-            messages.AcknowledgeTerminal: lambda page, message: self._own(page, message).acknowledge(message.number),
+            messages.ResizeTerminal: lambda page, message: self._find_own_terminal(page, message).resize(
+                _size(message)
+            ),
+            messages.AcknowledgeTerminal: lambda page, message: self._find_own_terminal(page, message).acknowledge(
+                message.number
+            ),
             messages.RestartTerminal: self._restart,
             messages.CloseTerminal: self._close,
         }
@@ -79,7 +83,7 @@ class TerminalFeature(PageFeature):
         """
         self._folder, self._command, self._programs = folder, command, programs
         if programs is not None:
-            programs.is_shown = lambda: bool(self._trusted_pages())
+            programs.is_shown = lambda: bool(self._find_trusted_pages())
             programs.on_change = self._report_program_pages
         self._report()
 
@@ -90,24 +94,24 @@ class TerminalFeature(PageFeature):
 
     def opening_messages(self) -> list[ServerMessage]:
         """Return the list of terminals, if pages may run shells."""
-        return [] if self._folder is None else [self._state(None)]
+        return [] if self._folder is None else [self._make_state(None)]
 
     def receive(self, page: Page, message: Any) -> None:
         """Handle a request, or refuse it."""
-        refusal = self._refusal(page)
+        refusal = self._find_refusal_reason(page)
         if refusal is not None:
             page.send(messages.Terminals("", [], refusal))
             return
         try:
             self._handlers[type(message)](page, message)
         except _NotShownError:
-            page.send(self._state(page))
+            page.send(self._make_state(page))
         except OSError as error:
             problem = phrase("the shell cannot be started: {reason}", reason=foreign(error.strerror or str(error)))
-            page.send(self._state(page, problem))
+            page.send(self._make_state(page, problem))
         except ModuleNotFoundError:
             problem = phrase("the terminal needs a package that is not installed: {hint}", hint=install_hint("learn"))
-            page.send(self._state(page, problem))
+            page.send(self._make_state(page, problem))
 
     def remove_page(self, page: Page) -> None:
         """Keep the terminals of a page that was closed."""
@@ -126,7 +130,7 @@ class TerminalFeature(PageFeature):
         for terminal in terminals:
             terminal.wait_until_ended(_GRACE_S)
 
-    def _refusal(self, page: Page) -> Phrase | None:
+    def _find_refusal_reason(self, page: Page) -> Phrase | None:
         if self._folder is None:
             return phrase("this program was started without a terminal in the page: start it again with `--terminal`")
         if not page.is_local:
@@ -138,11 +142,11 @@ class TerminalFeature(PageFeature):
     def _open(self, page: Page, message: messages.OpenTerminal) -> None:
         if len(self._terminals) >= MAX_TERMINALS:
             problem = phrase("there are already {count} terminals: close one first", count=MAX_TERMINALS)
-            page.send(self._state(page, problem))
+            page.send(self._make_state(page, problem))
             return
         assert self._folder is not None, "checked by _refusal"
-        variables = {} if self._programs is None else self._programs.variables(page.origin)
-        program = TerminalProgram(self._command, self._folder, terminal_environment(os.environ) | variables)
+        variables = {} if self._programs is None else self._programs.make_variables(page.origin)
+        program = TerminalProgram(self._command, self._folder, make_terminal_environment(os.environ) | variables)
         number, size = next(self._numbers), _size(message)
         terminal = Terminal(number, partial(open_pty, program), size, self._report)
         self._terminals[number] = terminal
@@ -150,23 +154,23 @@ class TerminalFeature(PageFeature):
         self._report()
 
     def _show(self, page: Page, message: messages.ShowTerminal) -> None:
-        self._find(message.terminal).show(page, _size(message))
+        self._find_terminal(message.terminal).show(page, _size(message))
         self._report()
 
     def _hide(self, page: Page, message: messages.HideTerminal) -> None:
-        self._own(page, message).detach()
+        self._find_own_terminal(page, message).detach()
         self._report()
 
     def _write(self, page: Page, message: messages.WriteTerminal) -> None:
         encoding = "latin-1" if message.is_binary else "utf-8"
-        self._own(page, message).write(message.text.encode(encoding, "replace"))
+        self._find_own_terminal(page, message).write(message.text.encode(encoding, "replace"))
 
     def _restart(self, page: Page, message: messages.RestartTerminal) -> None:
-        self._own(page, message).restart(_size(message))
+        self._find_own_terminal(page, message).restart(_size(message))
         self._report()
 
     def _close(self, page: Page, message: messages.CloseTerminal) -> None:
-        terminal = self._find(message.terminal)
+        terminal = self._find_terminal(message.terminal)
         del self._terminals[terminal.number]
         terminal.hang_up()
         ending = asyncio.get_running_loop().create_task(asyncio.to_thread(terminal.wait_until_ended, _GRACE_S))
@@ -174,29 +178,29 @@ class TerminalFeature(PageFeature):
         ending.add_done_callback(self._endings.discard)
         self._report()
 
-    def _own(self, page: Page, message: Any) -> Terminal:
+    def _find_own_terminal(self, page: Page, message: Any) -> Terminal:
         """Return the terminal that a message names, if the sending page shows this terminal.
 
         Raises:
             _NotShownError: there is no such terminal, or the page does not show it.
         """
-        terminal = self._find(message.terminal)
+        terminal = self._find_terminal(message.terminal)
         if terminal.page is not page:
             raise _NotShownError
         return terminal
 
-    def _find(self, number: int) -> Terminal:
+    def _find_terminal(self, number: int) -> Terminal:
         if number not in self._terminals:
             raise _NotShownError
         return self._terminals[number]
 
-    def _state(self, page: Page | None, refusal_reason: Phrase | str = "") -> messages.Terminals:
-        items = [terminal.item_for(page) for terminal in self._terminals.values()]
+    def _make_state(self, page: Page | None, refusal_reason: Phrase | str = "") -> messages.Terminals:
+        items = [terminal.make_item(page) for terminal in self._terminals.values()]
         return messages.Terminals(str(self._folder), items, refusal_reason)
 
-    def _trusted_pages(self) -> list[Page]:
+    def _find_trusted_pages(self) -> list[Page]:
         """Return the open pages that may use terminals."""
-        return [page for page in self.context.pages if self._refusal(page) is None]
+        return [page for page in self.context.pages if self._find_refusal_reason(page) is None]
 
     def _send_program_pages(self, page: Page, _: object = None) -> None:
         if self._programs is not None:
@@ -204,16 +208,16 @@ class TerminalFeature(PageFeature):
 
     def _report_program_pages(self) -> None:
         """Send the pages of programs to all pages that may use terminals."""
-        for page in self._trusted_pages():
+        for page in self._find_trusted_pages():
             self._send_program_pages(page)
 
     def _report(self) -> None:
         """Send all pages the state of the terminals."""
         for page in self.context.pages:
-            page.send(self._state(page))
+            page.send(self._make_state(page))
 
 
 def _size(message: _Sized) -> TerminalSize:
     """Return the terminal size in a message, clipped to sensible limits."""
-    columns, rows = (min(max(side, 2), _MAX_SIDE) for side in (message.columns, message.rows))
+    columns, rows = (min(max(side, 2), _MAX_COLUMNS_OR_ROWS) for side in (message.columns, message.rows))
     return TerminalSize(columns, rows)

@@ -68,7 +68,7 @@ class Terminal:
         pty.request_output()
         return pty
 
-    def item_for(self, page: Page | None) -> TerminalItem:
+    def make_item(self, page: Page | None) -> TerminalItem:
         """Return the description of the terminal for a page. Pass None for a page that opens."""
         if self.page is None:
             return TerminalItem(self.number, "nowhere", self.status)

@@ -31,10 +31,10 @@ def robot_scene(models: Pair, old: Description, new: Description, roots: Sequenc
         new: the description in the new version.
         roots: the folders of both versions of the repository.
     """
-    from linkwright.panels.export.html import page_around, recorded_json
+    from linkwright.panels.export.html import recording_to_json, split_page
 
     try:
-        page_around("")  # the page is not built in every installation
+        split_page("")  # the page is not built in every installation
         snapshot = _take_snapshot(models, old, new)
     except LinkwrightError as error:
         return RobotScene(reason=phrase("the scene in 3D is left out: {reason}", reason=error.diagnostics[0].message))
@@ -45,7 +45,7 @@ def robot_scene(models: Pair, old: Description, new: Description, roots: Sequenc
             path=display_path(outside[0]),
         )
         return RobotScene(reason=reason)
-    data = gzip.compress(recorded_json(snapshot).encode(), mtime=0)
+    data = gzip.compress(recording_to_json(snapshot).encode(), mtime=0)
     if len(data) > _MAX_BYTES:
         text = phrase("the scene in 3D is left out: it has {size:.0f} MB", size=len(data) / 1e6)
         return RobotScene(reason=text)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
 from linkwright.messages.definitions.idl import ENUMERATION, parse_idl_structures
-from linkwright.messages.definitions.interfaces import Constant, Field, Structure, structures_of
+from linkwright.messages.definitions.interfaces import Constant, Field, Structure, list_structures
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
 from linkwright.messages.definitions.parser import SECTIONS
 from linkwright.packages import MANIFEST, enclosing_package
@@ -95,7 +95,7 @@ def _read(file: Path) -> Mapping[str, Structure]:
     if package is None and (file.parent.parent / ROSBUILD_MANIFEST).is_file():
         name = file.parent.parent.name
     type_name = f"{name}/{kind}/{file.stem}"
-    parts = structures_of(parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=_is_ros1(file)))
+    parts = list_structures(parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=_is_ros1(file)))
     return dict(zip(_PART_PREFIXES[len(parts)], parts, strict=True))
 
 

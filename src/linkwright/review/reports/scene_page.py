@@ -68,10 +68,10 @@ class Scenes:
         """
         if not self._shown:
             return ""
-        from linkwright.panels.export.html import page_around
+        from linkwright.panels.export.html import split_page
 
         title = localized(phrase("both versions in 3D"))
-        viewer = gzip.compress("\0".join(page_around(title)).encode(), mtime=0)
+        viewer = gzip.compress("\0".join(split_page(title)).encode(), mtime=0)
         return f"{_pack(viewer, 'viewer')}<script>{SCENE_SCRIPT}</script>"
 
     def element(self, scene: RobotScene | None) -> str:

@@ -1,7 +1,7 @@
 """The page features of simulated worlds, created on demand."""
 
 from linkwright.page.protocol.simulation import NO_SIMULATION, NO_WORLD
-from linkwright.panels.page_feature import OnDemand, messages
+from linkwright.panels.page_feature import OnDemand, list_message_paths
 
 _PROTOCOL_MODULE = "linkwright.page.protocol.simulation"
 
@@ -9,10 +9,10 @@ ON_DEMAND = (
     OnDemand(
         "linkwright.simulation.page.modeling.feature:ModelingFeature",
         (
-            *messages(
+            *list_message_paths(
                 _PROTOCOL_MODULE, "AddEntity", "ChangeEntities", "CopyEntities", "DeleteEntities", "RequestModels"
             ),
-            *messages(
+            *list_message_paths(
                 _PROTOCOL_MODULE, "GroupEntities", "RedoWorld", "SaveWorld", "SetModeling", "UndoWorld", "UngroupEntity"
             ),
         ),
@@ -21,7 +21,7 @@ ON_DEMAND = (
     ),
     OnDemand(
         "linkwright.simulation.page.controls:SimulationFeature",
-        messages(_PROTOCOL_MODULE, "ControlSimulation", "SpawnModel", "DeleteModel", "DragModel", "PushLink"),
+        list_message_paths(_PROTOCOL_MODULE, "ControlSimulation", "SpawnModel", "DeleteModel", "DragModel", "PushLink"),
         ("/simulation_state",),
         until=NO_SIMULATION,
         refuses_recordings=True,

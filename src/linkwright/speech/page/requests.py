@@ -1,6 +1,6 @@
 """The page feature for spoken commands, which is created on demand."""
 
-from linkwright.panels.page_feature import OnDemand, messages
+from linkwright.panels.page_feature import OnDemand, list_message_paths
 
 _VOICE_MODULE = "linkwright.page.protocol.voice"
 _WORDS_MODULE = "linkwright.page.protocol.voice_words"
@@ -9,9 +9,9 @@ ON_DEMAND = (
     OnDemand(
         "linkwright.speech.page.feature:VoiceFeature",
         (
-            *messages(_VOICE_MODULE, "SayCommand", "SoundBlock", "Talk", "WatchVoice"),
-            *messages(_WORDS_MODULE, "BeginTake", "EndTake", "ImportWords", "RequestWordsFile"),
-            *messages(_WORDS_MODULE, "RemoveWord", "RenameWord", "WatchWords"),
+            *list_message_paths(_VOICE_MODULE, "SayCommand", "SoundBlock", "Talk", "WatchVoice"),
+            *list_message_paths(_WORDS_MODULE, "BeginTake", "EndTake", "ImportWords", "RequestWordsFile"),
+            *list_message_paths(_WORDS_MODULE, "RemoveWord", "RenameWord", "WatchWords"),
         ),
         ("/voice/command",),
     ),

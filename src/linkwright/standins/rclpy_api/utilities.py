@@ -30,9 +30,9 @@ def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
 
 def get_rmw_implementation_identifier() -> str:
     """Return the name of the ROS middleware with which Linkwright's middleware is compatible."""
-    from linkwright.wire.joining import middleware
+    from linkwright.wire.joining import select_middleware
 
-    return middleware()
+    return select_middleware()
 
 
 def get_available_rmw_implementations() -> set[str]:

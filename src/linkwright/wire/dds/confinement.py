@@ -13,7 +13,7 @@ import struct
 import sys
 from collections.abc import Sequence
 
-_GROUP = "239.255.0.1"
+_MULTICAST_GROUP = "239.255.0.1"
 """The multicast group of the announcements in a domain (DDSI-RTPS 2.5, 9.6.1.4.1)."""
 
 _ADD_SOURCE_MEMBERSHIP = 39
@@ -23,7 +23,7 @@ _Membership = struct.Struct("4s4s4s")
 """``struct ip_mreq_source``: group, interface, source."""
 
 
-def confine(addresses: Sequence[str]) -> socket.socket | None:
+def confine_announcements(addresses: Sequence[str]) -> socket.socket | None:
     """Keep announcements with a time to live of 0 inside the machine.
 
     Args:
@@ -41,7 +41,7 @@ def confine(addresses: Sequence[str]) -> socket.socket | None:
     try:
         for address in addresses:
             packed_address = socket.inet_aton(address)
-            membership = _Membership.pack(socket.inet_aton(_GROUP), packed_address, packed_address)
+            membership = _Membership.pack(socket.inet_aton(_MULTICAST_GROUP), packed_address, packed_address)
             membership_socket.setsockopt(socket.IPPROTO_IP, _ADD_SOURCE_MEMBERSHIP, membership)
     except OSError:
         membership_socket.close()

@@ -19,7 +19,7 @@ from importlib import import_module
 from importlib.util import find_spec, module_from_spec
 from typing import Any
 
-INFINITY = 0x7FFF_FFFF_FFFF_FFFF
+INFINITY_NS = 0x7FFF_FFFF_FFFF_FFFF
 """DDS_INFINITY, in nanoseconds."""
 
 TIMEOUT = -10
@@ -166,7 +166,7 @@ class CycloneError(Exception):
     """
 
     def __init__(self, code: int, operation: str) -> None:
-        super().__init__(f"{operation}: {describe(code)}")
+        super().__init__(f"{operation}: {describe_code(code)}")
         self.code = code
 
 
@@ -237,14 +237,14 @@ class Cyclone:
     def entity_name(self, qos: int) -> str:
         """Return the name that a participant announces for itself, or an empty string."""
         value = c.c_void_p()
-        return self._text(value) if self.dds_qget_entity_name(qos, c.byref(value)) else ""
+        return self._take_text(value) if self.dds_qget_entity_name(qos, c.byref(value)) else ""
 
     def property(self, qos: int, name: str) -> str:
         """Return the value of a property that a participant announces, or an empty string."""
         value = c.c_void_p()
-        return self._text(value) if self.dds_qget_prop(qos, name.encode(), c.byref(value)) else ""
+        return self._take_text(value) if self.dds_qget_prop(qos, name.encode(), c.byref(value)) else ""
 
-    def _text(self, value: c.c_void_p) -> str:
+    def _take_text(self, value: c.c_void_p) -> str:
         """Return a string that Cyclone has allocated, and free Cyclone's memory."""
         if not value.value:
             return ""
@@ -264,11 +264,11 @@ def _open_package() -> None:
     if "cyclonedds" in sys.modules or spec is None:
         return
     package = module_from_spec(spec)
-    package.__dict__["__getattr__"] = _submodule
+    package.__dict__["__getattr__"] = _import_submodule
     sys.modules.setdefault("cyclonedds", package)
 
 
-def _submodule(name: str) -> Any:
+def _import_submodule(name: str) -> Any:
     if name.startswith("__"):
         raise AttributeError(f"module 'cyclonedds' has no attribute '{name}'")
     try:
@@ -298,7 +298,7 @@ def check_call(code: int, operation: str) -> int:
     return code
 
 
-def describe(code: int) -> str:
+def describe_code(code: int) -> str:
     """Return the meaning of a return code."""
     text: bytes = load().dds_strretcode(code)
     return text.decode(errors="replace") if text else f"error {code}"

@@ -52,7 +52,7 @@ class DdsDepartureMonitor:
     Only the discovery thread may call the methods, except `watch`.
 
     Args:
-        remote: the remote graph, which calls `endpoint_left` and `on_announcement`.
+        remote: the remote graph, which calls `on_endpoint_left` and `on_announcement`.
         now: the steady clock, in seconds.
     """
 
@@ -72,7 +72,7 @@ class DdsDepartureMonitor:
         """
         self._watchers.append(callback)
 
-    def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
+    def on_endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
         """Handle the disappearance of an endpoint.
 
         Args:
@@ -128,7 +128,7 @@ class DdsDepartureMonitor:
         for guid, since in self._dead_since.items():
             if now - since >= GRACE_S and guid not in self._reported:
                 self._reported.add(guid)
-                for endpoint, node in self._remote.participant_writers(guid):
+                for endpoint, node in self._remote.find_participant_writers(guid):
                     self._report(endpoint, node)
         return bool(local_participants)
 

@@ -29,7 +29,7 @@ from linkwright.wire.dds.discovery_info import (
     encode,
 )
 from linkwright.wire.dds.names import DISCOVERY_TOPIC, parse_user_data
-from linkwright.wire.dds.participant import SERVICES_NAME, Participant, process_namespace
+from linkwright.wire.dds.participant import SERVICES_NAME, Participant, read_process_namespace
 from linkwright.wire.dds.qos import endpoint_qos, profile_from_policies
 from linkwright.wire.dds.remote import RemoteEndpoint, RemoteGraph, RemoteParticipant, is_fast, is_process_running
 from linkwright.wire.dds.type_descriptions import WireTypes
@@ -49,7 +49,9 @@ _READER_QOS = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL, history
 
 
 class Discovery:
-    """The discovery of a domain, which fills the tables of the remote graph and publishes the graph of this process.
+    """The discovery of a domain.
+
+    It fills the tables of the remote graph, and publishes the graph of this process.
 
     A gid has 24 bytes for ROS 2 up to Humble and 16 from Iron on. An announcement with the wrong size makes ``ros2 node
     list`` of Humble fail, or leaves our nodes without names. Our announcements use the size of the ROS 2 nodes that
@@ -79,10 +81,10 @@ class Discovery:
         self._participants = self._create_builtin_reader(BUILTIN_PARTICIPANTS)
         self._publications = self._create_builtin_reader(BUILTIN_PUBLICATIONS)
         self._subscriptions = self._create_builtin_reader(BUILTIN_SUBSCRIPTIONS)
-        self._reader = self._new_reader()
+        self._reader = self._create_reader()
         self._thread = thread
-        self._requests = DiscoveryRequests(self._listen_again)
-        self._writer = self._new_writer()
+        self._requests = DiscoveryRequests(self._create_extra_reader)
+        self._writer = self._create_writer()
         for reader, handler in (
             (self._participants, self._take_participants),
             (self._publications, lambda: self._take_endpoints(self._publications, is_writer=True)),
@@ -104,22 +106,24 @@ class Discovery:
     def _create_builtin_reader(self, topic: int) -> int:
         return self._participant.create_reader(topic, None)
 
-    def _new_reader(self) -> tuple[int, int]:
+    def _create_reader(self) -> tuple[int, int]:
         topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery())
         with endpoint_qos(_READER_QOS) as qos:
             return topic, self._participant.create_reader(topic, qos)
 
     def _take_participants(self) -> bool:
-        samples = self._dds.take_participants(self._participants, _MAX_SAMPLES, self._on_participant_sample, _pointer)
+        samples = self._dds.take_participants(
+            self._participants, _MAX_SAMPLES, self._on_participant_sample, _keep_pointer
+        )
         return isinstance(samples, list) and len(samples) == _MAX_SAMPLES
 
     def _take_endpoints(self, reader: int, *, is_writer: bool) -> bool:
-        def sample(
+        def handle_sample(
             guid: bytes, owner: bytes, _: int, topic: str, type_name: str, qos: int, info: Any, *__: Any
         ) -> None:
             self._on_endpoint_sample(guid, owner, topic, type_name, qos, info, is_writer)
 
-        samples = self._dds.take_endpoints(reader, _MAX_SAMPLES, sample, _pointer)
+        samples = self._dds.take_endpoints(reader, _MAX_SAMPLES, handle_sample, _keep_pointer)
         return isinstance(samples, list) and len(samples) == _MAX_SAMPLES
 
     def _on_participant_sample(self, guid: bytes, qos: int, info: Any) -> None:
@@ -128,25 +132,25 @@ class Discovery:
         self.changed = True
         if info.instance_state != INSTANCE_ALIVE:
             self._remote.remove_participant(guid)
-            self._forget_gid_size(guid)
+            self._remove_gid_size(guid)
             return
         user_data = parse_user_data(self._dds.user_data(qos))
-        name, process, host = self._dds.entity_name(qos), self._local_process(qos), self._announced_host(qos)
+        name, process, host = self._dds.entity_name(qos), self._find_local_process(qos), self._find_announced_host(qos)
         if name == SERVICES_NAME:
             return
         self._remote.add_participant(RemoteParticipant(guid, user_data.get("enclave", "/"), name, process, host))
 
-    def _announced_host(self, qos: int) -> str:
-        """Return the host name that a Fast DDS or Cyclone participant announces, or an empty string."""
+    def _find_announced_host(self, qos: int) -> str:
+        """Return the host name that a participant announces, or an empty string."""
         return next((host for host, _ in announced_processes(partial(self._dds.property, qos)) if host), "")
 
-    def _local_process(self, qos: int) -> int | None:
+    def _find_local_process(self, qos: int) -> int | None:
         """Return the process id of a participant on this machine, or None if it is not known.
 
         The announced id is accepted only if such a process runs here. A process in a container may have the host name
         of this machine, and an id that belongs to another process here, or to none.
         """
-        if not process_namespace():
+        if not read_process_namespace():
             return None
         for host, number in announced_processes(partial(self._dds.property, qos)):
             if host == _HOST and number.isdecimal() and is_process_running(int(number)):
@@ -188,16 +192,16 @@ class Discovery:
         """
         return self._requests.create_next_reader(is_complete=self._remote.have_all_announced())
 
-    def _listen_again(self) -> Callable[[], None]:
-        topic, reader = self._new_reader()
+    def _create_extra_reader(self) -> Callable[[], None]:
+        topic, reader = self._create_reader()
 
-        def stop() -> None:
+        def delete_reader() -> None:
             self._thread.detach(reader)
             self._participant.delete(reader, topic)
 
         self._dds.dds_set_status_mask(reader, DATA_AVAILABLE)
         self._thread.attach(reader, lambda: self._take_entities(reader))
-        return stop
+        return delete_reader
 
     # --- announcing --------------------------------------------------------------------------------------------------
 
@@ -209,10 +213,10 @@ class Discovery:
         if size != self.gid_size:
             self.gid_size = size
             self._participant.delete(self._writer[1], self._writer[0])
-            self._writer = self._new_writer()
+            self._writer = self._create_writer()
             self.publish(self._nodes)
 
-    def _new_writer(self) -> tuple[int, int]:
+    def _create_writer(self) -> tuple[int, int]:
         topic = self._participant.create_topic(DISCOVERY_TOPIC, self._types.discovery())
         user_data = f"typehash={DISCOVERY_TYPE_HASH};".encode() if self.gid_size == GID_SIZE else b""
         with endpoint_qos(_WRITER_QOS, user_data) as qos:
@@ -221,7 +225,7 @@ class Discovery:
     def _record_gid_size(self, writer: RemoteEndpoint) -> None:
         self._gid_sizes[writer.participant] = GID_SIZE if "typehash" in writer.user_data else OLD_GID_SIZE
 
-    def _forget_gid_size(self, participant: bytes) -> None:
+    def _remove_gid_size(self, participant: bytes) -> None:
         self._gid_sizes.pop(participant, None)
 
 
@@ -235,11 +239,11 @@ def announced_processes(get_property: Callable[[str], str]) -> Iterator[tuple[st
     """
     for host, process in _PROCESS_PROPERTIES:
         host_name = get_property(host).partition(":")[0]
-        yield _HOST if host_name and host_name == machine_id() else host_name, get_property(process)
+        yield _HOST if host_name and host_name == read_machine_id() else host_name, get_property(process)
 
 
 @lru_cache(maxsize=1)
-def machine_id() -> str:
+def read_machine_id() -> str:
     """Return the id in ``/etc/machine-id``, or an empty string if there is none."""
     try:
         return Path("/etc/machine-id").read_text(encoding="ascii").strip()
@@ -247,7 +251,7 @@ def machine_id() -> str:
         return ""
 
 
-def _pointer(qos: int) -> int:
+def _keep_pointer(qos: int) -> int:
     """Return the pointer unchanged.
 
     Policies are read on demand while the sample is on loan.
@@ -255,12 +259,14 @@ def _pointer(qos: int) -> int:
     return qos
 
 
-INTERVALS = (0.02, 0.1, 0.2, 0.4, 0.8)
+INTERVALS_S = (0.02, 0.1, 0.2, 0.4, 0.8)
 """Seconds before each request to a participant that has not announced its nodes."""
 
 
 class DiscoveryRequests:
-    """The extra readers of ``ros_discovery_info``, which exist until every participant has announced its nodes.
+    """The extra readers of ``ros_discovery_info``.
+
+    They exist until every participant has announced its nodes.
 
     Without these extra readers, some announcements would arrive only after seconds. A writer of Fast DDS repeats its
     last announcement to a reader when it discovers the reader. Often Cyclone does not know the writer at that
@@ -293,13 +299,13 @@ class DiscoveryRequests:
             self._request_count = None
             return None
         if self._request_count is None:
-            self._request_count, self._due = 0, now + INTERVALS[0]
-        elif now >= self._due and self._request_count < len(INTERVALS):
+            self._request_count, self._due = 0, now + INTERVALS_S[0]
+        elif now >= self._due and self._request_count < len(INTERVALS_S):
             self._delete_reader()
             self._stop = self._listen()
             self._request_count += 1
-            self._due = now + INTERVALS[min(self._request_count, len(INTERVALS) - 1)]
-        return None if self._request_count == len(INTERVALS) else max(self._due - now, 0.0)
+            self._due = now + INTERVALS_S[min(self._request_count, len(INTERVALS_S) - 1)]
+        return None if self._request_count == len(INTERVALS_S) else max(self._due - now, 0.0)
 
     def _delete_reader(self) -> None:
         if self._stop is not None:

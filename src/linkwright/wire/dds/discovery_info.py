@@ -46,12 +46,12 @@ def encode(info: ParticipantEntities, gid_size: int) -> bytes:
     """
     buffer = bytearray(info.participant.ljust(gid_size, b"\0"))
     padding = bytes(gid_size - GID_SIZE)
-    _count(buffer, len(info.nodes))
+    _write_count(buffer, len(info.nodes))
     for node in info.nodes:
-        _string(buffer, node.namespace)
-        _string(buffer, node.name)
+        _write_string(buffer, node.namespace)
+        _write_string(buffer, node.name)
         for gids in (node.readers, node.writers):
-            _count(buffer, len(gids))
+            _write_count(buffer, len(gids))
             for gid in gids:
                 buffer += gid + padding
     buffer += bytes(-len(buffer) % 4)
@@ -74,13 +74,13 @@ def decode(data: bytes) -> ParticipantEntities | None:
     return None
 
 
-def _count(buffer: bytearray, count: int) -> None:
+def _write_count(buffer: bytearray, count: int) -> None:
     buffer += bytes(-len(buffer) % 4) + struct.pack("<I", count)
 
 
-def _string(buffer: bytearray, text: str) -> None:
+def _write_string(buffer: bytearray, text: str) -> None:
     encoded = text.encode() + b"\0"
-    _count(buffer, len(encoded))
+    _write_count(buffer, len(encoded))
     buffer += encoded
 
 
@@ -93,27 +93,27 @@ class _Reader:
 
     def participant(self) -> ParticipantEntities:
         gid = self._read_gid()
-        return ParticipantEntities(gid, [self._node() for _ in range(self._count())])
+        return ParticipantEntities(gid, [self._read_node() for _ in range(self._read_count())])
 
     def is_at_end(self) -> bool:
         return 0 <= len(self._data) - self._offset < 4
 
-    def _node(self) -> NodeEntities:
-        return NodeEntities(self._string(), self._string(), self._read_gids(), self._read_gids())
+    def _read_node(self) -> NodeEntities:
+        return NodeEntities(self._read_string(), self._read_string(), self._read_gids(), self._read_gids())
 
     def _read_gids(self) -> list[bytes]:
-        return [self._read_gid() for _ in range(self._count())]
+        return [self._read_gid() for _ in range(self._read_count())]
 
     def _read_gid(self) -> bytes:
-        gid = self._bytes(self._gid_size)
+        gid = self._read_bytes(self._gid_size)
         if any(gid[GID_SIZE:]):
             raise IndexError("the bytes after a GUID must be zeros")
         return gid[:GID_SIZE]
 
-    def _string(self) -> str:
-        return self._bytes(self._count(limit=1))[:-1].decode()
+    def _read_string(self) -> str:
+        return self._read_bytes(self._read_count(limit=1))[:-1].decode()
 
-    def _count(self, limit: int = 4) -> int:
+    def _read_count(self, limit: int = 4) -> int:
         """Read the length of a sequence.
 
         Raise an error if the remaining bytes are too few for that many items.
@@ -125,7 +125,7 @@ class _Reader:
             raise IndexError("a sequence is longer than the sample")
         return int(count)
 
-    def _bytes(self, size: int) -> bytes:
+    def _read_bytes(self, size: int) -> bytes:
         end = self._offset + size
         if end > len(self._data):
             raise IndexError("a sequence is longer than the sample")

@@ -27,9 +27,9 @@ from linkwright.wire.dds.settings import Range, Settings
 from linkwright.wire.dds.topics import IncomingTopic, OutgoingTopic
 from linkwright.wire.dds.waiting import WaitingThread
 from linkwright.wire.engine import Engine as AnyEngine
-from linkwright.wire.engine import Work, ends_by_error
+from linkwright.wire.engine import Work, is_ending_by_error
 
-CLOSING_TIME = 1.0
+CLOSING_TIMEOUT_S = 1.0
 """The maximum time, in seconds, for which closing waits until reliable samples are acknowledged."""
 
 _POLL_INTERVAL_S = 0.01
@@ -39,7 +39,7 @@ _NODE_NAME_TIMEOUT_S = 1.0
 _MAX_ANNOUNCE_DELAY_S = 0.1
 """Seconds after which new nodes are announced even if more nodes are being created."""
 
-_FIRST_ANNOUNCE_SPAN = 1.0
+_FIRST_ANNOUNCE_SPAN_S = 1.0
 """The same for the first announcement, which other processes regard as complete."""
 
 
@@ -57,7 +57,7 @@ class Engine(AnyEngine):
         LinkwrightError: the domain cannot be joined.
     """
 
-    refusal = CycloneError
+    library_error = CycloneError
 
     def __init__(
         self,
@@ -75,7 +75,7 @@ class Engine(AnyEngine):
         self._is_fast_possible = settings.range is not Range.OFF
         self._participant = Participant(settings)
         types = self._participant.types
-        self._pacer = Pacer(self._fast_address)
+        self._pacer = Pacer(self._find_fast_address)
         self._domain = Domain(self._participant, remote, types, settings.fragment_size, self._pacer)
         owner = self._participant.entity
         self._control = WaitingThread("linkwright-dds", owner, self._report, self._process_pending)
@@ -91,7 +91,7 @@ class Engine(AnyEngine):
         self._waiting: dict[OutgoingTopic, None] = {}
         self._is_announced = False
         self._announced_at = time.monotonic()
-        self._max_announce_delay = _FIRST_ANNOUNCE_SPAN
+        self._max_announce_delay = _FIRST_ANNOUNCE_SPAN_S
         self._matches_changed = False
         self._mismatch_deadlines: dict[OutgoingTopic | IncomingTopic, float] = {}
 
@@ -112,17 +112,17 @@ class Engine(AnyEngine):
 
         The departure of our nodes is announced, unless the process ends because of an error (`departures`).
         """
-        self._control.stop(CLOSING_TIME)
-        self._reception.stop(CLOSING_TIME)
+        self._control.stop(CLOSING_TIMEOUT_S)
+        self._reception.stop(CLOSING_TIMEOUT_S)
         self._process_all_requests()
         self.abandon()
-        if not ends_by_error():
+        if not is_ending_by_error():
             self._discovery.publish([])
-        deadline = time.monotonic() + CLOSING_TIME
+        deadline = time.monotonic() + CLOSING_TIMEOUT_S
         for topic in (*self._outgoing.values(), *self._closing_deadlines):
             if not topic.wait_until_acknowledged(max(0, int((deadline - time.monotonic()) * 1e9))):
                 break
-        self._pacer.stop(CLOSING_TIME)
+        self._pacer.stop(CLOSING_TIMEOUT_S)
         if self._fast is not None:
             self._fast.close()
         self._participant.close()
@@ -165,7 +165,7 @@ class Engine(AnyEngine):
         if topic is not None:
             self._control.detach(topic.entity)
             topic.abandon()
-            self._closing_deadlines[topic] = time.monotonic() + CLOSING_TIME
+            self._closing_deadlines[topic] = time.monotonic() + CLOSING_TIMEOUT_S
             self._is_announced = False
 
     def open_subscription(self, subscription: Any) -> None:
@@ -256,7 +256,7 @@ class Engine(AnyEngine):
             mirror.connect_fast(self._fast)
 
     def _discover_fast(self) -> None:
-        """Create the participant for Fast DDS if needed, and look for newly discovered participants.
+        """Create the participant for Fast DDS if needed, and look for new participants.
 
         This participant is needed once a Fast DDS participant exists and this process has a service or a client.
         """
@@ -275,9 +275,9 @@ class Engine(AnyEngine):
         if self._fast is not None:
             self._fast.expect(fast_participants)
 
-    def _fast_address(self, reader: bytes) -> Address | None:
+    def _find_fast_address(self, reader: bytes) -> Address | None:
         """Return the address of a Fast DDS reader on this machine, or None if it is not known."""
-        return None if self._fast is None else self._fast.reader_address(reader)
+        return None if self._fast is None else self._fast.find_reader_address(reader)
 
     def _on_match(self) -> None:
         self._matches_changed = True
@@ -312,10 +312,10 @@ class Engine(AnyEngine):
                 self._mismatch_deadlines.pop(topic, None)
 
     def _write_pending_replies(self) -> bool:
-        busy_services = [service for service in tuple(self._services.values()) if service.has_more_to_do]
+        busy_services = [service for service in tuple(self._services.values()) if service.has_pending_work]
         for service in busy_services:
             service.write_pending_replies()
-        return any(service.has_more_to_do for service in busy_services)
+        return any(service.has_pending_work for service in busy_services)
 
     def _close_finished_topics(self) -> None:
         now = time.monotonic()
@@ -333,12 +333,12 @@ class Engine(AnyEngine):
         if not self._is_announced and (
             not self._work or time.monotonic() - self._announced_at > self._max_announce_delay
         ):
-            self._discovery.publish(self._node_entities())
+            self._discovery.publish(self._make_node_entities())
             self._is_announced = True
             self._max_announce_delay = _MAX_ANNOUNCE_DELAY_S
             self._announced_at = time.monotonic()
 
-    def _node_entities(self) -> list[NodeEntities]:
+    def _make_node_entities(self) -> list[NodeEntities]:
         readers: dict[NodeIdentity, list[bytes]] = {node: [] for node in self._nodes}
         writers: dict[NodeIdentity, list[bytes]] = {node: [] for node in self._nodes}
         for publisher, outgoing in self._outgoing.items():

@@ -17,12 +17,18 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.endpoints.service import RequestId
-from linkwright.wire.dds.names import Role, dds_topic
+from linkwright.wire.dds.names import Role, to_dds_topic
 from linkwright.wire.dds.rtps.participant import RtpsParticipant
-from linkwright.wire.dds.rtps.values import NO_NUMBER, PREFIX, is_reader, read_related_identity, related_identity
-from linkwright.wire.dds.service_types import request_and_response_types, service_user_data
+from linkwright.wire.dds.rtps.values import (
+    NO_NUMBER,
+    PREFIX_SIZE,
+    encode_related_identity,
+    is_reader,
+    read_related_identity,
+)
+from linkwright.wire.dds.service_types import make_service_user_data, request_and_response_types
 from linkwright.wire.service_messages import forward_request, forward_response, to_cdr
-from linkwright.wire.type_names import dds_type
+from linkwright.wire.type_names import to_wire_type
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.service import Client, Service
@@ -75,22 +81,22 @@ class FastServer:
     def __init__(self, service: Service[Any, Any], participant: RtpsParticipant) -> None:
         self._service = service
         self._participant = participant
-        user_data = service_user_data(os.urandom(16), service, is_server=True)
-        request, response = map(dds_type, request_and_response_types(service.type_name))
+        user_data = make_service_user_data(os.urandom(16), service, is_server=True)
+        request, response = map(to_wire_type, request_and_response_types(service.type_name))
         self._late_replies: deque[tuple[float, bytes, int, Any]] = deque()
         self._early_requests: list[EarlyRequest] = []
         self._first_samples: dict[bytes, tuple[int, int]] = {}
         """The number and time of each writer's first sample that arrived here. All later samples also arrive here."""
         self._numbered_requests: dict[bytes, deque[tuple[int, int]]] = {}
         self._lock = Lock()
-        self._replies = participant.add_writer(dds_topic(Role.REPLY, service.name), response, user_data)
+        self._replies = participant.add_writer(to_dds_topic(Role.REPLY, service.name), response, user_data)
         self._requests = participant.add_reader(
-            dds_topic(Role.REQUEST, service.name), request, user_data, self._on_data
+            to_dds_topic(Role.REQUEST, service.name), request, user_data, self._on_data
         )
 
     def on_early_request(self, request: EarlyRequest) -> None:
         """Accept a request from Cyclone's reader, unless this reader also receives it."""
-        discovered_at = self._participant.matched_writers(self._requests).get(request.writer)
+        discovered_at = self._participant.find_matched_writers(self._requests).get(request.writer)
         if discovered_at is None or time.monotonic() < discovered_at + _SETTLING_TIME_S:
             with self._lock:
                 self._early_requests.append(request)
@@ -110,7 +116,7 @@ class FastServer:
             self._number_early_requests(now)
 
     @property
-    def has_more_to_do(self) -> bool:
+    def has_pending_work(self) -> bool:
         """Whether `write_pending_replies` must be called again soon."""
         return bool(self._late_replies or self._early_requests)
 
@@ -143,8 +149,8 @@ class FastServer:
         if self._service.destroyed:
             return
         if self._can_reach(client):
-            inline = related_identity(client, sequence_number)
-            self._participant.write(self._replies, to_cdr(response), inline=inline, to=client[:PREFIX])
+            inline = encode_related_identity(client, sequence_number)
+            self._participant.write(self._replies, to_cdr(response), inline=inline, to=client[:PREFIX_SIZE])
         else:
             with self._lock:
                 self._late_replies.append(
@@ -157,15 +163,15 @@ class FastServer:
 
         For an early request, only the client's participant is known.
         """
-        prefix = client if is_reader(client) else client[:PREFIX]
-        return any(reader.startswith(prefix) for reader in self._participant.matched_readers(self._replies))
+        prefix = client if is_reader(client) else client[:PREFIX_SIZE]
+        return any(reader.startswith(prefix) for reader in self._participant.find_matched_readers(self._replies))
 
     def _number_early_requests(self, now: float) -> None:
         """Pass on early requests, numbered in order before the first request that arrived here.
 
         Requests that wait for too long without a number are dropped.
         """
-        discovered_at_by_writer = self._participant.matched_writers(self._requests)
+        discovered_at_by_writer = self._participant.find_matched_writers(self._requests)
         with self._lock:
             early_requests, self._early_requests = self._early_requests, []
             settled_writers = {
@@ -186,8 +192,11 @@ class FastServer:
                 self._forward(request.body, writer, writer, sequence_number)
 
     def _assign_numbers(self, writer: bytes, early_requests: list[EarlyRequest]) -> list[tuple[int, EarlyRequest]]:
-        """Return a writer's numbered early requests, except requests that this reader also receives."""
-        last_number = self._participant.last_of(self._requests, writer)
+        """Return a writer's numbered early requests.
+
+        Requests that this reader also receives are left out.
+        """
+        last_number = self._participant.get_last_number(self._requests, writer)
         with self._lock:
             if writer in self._first_samples:
                 sequence_number, written_first = self._first_samples[writer]
@@ -220,33 +229,37 @@ class FastClient:
         self._client = client
         self._participant = participant
         self._is_dead = is_dead
-        user_data = service_user_data(os.urandom(16), client, is_server=False)
-        request, response = map(dds_type, request_and_response_types(client.type_name))
+        user_data = make_service_user_data(os.urandom(16), client, is_server=False)
+        request, response = map(to_wire_type, request_and_response_types(client.type_name))
         self._response_callbacks: dict[int, Callable[[Any], None]] = {}
         self._identities: tuple[bytes, ...] = ()
         self._lock = Lock()
         # From now on replies may arrive, including replies to other clients of the service.
-        self._replies = participant.add_reader(dds_topic(Role.REPLY, client.name), response, user_data, self._on_data)
-        self._requests = participant.add_writer(dds_topic(Role.REQUEST, client.name), request, user_data)
+        self._replies = participant.add_reader(
+            to_dds_topic(Role.REPLY, client.name), response, user_data, self._on_data
+        )
+        self._requests = participant.add_writer(to_dds_topic(Role.REQUEST, client.name), request, user_data)
         self._identities = (self._replies.reader.guid, self._requests.writer.guid)
 
     def send(self, request: Any, on_response: Callable[[Any], None]) -> Callable[[], None]:
         """Write a request, and return a function that cancels it."""
-        inline = related_identity(self._replies.reader.guid, NO_NUMBER)
+        inline = encode_related_identity(self._replies.reader.guid, NO_NUMBER)
         with self._lock:
             sequence_number = self._participant.write(self._requests, to_cdr(request), inline=inline)
             self._response_callbacks[sequence_number] = on_response
-        return partial(self._forget, sequence_number)
+        return partial(self._cancel_request, sequence_number)
 
     def is_ready(self) -> bool:
         """Return whether a server has discovered both endpoints of this client.
 
         Otherwise the server's reply would be lost.
         """
-        listening_prefixes = {guid[:PREFIX] for guid in self._participant.matched_readers(self._requests)}
+        listening_prefixes = {guid[:PREFIX_SIZE] for guid in self._participant.find_matched_readers(self._requests)}
         return any(
-            discovered_at is not None and guid[:PREFIX] in listening_prefixes and not self._is_dead(guid[:PREFIX])
-            for guid, discovered_at in self._participant.matched_writers(self._replies).items()
+            discovered_at is not None
+            and guid[:PREFIX_SIZE] in listening_prefixes
+            and not self._is_dead(guid[:PREFIX_SIZE])
+            for guid, discovered_at in self._participant.find_matched_writers(self._replies).items()
         )
 
     def close(self) -> None:
@@ -258,7 +271,7 @@ class FastClient:
         self._participant.remove(self._requests)
         self._participant.remove(self._replies)
 
-    def _forget(self, sequence_number: int) -> None:
+    def _cancel_request(self, sequence_number: int) -> None:
         self._response_callbacks.pop(sequence_number, None)
 
     def _on_data(self, sample: Data) -> None:

@@ -12,15 +12,15 @@ from pathlib import Path
 _PORT_BASE = 7400
 _DOMAIN_GAIN = 250
 _FIRST_UNICAST = 10
-_TABLES = ("udp", "udp6")
+_TABLE_NAMES = ("udp", "udp6")
 
 
-def multicast_port(domain_id: int) -> int:
+def compute_multicast_port(domain_id: int) -> int:
     """Return the port for a domain's announcements (SPDP_WELL_KNOWN_MULTICAST_PORT)."""
     return _PORT_BASE + _DOMAIN_GAIN * domain_id
 
 
-def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> int | None:
+def count_other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> int | None:
     """Return a lower bound of the number of other processes that take part in a domain.
 
     No process listens twice on a port of the domain. The number is therefore the number of sockets on the domain's
@@ -33,11 +33,11 @@ def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> in
     Returns:
         The number, which may be 0; None if the system does not report sockets.
     """
-    base_port = multicast_port(domain_id)
+    base_port = compute_multicast_port(domain_id)
     socket_counts: Counter[int] = Counter()
     try:
-        own_sockets = _own_sockets()
-        for name in _TABLES:
+        own_sockets = _find_own_sockets()
+        for name in _TABLE_NAMES:
             for line in (tables / name).read_text().splitlines()[1:]:
                 fields = line.split()
                 port = int(fields[1].rpartition(":")[2], 16)
@@ -49,7 +49,7 @@ def other_processes(domain_id: int, tables: Path = Path("/proc/self/net")) -> in
     return max(socket_counts[base_port], sum(socket_counts[port] for port in unicast_ports))
 
 
-def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | None:
+def count_waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | None:
     """Return the number of bytes waiting at a UDP port of this machine.
 
     The number includes the system's overhead per packet.
@@ -64,7 +64,7 @@ def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | Non
     pattern = b":%04X" % port
     max_bytes = 0
     try:
-        for line in (tables / _TABLES[0]).read_bytes().splitlines():
+        for line in (tables / _TABLE_NAMES[0]).read_bytes().splitlines():
             if pattern in line:
                 fields = line.split()
                 if fields[1].endswith(pattern):
@@ -74,7 +74,7 @@ def waiting_bytes(port: int, tables: Path = Path("/proc/self/net")) -> int | Non
     return max_bytes
 
 
-def _own_sockets() -> set[str]:
+def _find_own_sockets() -> set[str]:
     """Return the inodes of this process's sockets."""
     folder = Path("/proc/self/fd")
     inodes = set()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from linkwright.wire.type_names import ros_type
+from linkwright.wire.type_names import to_ros_type
 
 DISCOVERY_TOPIC = "ros_discovery_info"
 """The topic on which each participant announces its nodes."""
@@ -36,7 +36,7 @@ class RosName:
     name: str
 
 
-def dds_topic(role: Role, name: str, *, plain: bool = False) -> str:
+def to_dds_topic(role: Role, name: str, *, plain: bool = False) -> str:
     """Return the DDS topic for an absolute ROS name.
 
     Args:
@@ -47,7 +47,7 @@ def dds_topic(role: Role, name: str, *, plain: bool = False) -> str:
     return ("" if plain else role.value) + name + _SUFFIXES[role]
 
 
-def ros_name(topic: str) -> RosName | None:
+def parse_ros_name(topic: str) -> RosName | None:
     """Return the ROS name of a DDS topic, or None if the topic does not belong to ROS."""
     prefix, slash, path = topic.partition("/")
     role = _ROLES.get(prefix)
@@ -59,9 +59,9 @@ def ros_name(topic: str) -> RosName | None:
     return RosName(role, "/" + path[: len(path) - len(suffix)])
 
 
-def ros_service_type(type_name: str) -> str | None:
+def parse_service_type(type_name: str) -> str | None:
     """Return the service type of a request or reply type, or None for any other type."""
-    name = ros_type(type_name)
+    name = to_ros_type(type_name)
     if name is None:
         return None
     for suffix in ("_Request", "_Response"):
@@ -80,7 +80,7 @@ def parse_user_data(data: bytes) -> dict[str, str]:
     return entries
 
 
-def endpoint_id(guid: bytes) -> str:
+def format_endpoint_id(guid: bytes) -> str:
     """Format the id that links the reader and the writer of a client or service.
 
     The format is rmw_cyclonedds_cpp's.

@@ -10,9 +10,9 @@ from socket import socket
 from threading import Lock
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.wire.dds.confinement import confine
+from linkwright.wire.dds.confinement import confine_announcements
 from linkwright.wire.dds.cyclone import LOG_ERRORS, load
-from linkwright.wire.dds.settings import Settings, max_participants, own_addresses
+from linkwright.wire.dds.settings import Settings, find_own_addresses, max_participants
 from linkwright.wire.dds.topic_types import TopicTypes
 from linkwright.wire.dds.type_descriptions import WireTypes
 
@@ -81,12 +81,12 @@ def _create_domain(settings: Settings) -> OpenDomain:
         LinkwrightError: DDS102 or DDS103, Cyclone accepts none of the configurations.
     """
     configurations, confinement = settings.configurations, None
-    if settings.on_loopback:
+    if settings.loopback_configurations:
         try:
-            confinement = confine(own_addresses())
+            confinement = confine_announcements(find_own_addresses())
         except OSError:
-            configurations = settings.on_loopback
-    code = _first_taken(settings.domain_id, configurations)
+            configurations = settings.loopback_configurations
+    code = _create_with_first_accepted(settings.domain_id, configurations)
     if code >= 0:
         if not settings.user_configuration:
             # Log errors only. Each malformed or foreign packet causes a warning, so any process could flood the log.
@@ -95,7 +95,7 @@ def _create_domain(settings: Settings) -> OpenDomain:
     if confinement is not None:
         confinement.close()
     if settings.user_configuration:
-        own_code = _first_taken(settings.domain_id, settings.own_configurations)
+        own_code = _create_with_first_accepted(settings.domain_id, settings.own_configurations)
         if own_code >= 0:
             load().dds_delete(own_code)
             raise LinkwrightError(
@@ -128,7 +128,7 @@ def _create_domain(settings: Settings) -> OpenDomain:
     )
 
 
-def _first_taken(domain_id: int, configurations: Sequence[str]) -> int:
+def _create_with_first_accepted(domain_id: int, configurations: Sequence[str]) -> int:
     code = 0
     for configuration in configurations:
         code = load().dds_create_domain(domain_id, configuration.encode())

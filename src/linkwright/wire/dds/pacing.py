@@ -18,30 +18,36 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from queue import SimpleQueue
 
-from linkwright.wire.dds.local_sockets import waiting_bytes
-from linkwright.wire.dds.rtps.messages import FRAGMENT, fragment_count, fragment_start, info_timestamp, message
-from linkwright.wire.dds.rtps.values import PREFIX, UNKNOWN, Address
+from linkwright.wire.dds.local_sockets import count_waiting_bytes
+from linkwright.wire.dds.rtps.messages import (
+    FRAGMENT_SIZE,
+    build_fragment_start,
+    build_info_timestamp,
+    build_message,
+    count_fragments,
+)
+from linkwright.wire.dds.rtps.values import PREFIX_SIZE, UNKNOWN_ENTITY, Address
 from linkwright.wire.guarded_calls import call_guarded
 
-_BUFFER = 212_992
+_BUFFER_SIZE = 212_992
 """Bytes of a receive buffer on Linux, unless a process asks for more."""
 
 _PACKET_SIZE = 61_440
 """The bytes that a packet with a full fragment occupies in that buffer, rounded up. Three packets fit."""
 
-_MIN_ROOM = 2
+_MIN_FREE_PACKETS = 2
 """The number of packets that must fit before sending resumes.
 
 A check after each packet would take longer than sending the packet.
 """
 
-_PAUSE = 0.0002
+_PAUSE_S = 0.0002
 """Seconds between two checks of a full buffer."""
 
 _MAX_CHECKS = 200
 """The maximum number of these checks for one sample, because a stopped reader never empties its buffer."""
 
-_BLIND_PAUSE, _BLIND_PACKETS = 0.0005, 2
+_BLIND_PAUSE_S, _BLIND_PACKETS = 0.0005, 2
 """The pause, in seconds, after each group of packets if the system does not report the bytes in a buffer."""
 
 
@@ -57,7 +63,7 @@ class Receiver:
     def __init__(
         self,
         address: Address,
-        count_waiting: Callable[[int], int | None] = waiting_bytes,
+        count_waiting: Callable[[int], int | None] = count_waiting_bytes,
         pause: Callable[[float], None] = time.sleep,
     ) -> None:
         self.address = address
@@ -79,23 +85,23 @@ class Receiver:
         Returns False if no packet fits before the number of checks for this sample is exhausted.
         """
         if not self._remaining_packets:
-            self._remaining_packets = self._free_packets()
+            self._remaining_packets = self._count_free_packets()
             self._is_stuck = not self._remaining_packets
         if self._remaining_packets:
             self._remaining_packets -= 1
         return not self._is_stuck
 
-    def _free_packets(self) -> int:
+    def _count_free_packets(self) -> int:
         while self._remaining_checks:
             waiting_count = self._waiting(self.address[1])
             if waiting_count is None:
-                self._pause(_BLIND_PAUSE)
+                self._pause(_BLIND_PAUSE_S)
                 return _BLIND_PACKETS
-            packet_count = (_BUFFER - waiting_count) // _PACKET_SIZE
-            if packet_count >= _MIN_ROOM:
+            packet_count = (_BUFFER_SIZE - waiting_count) // _PACKET_SIZE
+            if packet_count >= _MIN_FREE_PACKETS:
                 return packet_count
             self._remaining_checks -= 1
-            self._pause(_PAUSE)
+            self._pause(_PAUSE_S)
         return 0
 
 
@@ -116,9 +122,9 @@ class Pacer:
         self._socket: socket.socket | None = None
         self._receivers: dict[Address, Receiver] = {}
 
-    def addresses_of(self, readers: Iterable[bytes]) -> dict[bytes, Address]:
+    def find_addresses(self, readers: Iterable[bytes]) -> dict[bytes, Address]:
         """Return the addresses of the participants of readers on this machine, by GUID prefix."""
-        addresses = {reader[:PREFIX]: self._find_address(reader) for reader in readers}
+        addresses = {reader[:PREFIX_SIZE]: self._find_address(reader) for reader in readers}
         return {prefix: address for prefix, address in addresses.items() if address is not None}
 
     def add(self, writer: PacedWriter) -> None:
@@ -150,28 +156,28 @@ class Pacer:
             sequence_number: the sequence number that the writer assigns to the sample.
             sample: the serialized sample, whose length is a multiple of four bytes.
             published_ns: when the sample was published, in ns since the epoch.
-            addresses: the addresses of the participants with readers; see `addresses_of`.
+            addresses: the addresses of the participants with readers; see `find_addresses`.
         """
         if self._socket is None:
             self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        stamp, data = info_timestamp(published_ns), memoryview(sample)
-        readers = {prefix: self._receiver(address) for prefix, address in addresses.items()}
+        stamp, data = build_info_timestamp(published_ns), memoryview(sample)
+        readers = {prefix: self._get_receiver(address) for prefix, address in addresses.items()}
         for receiver in readers.values():
             receiver.begin()
-        for fragment_number in range(1, fragment_count(sample) + 1):
-            fragment = data[(fragment_number - 1) * FRAGMENT : fragment_number * FRAGMENT]
-            start = fragment_start(
-                UNKNOWN, writer[PREFIX:], sequence_number, len(sample), fragment_number, len(fragment)
+        for fragment_number in range(1, count_fragments(sample) + 1):
+            fragment = data[(fragment_number - 1) * FRAGMENT_SIZE : fragment_number * FRAGMENT_SIZE]
+            start = build_fragment_start(
+                UNKNOWN_ENTITY, writer[PREFIX_SIZE:], sequence_number, len(sample), fragment_number, len(fragment)
             )
             for prefix, receiver in tuple(readers.items()):
                 if receiver.wait_for_room():
-                    head = message(writer[:PREFIX], stamp, start, to=prefix)
+                    head = build_message(writer[:PREFIX_SIZE], stamp, start, to=prefix)
                     with suppress(OSError):  # Cyclone sends the packets that the system refuses here
                         self._socket.sendto(head + fragment, receiver.address)
                 else:
                     del readers[prefix]
 
-    def _receiver(self, address: Address) -> Receiver:
+    def _get_receiver(self, address: Address) -> Receiver:
         receiver = self._receivers.get(address)
         if receiver is None:
             receiver = self._receivers[address] = Receiver(address)
@@ -219,7 +225,7 @@ class PacedWriter:
         Any thread may call this method.
         """
         with self._condition:
-            if not self._is_pacing and not self._paced_addresses(sample):
+            if not self._is_pacing and not self._find_paced_addresses(sample):
                 self._write_now(sample)
                 return
             self._waiting.append((sample, time.time_ns()))
@@ -240,7 +246,7 @@ class PacedWriter:
                 self._is_pacing = False
                 self._condition.notify_all()
                 return False
-        addresses = self._paced_addresses(sample)
+        addresses = self._find_paced_addresses(sample)
         if addresses:
             self._pacer.send(self._guid, self._written_count + 1, sample, published_ns, addresses)
         if not self._write_now(sample, published_ns) and addresses:
@@ -260,12 +266,12 @@ class PacedWriter:
         with self._condition:
             self._waiting.clear()
 
-    def _paced_addresses(self, sample: bytes) -> dict[bytes, Address]:
+    def _find_paced_addresses(self, sample: bytes) -> dict[bytes, Address]:
         """Return the paced destination addresses of a sample.
 
         The result is empty if the sample fits into one packet.
         """
-        return self._pacer.addresses_of(self._readers()) if len(sample) > FRAGMENT and self._is_numbered else {}
+        return self._pacer.find_addresses(self._readers()) if len(sample) > FRAGMENT_SIZE and self._is_numbered else {}
 
     def _write_now(self, sample: bytes, published_ns: int | None = None) -> bool:
         is_written = self._write(sample, published_ns)

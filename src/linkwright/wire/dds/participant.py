@@ -19,16 +19,16 @@ SERVICES_NAME = "linkwright-services"
 """The entity name of our participants for services with Fast DDS, which have no nodes of their own."""
 
 
-def entity_name() -> str:
+def make_entity_name() -> str:
     """Return the name of a participant of this process: kind, process id and process namespace.
 
     Other Linkwright processes on the same machine use the name to notice that the process has ended before its lease
     expires.
     """
-    return f"{NAME}/{process_namespace()}/{os.getpid()}"
+    return f"{NAME}/{read_process_namespace()}/{os.getpid()}"
 
 
-def process_namespace() -> str:
+def read_process_namespace() -> str:
     """Return an identifier of this process's PID namespace, or an empty string.
 
     It distinguishes processes that have the same id in different containers.
@@ -54,7 +54,7 @@ class Participant:
         self.closed = False
         self._domain = open_domain(settings)
         try:
-            with participant_qos(f"enclave={settings.enclave};".encode(), entity_name()) as qos:
+            with participant_qos(f"enclave={settings.enclave};".encode(), make_entity_name()) as qos:
                 code = self._dds.dds_create_participant(self._domain.domain_id, qos, None)
             self.entity = check_call(code, "joining the domain")
         except CycloneError as error:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 from linkwright.wire.dds.domain import Domain
-from linkwright.wire.dds.services import Pair
+from linkwright.wire.dds.services import EndpointPair
 from linkwright.wire.dds.topics import MirroredTopic
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class QuietReader(MirroredTopic):
         """Delete the reader."""
         self._participant.delete(self.entity, self._topic)
 
-    def _profile_of(self, endpoint: Any) -> QoSProfile:
+    def _get_profile(self, endpoint: Any) -> QoSProfile:
         profile: QoSProfile = copy(endpoint.qos_profile)
         profile.history, profile.depth = HistoryPolicy.KEEP_LAST, 1
         return profile
@@ -68,7 +68,7 @@ class QuietClient:
     """
 
     def __init__(self, presence: Presence, domain: Domain) -> None:
-        self._pair = Pair(presence, domain, is_server=False)
+        self._pair = EndpointPair(presence, domain, is_server=False)
         self.reader_guid = self._pair.reader_guid
         self.writer_guids = (self._pair.writer_guid,)
 

@@ -15,7 +15,7 @@ from linkwright.graph.qos.profile import (
     ReliabilityPolicy,
 )
 from linkwright.graph.time.values import INFINITE, Duration
-from linkwright.wire.dds.cyclone import INFINITY, load
+from linkwright.wire.dds.cyclone import INFINITY_NS, load
 
 UNLIMITED = -1
 
@@ -63,7 +63,7 @@ def endpoint_qos(profile: QoSProfile, user_data: bytes = b"") -> Iterator[int]:
         is_manual = profile.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
         lease = limit_ns(profile.liveliness_lease_duration)
         dds.dds_qset_liveliness(
-            qos, _MANUAL_BY_TOPIC if is_manual else _AUTOMATIC, INFINITY if lease is None else lease
+            qos, _MANUAL_BY_TOPIC if is_manual else _AUTOMATIC, INFINITY_NS if lease is None else lease
         )
         dds.dds_qset_ignorelocal(qos, _IGNORE_PARTICIPANT)
         dds.dds_qset_writer_data_lifecycle(qos, False)
@@ -98,9 +98,9 @@ def profile_from_policies(qos: int, *, announces_history: bool = True) -> QoSPro
     dds = load()
     value, depth, duration = c.c_int(), c.c_int32(), c.c_int64()
 
-    def limit(getter: str) -> Duration:
+    def read_limit(getter: str) -> Duration:
         is_set = getattr(dds, getter)(qos, c.byref(duration))
-        return Duration(nanoseconds=duration.value) if is_set and 0 < duration.value < INFINITY else INFINITE
+        return Duration(nanoseconds=duration.value) if is_set and 0 < duration.value < INFINITY_NS else INFINITE
 
     history, length = HistoryPolicy.UNKNOWN, 0
     if announces_history and dds.dds_qget_history(qos, c.byref(value), c.byref(depth)):
@@ -116,14 +116,14 @@ def profile_from_policies(qos: int, *, announces_history: bool = True) -> QoSPro
     if dds.dds_qget_liveliness(qos, c.byref(value), c.byref(duration)):
         is_manual = value.value == _MANUAL_BY_TOPIC
         liveliness = LivelinessPolicy.MANUAL_BY_TOPIC if is_manual else LivelinessPolicy.AUTOMATIC
-        lease = Duration(nanoseconds=duration.value) if duration.value < INFINITY else INFINITE
+        lease = Duration(nanoseconds=duration.value) if duration.value < INFINITY_NS else INFINITE
     return QoSProfile(
         depth=length,
         history=history,
         reliability=reliability,
         durability=durability,
-        deadline=limit("dds_qget_deadline"),
-        lifespan=limit("dds_qget_lifespan"),
+        deadline=read_limit("dds_qget_deadline"),
+        lifespan=read_limit("dds_qget_lifespan"),
         liveliness=liveliness,
         liveliness_lease_duration=lease,
     )

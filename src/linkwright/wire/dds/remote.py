@@ -18,17 +18,17 @@ from linkwright.wire.dds.names import (
     DISCOVERY_TOPIC,
     Role,
     RosName,
-    ros_name,
-    ros_service_type,
+    parse_ros_name,
+    parse_service_type,
 )
-from linkwright.wire.dds.participant import NAME, process_namespace
+from linkwright.wire.dds.participant import NAME, read_process_namespace
 from linkwright.wire.remote_entities import RemoteEntities
-from linkwright.wire.type_names import ros_type
+from linkwright.wire.type_names import to_ros_type
 
-_FAST_DDS = b"\x01\x0f"
+_FAST_DDS_VENDOR = b"\x01\x0f"
 """The prefix of the GUIDs of entities of Fast DDS."""
 
-_PREFIX = 12
+_PREFIX_SIZE = 12
 """The number of bytes of a GUID that identify the participant."""
 
 _FIRST_ENDPOINT_TIMEOUT_S = 1.3
@@ -63,7 +63,7 @@ class RemoteParticipant:
 
     def endpoints(self) -> set[bytes]:
         """Return the GUIDs of the endpoints that the participant announces for its nodes."""
-        return {gid for node in (self.entities.nodes if self.entities else ()) for gid in _gids(node)}
+        return {gid for node in (self.entities.nodes if self.entities else ()) for gid in _iterate_gids(node)}
 
     @property
     def is_ours(self) -> bool:
@@ -80,7 +80,7 @@ class RemoteParticipant:
             return self.peer_process
         _, _, process_path = self.entity_name.partition("/")
         namespace, _, process = process_path.partition("/")
-        if not namespace or namespace != process_namespace() or not process.isdecimal():
+        if not namespace or namespace != read_process_namespace() or not process.isdecimal():
             return None
         return int(process)
 
@@ -119,7 +119,7 @@ class RemoteEndpoint:
     @property
     def name(self) -> RosName | None:
         """The ROS name of the DDS topic, or None if the topic does not belong to ROS."""
-        return ros_name(self.topic)
+        return parse_ros_name(self.topic)
 
     @property
     def is_fast(self) -> bool:
@@ -140,10 +140,10 @@ class RemoteEndpoint:
             return None
         if name.role is Role.TOPIC:
             endpoint_kind = EndpointKind.PUBLISHER if self.is_writer else EndpointKind.SUBSCRIPTION
-            type_name = ros_type(self.type_name)
+            type_name = to_ros_type(self.type_name)
         elif name.role is Role.REQUEST:
             endpoint_kind = EndpointKind.CLIENT if self.is_writer else EndpointKind.SERVICE
-            type_name = ros_service_type(self.type_name)
+            type_name = parse_service_type(self.type_name)
         else:
             return None
         if type_name is None:
@@ -161,7 +161,7 @@ class DepartureWatch(Protocol):
     `wire.dds.departures.DdsDepartureMonitor` implements this protocol.
     """
 
-    def endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
+    def on_endpoint_left(self, endpoint: RemoteEndpoint, node: NodeIdentity | None) -> None:
         """Handle the disappearance of an endpoint.
 
         Args:
@@ -207,7 +207,7 @@ class RemoteGraph(RemoteEntities):
         """Remove a participant and its endpoints."""
         with self._lock:
             for endpoint in [endpoint for endpoint in self._endpoints.values() if endpoint.participant == guid]:
-                self._forget(endpoint)
+                self._remove_endpoint(endpoint)
             self._participants.pop(guid, None)
             self._early_announcements.pop(guid, None)
 
@@ -222,7 +222,7 @@ class RemoteGraph(RemoteEntities):
         with self._lock:
             endpoint = self._endpoints.get(guid)
             if endpoint is not None:
-                self._forget(endpoint)
+                self._remove_endpoint(endpoint)
 
     def on_entities_announced(self, entities: ParticipantEntities) -> None:
         """Record the nodes that a participant announces.
@@ -237,12 +237,12 @@ class RemoteGraph(RemoteEntities):
                 participant.entities = entities
             if self.departures is not None:
                 self.departures.on_announcement(
-                    entities.participant, {gid for node in entities.nodes for gid in _gids(node)}
+                    entities.participant, {gid for node in entities.nodes for gid in _iterate_gids(node)}
                 )
 
-    def _forget(self, endpoint: RemoteEndpoint) -> None:
+    def _remove_endpoint(self, endpoint: RemoteEndpoint) -> None:
         if self.departures is not None:
-            self.departures.endpoint_left(endpoint, self._endpoint_owner(endpoint))
+            self.departures.on_endpoint_left(endpoint, self._find_owner(endpoint))
         self._endpoints.pop(endpoint.guid, None)
         self._by_handle.pop(endpoint.handle, None)
 
@@ -252,7 +252,7 @@ class RemoteGraph(RemoteEntities):
         """Return the reader or writer with a handle, or None if it is not known."""
         return self._by_handle.get(handle)
 
-    def topic_endpoints(self, topic: str, *, writers: bool) -> list[RemoteEndpoint]:
+    def find_topic_endpoints(self, topic: str, *, writers: bool) -> list[RemoteEndpoint]:
         """Return the writers or the readers of a DDS topic."""
         with self._lock:
             return [
@@ -268,22 +268,22 @@ class RemoteGraph(RemoteEntities):
 
     def fast_participants(self) -> set[bytes]:
         """Return the GUID prefixes of the Fast DDS participants, except those known to be killed."""
-        dead = self._dead_participants()
+        dead = self._find_dead_participants()
         with self._lock:
-            return {guid[:_PREFIX] for guid in self._participants if is_fast(guid) and guid not in dead}
+            return {guid[:_PREFIX_SIZE] for guid in self._participants if is_fast(guid) and guid not in dead}
 
     def is_read_by_fast(self, topic: str) -> bool:
         """Return whether a Fast DDS participant reads a DDS topic.
 
         Participants that are known to have been killed do not count.
         """
-        dead = self._dead_participants()
-        readers = self.topic_endpoints(topic, writers=False)
+        dead = self._find_dead_participants()
+        readers = self.find_topic_endpoints(topic, writers=False)
         return any(reader.is_fast and reader.participant not in dead for reader in readers)
 
     def is_dead(self, prefix: bytes) -> bool:
         """Return whether a participant, given by its GUID prefix, is known to have been killed."""
-        return any(guid.startswith(prefix) for guid in self._dead_participants())
+        return any(guid.startswith(prefix) for guid in self._find_dead_participants())
 
     def have_all_announced(self) -> bool:
         """Return whether every participant that can announce its nodes has announced them.
@@ -327,7 +327,7 @@ class RemoteGraph(RemoteEntities):
                     return False
         return self.have_all_announced()
 
-    def linkwright_process_ids(self) -> set[int]:
+    def find_linkwright_process_ids(self) -> set[int]:
         """Return the known process ids of running Linkwright processes on this machine."""
         own_participants = [
             participant for participant in self.participants() if participant.is_ours and not participant.has_died()
@@ -339,7 +339,7 @@ class RemoteGraph(RemoteEntities):
 
         If several nodes have the same name, each is included.
         """
-        dead = self._dead_participants()
+        dead = self._find_dead_participants()
         with self._lock:
             return [
                 NodeIdentity(node.name, node.namespace, participant.enclave)
@@ -350,40 +350,39 @@ class RemoteGraph(RemoteEntities):
 
     def endpoints(self) -> list[EndpointInfo]:
         """Return the topic and service endpoints of other processes, in ROS terms."""
-        dead = self._dead_participants()
+        dead = self._find_dead_participants()
         with self._lock:
-            owners = self._owners()
+            owners = self._find_owners()
             return [
                 info
                 for endpoint in self._endpoints.values()
                 if endpoint.participant not in dead
-                and (info := endpoint.endpoint_info(owners.get(endpoint.guid), self._endpoint_host(endpoint)))
-                is not None
+                and (info := endpoint.endpoint_info(owners.get(endpoint.guid), self._find_host(endpoint))) is not None
             ]
 
-    def _endpoint_host(self, endpoint: RemoteEndpoint) -> str:
+    def _find_host(self, endpoint: RemoteEndpoint) -> str:
         participant = self._participants.get(endpoint.participant)
         return participant.host if participant else ""
 
-    def node_name(self, endpoint: RemoteEndpoint) -> str:
+    def find_node_name(self, endpoint: RemoteEndpoint) -> str:
         """Return the full name of the node that owns an endpoint.
 
         The name is empty until the node is announced.
         """
         with self._lock:
-            owner = self._endpoint_owner(endpoint)
+            owner = self._find_owner(endpoint)
         return owner.full_name if owner else ""
 
-    def _endpoint_owner(self, endpoint: RemoteEndpoint) -> NodeIdentity | None:
+    def _find_owner(self, endpoint: RemoteEndpoint) -> NodeIdentity | None:
         participant = self._participants.get(endpoint.participant)
         if participant is None or participant.entities is None:
             return None
         for node in participant.entities.nodes:
-            if endpoint.guid in _gids(node):
+            if endpoint.guid in _iterate_gids(node):
                 return NodeIdentity(node.name, node.namespace, participant.enclave)
         return None
 
-    def participant_writers(self, participant: bytes) -> list[tuple[RemoteEndpoint, NodeIdentity | None]]:
+    def find_participant_writers(self, participant: bytes) -> list[tuple[RemoteEndpoint, NodeIdentity | None]]:
         """Return a participant's writers with their nodes.
 
         The node is None until it is announced.
@@ -394,18 +393,18 @@ class RemoteGraph(RemoteEntities):
                 for endpoint in self._endpoints.values()
                 if endpoint.participant == participant and endpoint.is_writer
             ]
-            return [(writer, self._endpoint_owner(writer)) for writer in writers]
+            return [(writer, self._find_owner(writer)) for writer in writers]
 
-    def _owners(self) -> dict[bytes, NodeIdentity]:
+    def _find_owners(self) -> dict[bytes, NodeIdentity]:
         return {
             gid: NodeIdentity(node.name, node.namespace, participant.enclave)
             for participant in self._participants.values()
             if participant.entities is not None
             for node in participant.entities.nodes
-            for gid in _gids(node)
+            for gid in _iterate_gids(node)
         }
 
-    def _dead_participants(self) -> frozenset[bytes]:
+    def _find_dead_participants(self) -> frozenset[bytes]:
         """Return the GUIDs of participants whose process was killed.
 
         The result is cached briefly.
@@ -443,9 +442,9 @@ def _is_zombie(process: int) -> bool:
 
 def is_fast(guid: bytes) -> bool:
     """Return whether an entity belongs to a participant of Fast DDS (RTPS vendor 1.15)."""
-    return guid.startswith(_FAST_DDS)
+    return guid.startswith(_FAST_DDS_VENDOR)
 
 
-def _gids(node: NodeEntities) -> Iterator[bytes]:
+def _iterate_gids(node: NodeEntities) -> Iterator[bytes]:
     yield from node.readers
     yield from node.writers

@@ -33,10 +33,10 @@ from linkwright.wire.dds.cyclone import (
 )
 from linkwright.wire.dds.domain import Domain
 from linkwright.wire.dds.fastdds_services import EarlyRequest, FastClient, FastServer
-from linkwright.wire.dds.names import Role, dds_topic
+from linkwright.wire.dds.names import Role, to_dds_topic
 from linkwright.wire.dds.qos import endpoint_qos
 from linkwright.wire.dds.remote import RemoteEndpoint, is_fast
-from linkwright.wire.dds.service_types import request_and_response_types, service_user_data
+from linkwright.wire.dds.service_types import make_service_user_data, request_and_response_types
 from linkwright.wire.service_messages import forward_request, forward_response, to_cdr
 
 if TYPE_CHECKING:
@@ -47,15 +47,15 @@ if TYPE_CHECKING:
 HEADER = struct.Struct("<Qq")
 """The id of the client, and the sequence number of the request."""
 
-_ENCAPSULATION = 4
-_BODY = _ENCAPSULATION + HEADER.size
+_ENCAPSULATION_SIZE = 4
+_BODY_OFFSET = _ENCAPSULATION_SIZE + HEADER.size
 _LITTLE_ENDIAN = b"\x00\x01\x00\x00"
 _MAX_SAMPLES = 64
 _REPLY_TIMEOUT_S = 1.0
 """Seconds for which a reply waits until the client's reader is known. After that, the reply is written anyway."""
 
 
-class Pair:
+class EndpointPair:
     """The reader and the writer that make up a client or a service.
 
     Args:
@@ -68,9 +68,9 @@ class Pair:
         self._dds = load()
         self._participant = participant = domain.participant
         self.name = endpoint.name
-        self.request_topic = dds_topic(Role.REQUEST, endpoint.name)
-        self.reply_topic = dds_topic(Role.REPLY, endpoint.name)
-        user_data = service_user_data(os.urandom(16), endpoint, is_server=is_server)
+        self.request_topic = to_dds_topic(Role.REQUEST, endpoint.name)
+        self.reply_topic = to_dds_topic(Role.REPLY, endpoint.name)
+        user_data = make_service_user_data(os.urandom(16), endpoint, is_server=is_server)
         # Only the names of the types are described, because requests of Fast DDS arrive without the header.
         type_descriptions = (
             domain.types.by_name(type_name) for type_name in request_and_response_types(endpoint.type_name)
@@ -96,7 +96,7 @@ class Pair:
         self._dds.dds_take_status(entity, c.byref(status), mask)
         return bool(status.value)
 
-    def samples(self) -> Iterator[tuple[bytes, Any]]:
+    def take_samples(self) -> Iterator[tuple[bytes, Any]]:
         """Take the samples that have arrived.
 
         Yield each as CDR, with Cyclone's sample info.
@@ -106,7 +106,10 @@ class Pair:
 
     def write(self, client_id: int, sequence_number: int, message: Any) -> None:
         """Write a request or a reply, with the header that identifies the request."""
-        write(self.writer, _LITTLE_ENDIAN + HEADER.pack(client_id, sequence_number) + to_cdr(message)[_ENCAPSULATION:])
+        write(
+            self.writer,
+            _LITTLE_ENDIAN + HEADER.pack(client_id, sequence_number) + to_cdr(message)[_ENCAPSULATION_SIZE:],
+        )
 
     def close(self) -> None:
         """Delete the reader and the writer."""
@@ -129,7 +132,7 @@ class RemoteServer:
         self._on_match = on_match
         self._remote = domain.remote
         self._dds = load()
-        self.pair = Pair(client, domain, is_server=False)
+        self.pair = EndpointPair(client, domain, is_server=False)
         self._client_id = int.from_bytes(os.urandom(8), "little")
         self._response_callbacks: dict[int, Callable[[Any], None]] = {}
         self._is_ready = False
@@ -146,14 +149,14 @@ class RemoteServer:
             return self._fast.send(request, on_response)
         self._response_callbacks[sequence_number] = on_response
         self.pair.write(self._client_id, sequence_number, request)
-        return partial(self._forget, sequence_number)
+        return partial(self._cancel_request, sequence_number)
 
     def on_data(self) -> bool:
         """Pass on the replies for this client, and return whether there are more samples."""
         if self.pair.has_matched(self.pair.reader):
             self._on_match()
         count = 0
-        for data, _ in self.pair.samples():
+        for data, _ in self.pair.take_samples():
             count += 1
             client_id, sequence_number, body = _split_sample(data)
             on_response = self._response_callbacks.pop(sequence_number, None) if client_id == self._client_id else None
@@ -196,7 +199,7 @@ class RemoteServer:
         """Stop sending requests, without calling Cyclone."""
         self._client.remote_service = None
 
-    def _forget(self, sequence_number: int) -> None:
+    def _cancel_request(self, sequence_number: int) -> None:
         self._response_callbacks.pop(sequence_number, None)
 
     def _is_server_available(self) -> bool:
@@ -226,7 +229,7 @@ class IncomingService:
         self._on_waiting = on_waiting
         self._remote = domain.remote
         self._dds = load()
-        self.pair = Pair(service, domain, is_server=True)
+        self.pair = EndpointPair(service, domain, is_server=True)
         self._fast: FastServer | None = None
         self._early_requests: list[EarlyRequest] = []
         self._late_replies: deque[tuple[float, RemoteEndpoint | None, int, int, Any]] = deque()
@@ -235,7 +238,7 @@ class IncomingService:
     def on_data(self) -> bool:
         """Pass requests that have arrived to the service, and return whether there are more."""
         count = 0
-        for data, info in self.pair.samples():
+        for data, info in self.pair.take_samples():
             count += 1
             sender = self._remote.endpoint(info.publication_handle)
             if self._accept_from_fast(sender, data, info):
@@ -267,9 +270,9 @@ class IncomingService:
             self._fast.write_pending_replies()
 
     @property
-    def has_more_to_do(self) -> bool:
+    def has_pending_work(self) -> bool:
         """Whether replies or requests wait until their clients are discovered."""
-        return bool(self._late_replies) or (self._fast is not None and self._fast.has_more_to_do)
+        return bool(self._late_replies) or (self._fast is not None and self._fast.has_pending_work)
 
     def close(self) -> None:
         """Stop answering other processes."""
@@ -332,7 +335,7 @@ def _split_sample(data: bytes) -> tuple[int, int, bytes]:
 
     If the sample is too short for the header, the body is empty.
     """
-    if len(data) < _BODY:
+    if len(data) < _BODY_OFFSET:
         return 0, 0, b""
-    client_id, sequence_number = HEADER.unpack_from(data, _ENCAPSULATION)
-    return client_id, sequence_number, data[:_ENCAPSULATION] + data[_BODY:]
+    client_id, sequence_number = HEADER.unpack_from(data, _ENCAPSULATION_SIZE)
+    return client_id, sequence_number, data[:_ENCAPSULATION_SIZE] + data[_BODY_OFFSET:]

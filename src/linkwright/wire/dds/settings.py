@@ -32,10 +32,10 @@ _PORTS_OF_A_DOMAIN = 250
 _FRAGMENT_SIZE = 60_000
 """The maximum size, in bytes, of a sample that is sent in one packet, if the configuration is Linkwright's."""
 
-_CYCLONES_FRAGMENT_SIZE = 1344
+_CYCLONE_FRAGMENT_SIZE = 1344
 """The same, if Cyclone chooses the size."""
 
-LEASE = 5
+LEASE_S = 5
 """Seconds of silence after which a process counts as gone, if the configuration is Linkwright's."""
 
 _STATIC_PEERS_SEPARATOR = ";"
@@ -77,7 +77,7 @@ class Settings:
         peers: other machines to contact without multicast.
         enclave: the security enclave of the nodes.
         fragment_size: the size in bytes up to which a sample always fits into one packet.
-        on_loopback: the configurations that use loopback only; empty if discovery may leave the machine.
+        loopback_configurations: the configurations that use loopback only; empty if discovery may leave the machine.
     """
 
     domain_id: int
@@ -89,8 +89,8 @@ class Settings:
     own_configurations: tuple[str, ...] = ()
     peers: tuple[str, ...] = ()
     enclave: str = "/"
-    fragment_size: int = _CYCLONES_FRAGMENT_SIZE
-    on_loopback: tuple[str, ...] = ()
+    fragment_size: int = _CYCLONE_FRAGMENT_SIZE
+    loopback_configurations: tuple[str, ...] = ()
 
 
 def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: int | None = None) -> Settings:
@@ -105,7 +105,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
     """
     variables = os.environ if environment is None else environment
     warnings: list[str] = []
-    discovery_range = _range(variables, warnings)
+    discovery_range = _read_range(variables, warnings)
     peers = [peer for peer in variables.get("ROS_STATIC_PEERS", "").split(_STATIC_PEERS_SEPARATOR) if peer]
     if peers and discovery_range in (Range.OFF, Range.SYSTEM_DEFAULT):
         warnings.append(
@@ -113,7 +113,7 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
         )
     user = variables.get("CYCLONEDDS_URI", "")
     domain_id = read_domain_id(variables, domain_id)
-    own_configurations = tuple(_configurations(discovery_range, peers, max_participants(domain_id)))
+    own_configurations = tuple(_make_configurations(discovery_range, peers, max_participants(domain_id)))
     configurations = tuple(
         ",".join(fragment for fragment in (configuration, user) if fragment) for configuration in own_configurations
     )
@@ -126,12 +126,14 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
         user_configuration=user,
         own_configurations=own_configurations,
         peers=() if discovery_range in (Range.OFF, Range.SYSTEM_DEFAULT) else tuple(peers),
-        fragment_size=_FRAGMENT_SIZE if not user and _stays_here(discovery_range, peers) else _CYCLONES_FRAGMENT_SIZE,
-        on_loopback=configurations[-_LOOPBACK_CONFIGURATIONS:] if _stays_here(discovery_range, peers) else (),
+        fragment_size=_FRAGMENT_SIZE if not user and _is_local_only(discovery_range, peers) else _CYCLONE_FRAGMENT_SIZE,
+        loopback_configurations=configurations[-_LOOPBACK_CONFIGURATIONS:]
+        if _is_local_only(discovery_range, peers)
+        else (),
     )
 
 
-def _range(variables: Mapping[str, str], warnings: list[str]) -> Range:
+def _read_range(variables: Mapping[str, str], warnings: list[str]) -> Range:
     """Return the discovery range, from ROS_LOCALHOST_ONLY or ROS_AUTOMATIC_DISCOVERY_RANGE.
 
     As in rcl, ROS_LOCALHOST_ONLY takes precedence.
@@ -193,7 +195,7 @@ _LOOPBACK = '<NetworkInterface address="127.0.0.1" multicast="true"/>'
 _OTHER_INTERFACES = '<NetworkInterface autodetermine="true"/>'
 
 
-def _machine(interfaces: str, addresses: list[str], max_index: int, *, multicast: bool) -> str:
+def _make_machine_configuration(interfaces: str, addresses: list[str], max_index: int, *, multicast: bool) -> str:
     """Return a configuration for discovery on this machine.
 
     Discovery uses unicast to each participant index at the machine's own addresses, and multicast that never leaves the
@@ -209,27 +211,29 @@ def _machine(interfaces: str, addresses: list[str], max_index: int, *, multicast
     return (
         f"<CycloneDDS><Domain><General><Interfaces>{interfaces}</Interfaces>{multicast_elements}"
         f"<MaxMessageSize>65000 B</MaxMessageSize><FragmentSize>{_FRAGMENT_SIZE} B</FragmentSize></General>"
-        f"<Discovery>{_AUTO_INDEX.format(max_index)}<LeaseDuration>{LEASE} s</LeaseDuration>"
+        f"<Discovery>{_AUTO_INDEX.format(max_index)}<LeaseDuration>{LEASE_S} s</LeaseDuration>"
         f"<Peers>{peers}</Peers></Discovery>"
         f"{_RELIABLE_TRAFFIC}</Domain></CycloneDDS>"
     )
 
 
-def _stays_here(discovery_range: Range, peers: list[str]) -> bool:
+def _is_local_only(discovery_range: Range, peers: list[str]) -> bool:
     """Return whether discovery is restricted to processes of this machine."""
     return discovery_range is Range.MACHINE or (discovery_range is Range.LOCALHOST and not peers)
 
 
-def _configurations(discovery_range: Range, peers: list[str], max_index: int) -> list[str]:
+def _make_configurations(discovery_range: Range, peers: list[str], max_index: int) -> list[str]:
     """Return the configurations in order of preference, without the user's own configuration."""
-    if _stays_here(discovery_range, peers):
-        addresses = own_addresses()[:_MAX_OWN_ADDRESSES]
+    if _is_local_only(discovery_range, peers):
+        addresses = find_own_addresses()[:_MAX_OWN_ADDRESSES]
         loopback_only = [
-            _machine(_LOOPBACK, [], max_index, multicast=True),
-            _machine('<NetworkInterface address="127.0.0.1"/>', [], max_index, multicast=False),
+            _make_machine_configuration(_LOOPBACK, [], max_index, multicast=True),
+            _make_machine_configuration('<NetworkInterface address="127.0.0.1"/>', [], max_index, multicast=False),
         ]
         on_network = (
-            [_machine(_LOOPBACK + _OTHER_INTERFACES, addresses, max_index, multicast=True)] if addresses else []
+            [_make_machine_configuration(_LOOPBACK + _OTHER_INTERFACES, addresses, max_index, multicast=True)]
+            if addresses
+            else []
         )
         return on_network + loopback_only
     if discovery_range is Range.SYSTEM_DEFAULT:
@@ -254,36 +258,36 @@ def _configurations(discovery_range: Range, peers: list[str], max_index: int) ->
 
 
 _SIOCGIFADDR = 0x8915
-_REQUEST = "256s"
+_REQUEST_FORMAT = "256s"
 
 
-def own_addresses() -> list[str]:
+def find_own_addresses() -> list[str]:
     """Return the IPv4 addresses of the interfaces other than loopback, in the system's order.
 
     Cyclone prints an error if an interface in its configuration does not exist. A process that is configured to stay on
     the machine may be reachable only at the address of its interface.
     """
-    addresses = _interface_addresses() if sys.platform.startswith("linux") else _addresses_by_name()
+    addresses = _query_interface_addresses() if sys.platform.startswith("linux") else _resolve_own_addresses()
     return [address for address in dict.fromkeys(addresses) if address and not address.startswith("127.")]
 
 
-def _interface_addresses() -> list[str]:
+def _query_interface_addresses() -> list[str]:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as query_socket:
-        return [_address(query_socket, name) for _, name in socket.if_nameindex()]
+        return [_query_address(query_socket, name) for _, name in socket.if_nameindex()]
 
 
-def _address(query_socket: socket.socket, name: str) -> str:
+def _query_address(query_socket: socket.socket, name: str) -> str:
     """Return the address of an interface, or an empty string if the interface has none."""
     from fcntl import ioctl
 
     try:
-        response = ioctl(query_socket.fileno(), _SIOCGIFADDR, struct.pack(_REQUEST, name.encode()[:15]))
+        response = ioctl(query_socket.fileno(), _SIOCGIFADDR, struct.pack(_REQUEST_FORMAT, name.encode()[:15]))
     except OSError:
         return ""
     return socket.inet_ntoa(response[20:24])
 
 
-def _addresses_by_name() -> list[str]:
+def _resolve_own_addresses() -> list[str]:
     try:
         results = socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)
     except OSError:

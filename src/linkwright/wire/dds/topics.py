@@ -29,22 +29,22 @@ from linkwright.wire.dds.cyclone import (
     LivelinessChangedStatus,
     MatchedStatus,
     Sample,
-    describe,
+    describe_code,
     load,
 )
 from linkwright.wire.dds.domain import Domain
-from linkwright.wire.dds.names import Role, dds_topic
+from linkwright.wire.dds.names import Role, to_dds_topic
 from linkwright.wire.dds.pacing import PacedWriter
 from linkwright.wire.dds.qos import endpoint_qos
-from linkwright.wire.dds.rtps.messages import FRAGMENT
-from linkwright.wire.dds.settings import LEASE
+from linkwright.wire.dds.rtps.messages import FRAGMENT_SIZE
+from linkwright.wire.dds.settings import LEASE_S
 
 if TYPE_CHECKING:
     from linkwright.graph.endpoints.base import Endpoint
     from linkwright.graph.endpoints.publisher import Publisher
     from linkwright.graph.endpoints.subscription import Subscription
 
-_PUBLISH_TIMEOUT_S = 2 * LEASE
+_PUBLISH_TIMEOUT_S = 2 * LEASE_S
 """Seconds for which a publisher with KEEP_ALL waits for slow readers."""
 
 _UNNAMED = "a node whose name is not known"
@@ -72,7 +72,7 @@ def keep_large_blocks() -> None:
     bytes(_MAX_KEPT_BLOCK)
 
 
-def type_user_data(message_class: Any) -> bytes:
+def make_type_user_data(message_class: Any) -> bytes:
     """Return the USER_DATA with the type's hash, as ROS 2 announces it from Iron on.
 
     Older distributions ignore the hash.
@@ -97,8 +97,8 @@ class MirroredTopic(ABC):
         self._on_mismatch = on_mismatch
         self._participant = domain.participant
         self._remote = domain.remote
-        profile = self._profile_of(endpoint)
-        self.topic_name = dds_topic(Role.TOPIC, endpoint.name, plain=profile.avoid_ros_namespace_conventions)
+        profile = self._get_profile(endpoint)
+        self.topic_name = to_dds_topic(Role.TOPIC, endpoint.name, plain=profile.avoid_ros_namespace_conventions)
         type_description, user_data = self._describe_type(endpoint, domain)
         self._topic = self._participant.create_topic(self.topic_name, type_description)
         with endpoint_qos(profile, user_data) as qos:
@@ -116,13 +116,13 @@ class MirroredTopic(ABC):
         """
         announced_hash = f"typehash={endpoint.type_hash};".encode() if endpoint.type_hash else b""
         try:
-            return domain.types.message(endpoint.interface), announced_hash or type_user_data(endpoint.interface)
+            return domain.types.message(endpoint.interface), announced_hash or make_type_user_data(endpoint.interface)
         except InterfaceNotFoundError:
             if not endpoint.raw:
                 raise
             return domain.types.by_name(endpoint.type_name), announced_hash
 
-    def _profile_of(self, endpoint: Any) -> QoSProfile:
+    def _get_profile(self, endpoint: Any) -> QoSProfile:
         """Return the QoS profile to offer or to request."""
         profile: QoSProfile = endpoint.qos_profile
         return profile
@@ -158,7 +158,7 @@ class OutgoingTopic(MirroredTopic):
         self._backlog = self._make_backlog(domain.fragment_size)
         publisher.assert_remote_liveliness = self._assert_liveliness
         self._is_transient_local = publisher.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
-        self._send = self._sender()
+        self._send = self._make_sender()
         self.on_status()
 
     def on_status(self) -> bool:
@@ -236,12 +236,12 @@ class OutgoingTopic(MirroredTopic):
         pacer sends.
         """
         profile = self._publisher.qos_profile
-        if profile.history is HistoryPolicy.KEEP_ALL or domain.fragment_size != FRAGMENT:
+        if profile.history is HistoryPolicy.KEEP_ALL or domain.fragment_size != FRAGMENT_SIZE:
             return None
         depth = max(profile.depth, 1)
-        return PacedWriter(self.guid, depth, self._write_published, self._fast_readers, domain.pacer)
+        return PacedWriter(self.guid, depth, self._write_published, self._find_fast_readers, domain.pacer)
 
-    def _fast_readers(self) -> list[bytes]:
+    def _find_fast_readers(self) -> list[bytes]:
         """Return the GUIDs of the readers of Fast DDS that match the writer."""
         endpoints = map(self._remote.endpoint, self._dds.matching_handles(self.entity, writer=True))
         return [endpoint.guid for endpoint in endpoints if endpoint is not None and endpoint.is_fast]
@@ -261,7 +261,7 @@ class OutgoingTopic(MirroredTopic):
             has_vulnerable_reader=lambda: self._remote.is_read_by_fast(self.topic_name),
         )
 
-    def _sender(self) -> Callable[[Any], None]:
+    def _make_sender(self) -> Callable[[Any], None]:
         backlog = self._backlog
 
         def send(message: Any) -> None:
@@ -274,7 +274,7 @@ class OutgoingTopic(MirroredTopic):
         return send
 
     def _write(self, data: bytes) -> None:
-        if len(data) > FRAGMENT:
+        if len(data) > FRAGMENT_SIZE:
             keep_large_blocks()
         if len(data) & 3:
             data += bytes(-len(data) & 3)
@@ -314,14 +314,9 @@ class OutgoingTopic(MirroredTopic):
 
         Further failures are logged only after some time.
         """
-        if (
-            code >= 0
-            or self._participant.closed
-            or self._publisher.destroyed
-            or not self._log_limits.take_turn("failed")
-        ):
+        if code >= 0 or self._participant.closed or self._publisher.destroyed or not self._log_limits.may_log("failed"):
             return
-        reason = "the subscriptions in other processes do not keep up" if code == TIMEOUT else describe(code)
+        reason = "the subscriptions in other processes do not keep up" if code == TIMEOUT else describe_code(code)
         self._publisher.node.logger.warning(
             f"A message of topic '{self._publisher.name}' was not sent to other processes: {reason}"
         )
@@ -333,12 +328,12 @@ class OutgoingTopic(MirroredTopic):
             include_unnamed: whether to report also subscriptions whose node name is not known yet.
         """
         offered = self._publisher.qos_profile
-        for reader in self._remote.topic_endpoints(self.topic_name, writers=False):
+        for reader in self._remote.find_topic_endpoints(self.topic_name, writers=False):
             policies = find_incompatible_policies(offered, reader.qos)
-            name = self._remote.node_name(reader)
+            name = self._remote.find_node_name(reader)
             if policies and (name or include_unnamed) and self._log_limits.mark_seen(reader.guid):
-                sides = describe_mismatch(self._publisher.node_name, offered, name or _UNNAMED, reader.qos, policies)
-                report_to_publisher(self._publisher, policies[-1].name, sides)
+                mismatch = describe_mismatch(self._publisher.node_name, offered, name or _UNNAMED, reader.qos, policies)
+                report_to_publisher(self._publisher, policies[-1].name, mismatch)
 
 
 class IncomingTopic(MirroredTopic):
@@ -378,14 +373,14 @@ class IncomingTopic(MirroredTopic):
             if info.valid_data:
                 if info.publication_handle != publisher:
                     publisher = info.publication_handle
-                    gid = self._publisher_gid(publisher)
+                    gid = self._find_publisher_gid(publisher)
                 try:
                     receive(data, MessageInfo(info.source_timestamp, received_ns, gid, True))
                 except Exception as error:  # noqa: BLE001 - the other samples taken from Cyclone must not be lost
                     self._subscription.report(error)
         return len(samples) == MAX_SAMPLES
 
-    def _publisher_gid(self, handle: int) -> bytes:
+    def _find_publisher_gid(self, handle: int) -> bytes:
         """Return the GID of a publisher, or 16 zero bytes if it is not known.
 
         The reader may know the GID before the discovery tables do.
@@ -419,14 +414,14 @@ class IncomingTopic(MirroredTopic):
             include_unnamed: whether to report also publishers whose node name is not known yet.
         """
         requested = self._subscription.qos_profile
-        for writer in self._remote.topic_endpoints(self.topic_name, writers=True):
+        for writer in self._remote.find_topic_endpoints(self.topic_name, writers=True):
             policies = find_incompatible_policies(writer.qos, requested)
-            name = self._remote.node_name(writer)
+            name = self._remote.find_node_name(writer)
             if policies and (name or include_unnamed) and self._log_limits.mark_seen(writer.guid):
-                sides = describe_mismatch(
+                mismatch = describe_mismatch(
                     name or _UNNAMED, writer.qos, self._subscription.node_name, requested, policies
                 )
-                report_to_subscription(self._subscription, policies[-1].name, sides)
+                report_to_subscription(self._subscription, policies[-1].name, mismatch)
 
 
 class _LogLimits:
@@ -447,7 +442,7 @@ class _LogLimits:
         self._guids.add(guid)
         return is_new
 
-    def take_turn(self, key: str) -> bool:
+    def may_log(self, key: str) -> bool:
         """Return whether to log a message now, and remember the time if so."""
         now = time.monotonic()
         is_due = now - self._logged.get(key, -self._LOG_INTERVAL_S) >= self._LOG_INTERVAL_S

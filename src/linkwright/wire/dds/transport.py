@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from linkwright.graph.log.logger import Logger
 from linkwright.wire.background import BackgroundTransport, TransportOptions
 from linkwright.wire.dds.departures import DdsDepartureMonitor
-from linkwright.wire.dds.local_sockets import other_processes
+from linkwright.wire.dds.local_sockets import count_other_processes
 from linkwright.wire.dds.remote import RemoteGraph
 from linkwright.wire.dds.settings import Range, Settings
 from linkwright.wire.engine import Engine
@@ -47,7 +47,7 @@ class DdsTransport(BackgroundTransport):
         return DdsEngine(self._settings, self._remote, self._departures, self._work, self._logger)
 
     def _has_settled(self, quiet_s: float) -> bool:
-        """Return whether all participants have announced their nodes and the remote graph is stable."""
+        """Return whether all participants have announced their nodes, and nothing changes."""
         return self._remote.is_complete() and (
             quiet_s >= SETTLE_TIME_S or (quiet_s >= _SETTLE_TIME_ALL_KNOWN_S and self._knows_all_processes())
         )
@@ -61,8 +61,8 @@ class DdsTransport(BackgroundTransport):
         if self._settings.range is not Range.MACHINE:
             return False
         process_count, known_processes = (
-            other_processes(self._settings.domain_id),
-            self._remote.linkwright_process_ids(),
+            count_other_processes(self._settings.domain_id),
+            self._remote.find_linkwright_process_ids(),
         )
         return (
             process_count is not None and os.getpid() not in known_processes and len(known_processes) >= process_count

@@ -15,7 +15,7 @@ from typing import Any
 
 from linkwright.messages import definition_of, get_message
 from linkwright.messages.definitions.interfaces import Container, FieldType, Structure
-from linkwright.wire.type_names import dds_type
+from linkwright.wire.type_names import to_wire_type
 
 _OCTETS = ("byte", "char")
 
@@ -52,18 +52,20 @@ class WireTypes:
 
         Cyclone does not check samples against it.
         """
-        return self._describe_name(dds_type(type_name))
+        return self._describe_name(to_wire_type(type_name))
 
     def _describe_name(self, name: str) -> Any:
         with self._lock:
             if name not in self._classes:
-                self._classes[name] = struct_class(name, {})
+                self._classes[name] = create_struct_class(name, {})
             return self._classes[name]
 
     def _describe(self, structure: Structure) -> Any:
         with self._lock:
             if structure not in self._classes:
-                self._classes[structure] = struct_class(dds_type(structure.type_name), self._make_members(structure))
+                self._classes[structure] = create_struct_class(
+                    to_wire_type(structure.type_name), self._make_members(structure)
+                )
             return self._classes[structure]
 
     def _make_members(self, structure: Structure) -> dict[str, Any]:
@@ -76,16 +78,16 @@ class WireTypes:
         return members
 
     def _make_member(self, field: FieldType) -> Any:
-        types = _idl_types()
-        element = self._element(field)
+        types = _import_idl_types()
+        element = self._make_element(field)
         if field.container is Container.ARRAY:
             return types.array[element, field.size]
         if field.container is Container.SEQUENCE:
             return types.sequence[element] if field.size is None else types.sequence[element, field.size]
         return element
 
-    def _element(self, field: FieldType) -> Any:
-        types = _idl_types()
+    def _make_element(self, field: FieldType) -> Any:
+        types = _import_idl_types()
         if field.base == "string":
             return str if field.string_bound is None else types.bounded_str[field.string_bound]
         if field.base == "wstring":
@@ -97,7 +99,7 @@ class WireTypes:
         return getattr(types, "uint8" if field.base in _OCTETS else field.base)
 
 
-def struct_class(type_name: str, members: dict[str, Any]) -> Any:
+def create_struct_class(type_name: str, members: dict[str, Any]) -> Any:
     """Create a class that describes a structure to Cyclone.
 
     Args:
@@ -112,7 +114,7 @@ def struct_class(type_name: str, members: dict[str, Any]) -> Any:
     if members:
         description.__idl__.fill_type_data()
     else:
-        description.__idl__._xt_bytedata = empty_type_data(type_name)
+        description.__idl__._xt_bytedata = encode_empty_type(type_name)
     return description
 
 
@@ -122,7 +124,7 @@ _NO_MEMBERS = bytes.fromhex("04000000 00000000")
 _MINIMAL_ID, _COMPLETE_ID = 0x40001001, 0x40001002
 
 
-def empty_type_data(type_name: str) -> tuple[bytes, bytes]:
+def encode_empty_type(type_name: str) -> tuple[bytes, bytes]:
     """Return TypeInformation and TypeMapping of a final structure without members.
 
     Source: DDS-XTypes 1.3, 7.3.4 and 7.6.3.2.2.
@@ -139,23 +141,23 @@ def empty_type_data(type_name: str) -> tuple[bytes, bytes]:
     name = type_name.encode() + b"\0"
     complete = _COMPLETE + _pack_number(8 + len(name)) + _pack_number(0) + _pack_number(len(name)) + name
     complete += bytes(-len(complete) % 4) + _NO_MEMBERS
-    information = _with_dependencies(_MINIMAL_ID, _MINIMAL) + _with_dependencies(_COMPLETE_ID, complete)
-    complete_to_minimal = _pack_number(1) + _type_id(complete) + _type_id(_MINIMAL)
-    return _add_size(information), _pair(_MINIMAL) + _pair(complete) + _add_size(complete_to_minimal)
+    information = _encode_with_dependencies(_MINIMAL_ID, _MINIMAL) + _encode_with_dependencies(_COMPLETE_ID, complete)
+    complete_to_minimal = _pack_number(1) + _compute_type_id(complete) + _compute_type_id(_MINIMAL)
+    return _add_size(information), _encode_pair(_MINIMAL) + _encode_pair(complete) + _add_size(complete_to_minimal)
 
 
-def _with_dependencies(member_id: int, type_object: bytes) -> bytes:
+def _encode_with_dependencies(member_id: int, type_object: bytes) -> bytes:
     """Encode a TypeIdentifierWithDependencies as a member of a mutable structure."""
-    sized_id = _add_size(_type_id(type_object) + b"\0" + _pack_number(len(type_object) + 4))
+    sized_id = _add_size(_compute_type_id(type_object) + b"\0" + _pack_number(len(type_object) + 4))
     return _pack_number(member_id) + _add_size(_add_size(sized_id + _pack_number(0) + _NO_MEMBERS))
 
 
-def _pair(type_object: bytes) -> bytes:
+def _encode_pair(type_object: bytes) -> bytes:
     """Encode a sequence of one TypeIdentifierTypeObjectPair."""
-    return _add_size(_pack_number(1) + _type_id(type_object) + b"\0" + _add_size(type_object))
+    return _add_size(_pack_number(1) + _compute_type_id(type_object) + b"\0" + _add_size(type_object))
 
 
-def _type_id(type_object: bytes) -> bytes:
+def _compute_type_id(type_object: bytes) -> bytes:
     """Encode the type identifier of a type object.
 
     It consists of its kind, EK_MINIMAL or EK_COMPLETE, and its EquivalenceHash.
@@ -171,6 +173,6 @@ def _pack_number(value: int) -> bytes:
     return value.to_bytes(4, "little")
 
 
-def _idl_types() -> Any:
+def _import_idl_types() -> Any:
     """Return the module `cyclonedds.idl.types`, untyped because of its unusual subscripts."""
     return import_module("cyclonedds.idl.types")

@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 
-from linkwright.wire.dds.cyclone import INFINITY, check_call, load
+from linkwright.wire.dds.cyclone import INFINITY_NS, check_call, load
 from linkwright.wire.guarded_calls import call_guarded
 
 Handler = Callable[[], bool]
@@ -101,4 +101,4 @@ class WaitingThread(threading.Thread):
 
 
 def _nanoseconds_until(deadline: float | None) -> int:
-    return INFINITY if deadline is None else max(0, int((deadline - time.monotonic()) * 1e9))
+    return INFINITY_NS if deadline is None else max(0, int((deadline - time.monotonic()) * 1e9))

@@ -85,20 +85,20 @@ class ZenohDepartureMonitor:
         """
         return self._live_sessions
 
-    def session_started(self, session: str) -> None:
+    def on_session_started(self, session: str) -> None:
         """Record that a Linkwright session has started."""
         self._live_sessions.add(session)
 
-    def session_leaving(self, session: str) -> None:
+    def on_session_leaving(self, session: str) -> None:
         """Record that a Linkwright session is about to end."""
         self._departed_sessions.add(session)
 
-    def session_ended(self, session: str) -> None:
+    def on_session_ended(self, session: str) -> None:
         """Record that a Linkwright session has ended."""
         self._live_sessions.discard(session)
         self._ended_at[session] = self._now()
 
-    def token_removed(self, key: str, token: Token) -> None:
+    def on_token_removed(self, key: str, token: Token) -> None:
         """Record that a token has disappeared."""
         if token.kind is None:
             self._nodes_removed_at[token.node_key] = self._now()
@@ -123,7 +123,7 @@ class ZenohDepartureMonitor:
                 for callback in self._watchers:
                     callback(info)
         if not self._missing_publishers:
-            self._forget(now)
+            self._remove_expired_records(now)
         return max(self._missing_publishers[0].deadline - now, 0.0) if self._missing_publishers else None
 
     def _is_lost(self, missing: _MissingPublisher) -> bool:
@@ -136,7 +136,7 @@ class ZenohDepartureMonitor:
             return False
         return token.node_key in self._unordered_nodes or self._remote.has_endpoints(token.node_key)
 
-    def _forget(self, now: float) -> None:
+    def _remove_expired_records(self, now: float) -> None:
         """Remove the records of nodes and sessions that disappeared long enough ago."""
         for node_key, since in tuple(self._nodes_removed_at.items()):
             if now - since > GRACE_S:

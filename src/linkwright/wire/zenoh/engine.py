@@ -19,16 +19,16 @@ from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.messages import InterfaceNotFoundError, type_hash
 from linkwright.wire.engine import Engine as AnyEngine
-from linkwright.wire.engine import Work, ends_by_error
+from linkwright.wire.engine import Work, is_ending_by_error
 from linkwright.wire.guarded_calls import call_guarded
-from linkwright.wire.type_names import dds_type
+from linkwright.wire.type_names import to_wire_type
 from linkwright.wire.zenoh import qos_text, tokens
 from linkwright.wire.zenoh.departures import ZenohDepartureMonitor
 from linkwright.wire.zenoh.interests import KEY_PREFIX, Interests
-from linkwright.wire.zenoh.opening import SessionOpener
 from linkwright.wire.zenoh.remote import RemoteGraph
 from linkwright.wire.zenoh.services import IncomingService, RemoteServer
 from linkwright.wire.zenoh.session import build_config, close_session, is_client
+from linkwright.wire.zenoh.session_opener import SessionOpener
 from linkwright.wire.zenoh.settings import Settings
 from linkwright.wire.zenoh.tokens import Token
 
@@ -51,7 +51,7 @@ class Engine(AnyEngine):
         LinkwrightError: the session cannot be opened.
     """
 
-    refusal = zenoh.ZError
+    library_error = zenoh.ZError
 
     def __init__(
         self,
@@ -89,7 +89,7 @@ class Engine(AnyEngine):
 
         A client of a router subscribes only to the tokens that its endpoints need.
         """
-        self._presence_token = self._session.liveliness().declare_token(self._own_token("here"))
+        self._presence_token = self._session.liveliness().declare_token(self._make_own_token("here"))
         if not self._is_client:
             self._interests.add_all()
         self._thread.start()
@@ -119,7 +119,7 @@ class Engine(AnyEngine):
         for mirror in self._mirrors.values():
             if hasattr(mirror, "abandon"):
                 mirror.abandon()
-        if not ends_by_error():
+        if not is_ending_by_error():
             self._announce_departure()
         for mirror in self._mirrors.values():
             mirror.close()
@@ -155,7 +155,7 @@ class Engine(AnyEngine):
             _, token = node_tokens.pop()
             token.undeclare()
             if self._interests.remove(tokens.node_token_pattern(self._settings.domain_id, node)):
-                self._remote.forget_nodes(node.full_name)
+                self._remote.remove_nodes(node.full_name)
             if not node_tokens:
                 del self._nodes[node]
 
@@ -214,16 +214,16 @@ class Engine(AnyEngine):
         if mirror is not None:
             mirror.close()
             self._own_gids.discard(mirror.token.gid)
-            peer_kind = _OPPOSITE.get(mirror.token.kind)
+            peer_kind = _PEER_KINDS.get(mirror.token.kind)
             if peer_kind is not None and self._interests.remove(tokens.peer_token_pattern(mirror.token, peer_kind)):
-                self._remote.forget_endpoints(peer_kind, mirror.token.data_key)
+                self._remote.remove_endpoints(peer_kind, mirror.token.data_key)
 
     def _announce(self, endpoint: Any, mirror: Any) -> None:
         """Announce an endpoint whose mirror has been created, and subscribe to matching tokens."""
         self._mirrors[endpoint] = mirror
         if endpoint.is_listed:
             self._tokens[endpoint] = self._session.liveliness().declare_token(mirror.token.key)
-        peer_kind = _OPPOSITE.get(mirror.token.kind)
+        peer_kind = _PEER_KINDS.get(mirror.token.kind)
         if peer_kind is not None:
             self._interests.add(tokens.peer_token_pattern(mirror.token, peer_kind))
         self._update_match_count(mirror)
@@ -242,12 +242,12 @@ class Engine(AnyEngine):
             endpoint.node.identity,
             kind,
             endpoint.name,
-            dds_type(endpoint.type_name),
-            self._type_hash(endpoint, kind),
+            to_wire_type(endpoint.type_name),
+            self._get_type_hash(endpoint, kind),
             qos_text.write(endpoint.qos_profile),
         )
 
-    def _type_hash(self, endpoint: Any, kind: EndpointKind) -> str:
+    def _get_type_hash(self, endpoint: Any, kind: EndpointKind) -> str:
         if not self._settings.has_type_hashes:
             return tokens.NO_HASH
         if endpoint.type_hash:
@@ -276,8 +276,8 @@ class Engine(AnyEngine):
             self._has_changed = self._record_token(appeared=appeared, key=key) or self._has_changed
         must_follow = self._departures.is_watched and not self._interests.subscribes_to_all
         if must_follow and (self._has_changed or not self._is_following):
-            live_sessions = self._remote.sessions() | self._departures.live_sessions
-            self._interests.follow(self._remote.sessions(EndpointKind.PUBLISHER), live_sessions)
+            live_sessions = self._remote.find_sessions() | self._departures.live_sessions
+            self._interests.follow(self._remote.find_sessions(EndpointKind.PUBLISHER), live_sessions)
         self._is_following = must_follow
 
     @property
@@ -331,22 +331,22 @@ class Engine(AnyEngine):
             return not (self._is_client and self._remote.was_just_removed(key)) and self._remote.add(key, token)
         if self._remote.remove(key) is None:
             return False
-        self._departures.token_removed(key, token)
+        self._departures.on_token_removed(key, token)
         return True
 
     def _record_session(self, *, appeared: bool, key: str) -> None:
         """Record that a token of a Linkwright session appeared or disappeared."""
         _, _, session, state = key.split("/")
         if state == "here" and appeared:
-            self._departures.session_started(session)
+            self._departures.on_session_started(session)
         elif state == "here":
-            self._departures.session_ended(session)
+            self._departures.on_session_ended(session)
             self._is_following = False  # makes `process_tokens` end the subscription to that session
         elif appeared:
-            self._departures.session_leaving(session)
+            self._departures.on_session_leaving(session)
 
     def _update_match_count(self, mirror: Any) -> None:
-        peer_kind = _OPPOSITE.get(mirror.token.kind)
+        peer_kind = _PEER_KINDS.get(mirror.token.kind)
         if peer_kind is not None:
             mirror.update_match_count(self._remote.count(peer_kind, mirror.token.data_key))
 
@@ -367,7 +367,7 @@ class Engine(AnyEngine):
 
     def _announce_departure(self) -> None:
         """Announce the departure of this session, then withdraw its endpoints and its nodes."""
-        departure_token = self._session.liveliness().declare_token(self._own_token("left"))
+        departure_token = self._session.liveliness().declare_token(self._make_own_token("left"))
         for token in self._tokens.values():
             token.undeclare()
         for node_tokens in self._nodes.values():
@@ -376,11 +376,11 @@ class Engine(AnyEngine):
         self._presence_token.undeclare()
         departure_token.undeclare()
 
-    def _own_token(self, state: str) -> str:
+    def _make_own_token(self, state: str) -> str:
         return f"{KEY_PREFIX}/{self._settings.domain_id}/{self._session_id}/{state}"
 
 
-_OPPOSITE = {
+_PEER_KINDS = {
     EndpointKind.PUBLISHER: EndpointKind.SUBSCRIPTION,
     EndpointKind.SUBSCRIPTION: EndpointKind.PUBLISHER,
     EndpointKind.CLIENT: EndpointKind.SERVICE,

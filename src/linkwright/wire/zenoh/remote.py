@@ -74,7 +74,7 @@ class RemoteGraph(RemoteEntities):
                     del self._counts[count_key]
         return token
 
-    def forget_endpoints(self, kind: EndpointKind, data_key: str) -> None:
+    def remove_endpoints(self, kind: EndpointKind, data_key: str) -> None:
         """Remove the endpoints of a kind at a key.
 
         The session no longer subscribes to their tokens.
@@ -87,7 +87,7 @@ class RemoteGraph(RemoteEntities):
                 del self._tokens[key]
             self._counts.pop((kind, data_key), None)
 
-    def forget_nodes(self, full_name: str) -> None:
+    def remove_nodes(self, full_name: str) -> None:
         """Remove all nodes with a full name.
 
         The session no longer subscribes to their tokens.
@@ -112,7 +112,7 @@ class RemoteGraph(RemoteEntities):
         """Return whether a token with this key expression is known."""
         return key in self._tokens
 
-    def sessions(self, kind: EndpointKind | None = None) -> set[str]:
+    def find_sessions(self, kind: EndpointKind | None = None) -> set[str]:
         """Return the ids of the known sessions.
 
         If a kind is given, only sessions that have endpoints of this kind are included.

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _REPLY_TIMEOUT_S = 600.0
 """Seconds for which a request waits for its reply."""
 
-_RESULT = "/_action/get_result"
+_RESULT_SUFFIX = "/_action/get_result"
 _RESULT_TIMEOUT_S = 30 * 24 * 3600.0
 """The same for the result of an action, which may take any time."""
 
@@ -53,7 +53,7 @@ class RemoteServer:
             token.data_key,
             target=zenoh.QueryTarget.ALL_COMPLETE,
             consolidation=zenoh.ConsolidationMode.NONE,
-            timeout=_RESULT_TIMEOUT_S if client.name.endswith(_RESULT) else _REPLY_TIMEOUT_S,
+            timeout=_RESULT_TIMEOUT_S if client.name.endswith(_RESULT_SUFFIX) else _REPLY_TIMEOUT_S,
             allowed_destination=zenoh.Locality.REMOTE,
         )
         listener: Any = Callback(lambda _: on_change(), indirect=False)
@@ -67,7 +67,7 @@ class RemoteServer:
         )
         metadata = attachment.write(sequence_number, time.time_ns(), self.token.gid)
         self._querier.get(handler, payload=to_cdr(request), attachment=metadata)
-        return partial(self._forget, sequence_number)
+        return partial(self._cancel_request, sequence_number)
 
     def update_match_count(self, count: int) -> None:
         """Check whether a server is reachable, and update the client.
@@ -122,7 +122,7 @@ class RemoteServer:
                 "too long"
             )
 
-    def _forget(self, sequence_number: int) -> None:
+    def _cancel_request(self, sequence_number: int) -> None:
         self._response_callbacks.pop(sequence_number, None)
 
 

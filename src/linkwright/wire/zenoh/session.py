@@ -9,8 +9,8 @@ import threading
 import zenoh
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, Phrase, foreign, phrase
-from linkwright.wire.zenoh.reaching import connection_problems
-from linkwright.wire.zenoh.settings import OVERRIDES, Settings
+from linkwright.wire.zenoh.connection_problems import find_connection_problems
+from linkwright.wire.zenoh.settings import OVERRIDES_VARIABLE, Settings
 
 _SOURCE_LOCATION = re.compile(r"\s+at /\S+?:\d+\.?")
 _NOT_CONNECTED = "Unable to connect"
@@ -49,13 +49,13 @@ def close_session(session: zenoh.Session) -> None:
 
 def session_error(error: zenoh.ZError, config: zenoh.Config) -> LinkwrightError:
     """Return the error DDS112 for a session that cannot be opened."""
-    reasons = connection_problems(config) if is_connection_failure(error) else []
+    reasons = find_connection_problems(config) if is_connection_failure(error) else []
     return LinkwrightError(
         Diagnostic(
             "DDS112",
-            phrase("a Zenoh session cannot be opened: {reason}", reason=foreign(_reason(error))),
+            phrase("a Zenoh session cannot be opened: {reason}", reason=foreign(_shorten_message(error))),
             notes=tuple(Note(reason) for reason in reasons),
-            hint=None if reasons else _hint_for(str(error)),
+            hint=None if reasons else _find_hint(str(error)),
         )
     )
 
@@ -74,7 +74,7 @@ def is_client(settings: Settings) -> bool:
     return bool(json.loads(build_config(settings).get_json("mode")) == "client")
 
 
-def listen_endpoints(config: zenoh.Config) -> list[str]:
+def find_listen_addresses(config: zenoh.Config) -> list[str]:
     """Return the addresses at which sessions with a configuration listen.
 
     The list is empty if the addresses differ between session modes.
@@ -97,7 +97,7 @@ def build_config(settings: Settings) -> zenoh.Config:
                 Diagnostic(
                     "DDS111",
                     phrase("Zenoh refuses the configuration file '{path}'", path=settings.config_file),
-                    hint=phrase("Zenoh reports: {reason}", reason=foreign(_reason(error))),
+                    hint=phrase("Zenoh reports: {reason}", reason=foreign(_shorten_message(error))),
                 )
             ) from error
     else:
@@ -116,18 +116,20 @@ def _override(config: zenoh.Config, key: str, value: str) -> None:
         raise LinkwrightError(
             Diagnostic(
                 "DDS111",
-                phrase("Zenoh refuses '{key}={value}' of {variable}", key=key, value=value, variable=OVERRIDES),
-                hint=phrase("Zenoh reports: {reason}", reason=foreign(_reason(error))),
+                phrase(
+                    "Zenoh refuses '{key}={value}' of {variable}", key=key, value=value, variable=OVERRIDES_VARIABLE
+                ),
+                hint=phrase("Zenoh reports: {reason}", reason=foreign(_shorten_message(error))),
             )
         ) from error
 
 
-def _reason(error: Exception) -> str:
+def _shorten_message(error: Exception) -> str:
     """Return the message of an error, without the locations in Zenoh's source."""
     return _SOURCE_LOCATION.sub("", str(error)).strip().rstrip(".")
 
 
-def _hint_for(reason: str) -> Phrase:
+def _find_hint(reason: str) -> Phrase:
     if _NOT_CONNECTED in reason:
         return phrase(
             "no router answers at the address of 'connect/endpoints': start one there first; with TLS, check "

@@ -12,16 +12,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.messages.distribution import ASSUMED
+from linkwright.messages.distribution import ASSUMED_DISTRIBUTION_VARIABLE
 from linkwright.wire.domain_id import read_domain_id
 
 ROUTER_PORT = 7447
 """The TCP port at which a router listens, and at which sessions search for a router."""
 
-SESSION_FILE = "ZENOH_SESSION_CONFIG_URI"
-ROUTER_FILE = "ZENOH_ROUTER_CONFIG_URI"
-OVERRIDES = "ZENOH_CONFIG_OVERRIDE"
-ATTEMPTS = "ZENOH_ROUTER_CHECK_ATTEMPTS"
+SESSION_FILE_VARIABLE = "ZENOH_SESSION_CONFIG_URI"
+ROUTER_FILE_VARIABLE = "ZENOH_ROUTER_CONFIG_URI"
+OVERRIDES_VARIABLE = "ZENOH_CONFIG_OVERRIDE"
+ATTEMPTS_VARIABLE = "ZENOH_ROUTER_CHECK_ATTEMPTS"
 
 _WITHOUT_HASHES = "humble"
 _QUERY_TIMEOUT_MS = 600_000
@@ -93,11 +93,12 @@ def read_settings(environment: Mapping[str, str] | None = None, *, domain_id: in
     domain_id = read_domain_id(variables, domain_id)
     return Settings(
         domain_id=domain_id,
-        config_file=_path(variables.get(SESSION_FILE, "")),
-        default_entries=_session(domain_id),
-        overrides=_overrides(variables),
-        attempts=_attempts(variables),
-        has_type_hashes=ASSUMED in variables or variables.get("ROS_DISTRO", "").lower() != _WITHOUT_HASHES,
+        config_file=_to_path(variables.get(SESSION_FILE_VARIABLE, "")),
+        default_entries=_make_session_entries(domain_id),
+        overrides=_read_overrides(variables),
+        attempts=_read_attempts(variables),
+        has_type_hashes=ASSUMED_DISTRIBUTION_VARIABLE in variables
+        or variables.get("ROS_DISTRO", "").lower() != _WITHOUT_HASHES,
     )
 
 
@@ -108,10 +109,10 @@ def read_router_settings(environment: Mapping[str, str] | None = None) -> Settin
         LinkwrightError: DDS111, a variable is malformed.
     """
     variables = os.environ if environment is None else environment
-    return Settings(0, _path(variables.get(ROUTER_FILE, "")), _ROUTER, _overrides(variables))
+    return Settings(0, _to_path(variables.get(ROUTER_FILE_VARIABLE, "")), _ROUTER, _read_overrides(variables))
 
 
-def _session(domain_id: int) -> Entries:
+def _make_session_entries(domain_id: int) -> Entries:
     """Return the configuration of a peer that communicates only on this machine.
 
     The peer announces itself by multicast that never leaves the machine, at an address for its domain.
@@ -135,13 +136,13 @@ def _session(domain_id: int) -> Entries:
     )
 
 
-def _path(address: str) -> str:
+def _to_path(address: str) -> str:
     return address.removeprefix("file://")
 
 
-def _overrides(variables: Mapping[str, str]) -> Entries:
+def _read_overrides(variables: Mapping[str, str]) -> Entries:
     entries = []
-    for item in variables.get(OVERRIDES, "").split(";"):
+    for item in variables.get(OVERRIDES_VARIABLE, "").split(";"):
         if not item.strip():
             continue
         key, equals, value = item.partition("=")
@@ -149,7 +150,7 @@ def _overrides(variables: Mapping[str, str]) -> Entries:
             raise LinkwrightError(
                 Diagnostic(
                     "DDS111",
-                    phrase("'{item}' in {variable} is not a Zenoh setting", item=item, variable=OVERRIDES),
+                    phrase("'{item}' in {variable} is not a Zenoh setting", item=item, variable=OVERRIDES_VARIABLE),
                     hint=phrase('write it as key=value;key=value, such as mode="client"'),
                 )
             )
@@ -157,12 +158,12 @@ def _overrides(variables: Mapping[str, str]) -> Entries:
     return tuple(entries)
 
 
-def _attempts(variables: Mapping[str, str]) -> int | None:
+def _read_attempts(variables: Mapping[str, str]) -> int | None:
     """Return the number of checks for a router, or None for no limit.
 
     The default is 0, unlike in rmw_zenoh_cpp.
     """
-    text = variables.get(ATTEMPTS, "").strip()
+    text = variables.get(ATTEMPTS_VARIABLE, "").strip()
     if not text:
         return 0
     try:
@@ -171,7 +172,7 @@ def _attempts(variables: Mapping[str, str]) -> int | None:
         raise LinkwrightError(
             Diagnostic(
                 "DDS111",
-                phrase("'{value}' in {variable} is not a number", value=text, variable=ATTEMPTS),
+                phrase("'{value}' in {variable} is not a number", value=text, variable=ATTEMPTS_VARIABLE),
                 hint=phrase("write the number of attempts to find a router; 0 for no limit, -1 for no attempt"),
             )
         ) from None

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
 from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.qos.profile import QoSProfile
-from linkwright.wire.type_names import ros_type
+from linkwright.wire.type_names import to_ros_type
 from linkwright.wire.zenoh import qos_text
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ KINDS = {
     "SC": EndpointKind.CLIENT,
 }
 _MARKS = {kind: mark for mark, kind in KINDS.items()}
-_NODE = "NN"
+_NODE_MARK = "NN"
 _NODE_CHUNKS = 9
 _ENDPOINT_CHUNKS = 13
 _SLASH = "%"
@@ -69,11 +69,11 @@ class Token:
     def key(self) -> str:
         """The token's key expression."""
         session_chunks: Iterable[str] = (ROOT, str(self.domain_id), self.session, self.node_id, self.entity_id)
-        mark = _NODE if self.kind is None else _MARKS[self.kind]
-        node_chunks = (_chunk(self.node.enclave), _chunk(self.node.namespace), self.node.name)
+        mark = _NODE_MARK if self.kind is None else _MARKS[self.kind]
+        node_chunks = (_to_chunk(self.node.enclave), _to_chunk(self.node.namespace), self.node.name)
         if self.kind is None:
             return "/".join((*session_chunks, mark, *node_chunks))
-        endpoint_chunks = (_chunk(self.name), _chunk(self.type_name), _chunk(self.type_hash), self.qos)
+        endpoint_chunks = (_to_chunk(self.name), _to_chunk(self.type_name), _to_chunk(self.type_hash), self.qos)
         return "/".join((*session_chunks, mark, *node_chunks, *endpoint_chunks))
 
     @cached_property
@@ -98,14 +98,14 @@ class Token:
 
     def endpoint_info(self) -> EndpointInfo | None:
         """Return the endpoint's description in ROS terms, or None for nodes and non-ROS endpoints."""
-        type_name = ros_type(self.type_name)
+        type_name = to_ros_type(self.type_name)
         if self.kind is None or type_name is None:
             return None
         type_hash = "" if self.type_hash == NO_HASH else self.type_hash
-        return EndpointInfo(self.kind, self.node, self.name, type_name, self._profile, self.gid, type_hash)
+        return EndpointInfo(self.kind, self.node, self.name, type_name, self._parse_profile, self.gid, type_hash)
 
     @cached_property
-    def _profile(self) -> QoSProfile:
+    def _parse_profile(self) -> QoSProfile:
         return qos_text.read(self.qos)
 
 
@@ -116,15 +116,15 @@ def data_key(domain_id: int, name: str, type_name: str, type_hash: str) -> str:
 
 def node_token_pattern(domain_id: int, node: NodeIdentity) -> str:
     """Return the key expression that matches the tokens of all nodes with a full name."""
-    return f"{ROOT}/{domain_id}/*/*/*/{_NODE}/*/{_chunk(node.namespace)}/{node.name}"
+    return f"{ROOT}/{domain_id}/*/*/*/{_NODE_MARK}/*/{_to_chunk(node.namespace)}/{node.name}"
 
 
 def peer_token_pattern(token: Token, kind: EndpointKind) -> str:
-    """Return the key expression that matches the tokens of matching endpoints of the given kind.
+    """Return the key expression for the tokens of matching endpoints of the given kind.
 
     Matching endpoints have the same data key.
     """
-    topic_chunks = (_chunk(token.name), _chunk(token.type_name), _chunk(token.type_hash))
+    topic_chunks = (_to_chunk(token.name), _to_chunk(token.type_name), _to_chunk(token.type_hash))
     return "/".join((ROOT, str(token.domain_id), "*/*/*", _MARKS[kind], "*/*/*", *topic_chunks, "**"))
 
 
@@ -134,8 +134,8 @@ def read(key: str) -> Token | None:
     if len(chunks) < _NODE_CHUNKS or chunks[0] != ROOT or not chunks[1].isdecimal():
         return None
     _, domain, session, node_id, entity_id, mark, enclave, namespace, name = chunks[:_NODE_CHUNKS]
-    node = NodeIdentity(name, _name(namespace), _name(enclave))
-    if mark == _NODE:
+    node = NodeIdentity(name, _from_chunk(namespace), _from_chunk(enclave))
+    if mark == _NODE_MARK:
         return Token(int(domain), session, node_id, entity_id, node)
     if mark not in KINDS or len(chunks) < _ENDPOINT_CHUNKS:
         return None
@@ -143,7 +143,16 @@ def read(key: str) -> Token | None:
     if not _is_profile(qos):
         return None
     return Token(
-        int(domain), session, node_id, entity_id, node, KINDS[mark], _name(topic), _name(type_name), type_hash, qos
+        int(domain),
+        session,
+        node_id,
+        entity_id,
+        node,
+        KINDS[mark],
+        _from_chunk(topic),
+        _from_chunk(type_name),
+        type_hash,
+        qos,
     )
 
 
@@ -160,9 +169,9 @@ def _is_profile(text: str) -> bool:
     return True
 
 
-def _chunk(text: str) -> str:
+def _to_chunk(text: str) -> str:
     return text.replace("/", _SLASH) or _SLASH
 
 
-def _name(chunk: str) -> str:
+def _from_chunk(chunk: str) -> str:
     return chunk.replace(_SLASH, "/")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from linkwright.graph.endpoints.publisher import Publisher
     from linkwright.graph.endpoints.subscription import Subscription
 
-_HEARTBEAT = 0.5
+_HEARTBEAT_S = 0.5
 """The interval, in seconds, at which a reliable publisher that stores messages announces its last number."""
 
 _MAX_HISTORY = 1_000_000
@@ -57,12 +57,12 @@ class OutgoingTopic:
         }
         if self._is_transient_local:
             miss_detection = (
-                ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=_HEARTBEAT) if is_reliable else None
+                ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=_HEARTBEAT_S) if is_reliable else None
             )
             self._zenoh: Any = ext.declare_advanced_publisher(
                 session,
                 token.data_key,
-                cache=ext.CacheConfig(_depth(profile)),
+                cache=ext.CacheConfig(_get_depth(profile)),
                 sample_miss_detection=miss_detection,
                 publisher_detection=True,
                 **options,
@@ -72,7 +72,7 @@ class OutgoingTopic:
             # A thread of Zenoh calls this directly. With Zenoh's own handlers, each listener would have a Python
             # thread.
             self._listener = self._zenoh.declare_matching_listener(Callback(lambda _: on_change(), indirect=False))
-        self._send: Callable[[Any], None] | None = self._sender()
+        self._send: Callable[[Any], None] | None = self._make_sender()
 
     def update_match_count(self, count: int) -> None:
         """Enable or disable sending, and update the number of remote subscriptions.
@@ -103,7 +103,7 @@ class OutgoingTopic:
         """Stop sending, without calling Zenoh."""
         self._publisher.send_remote = None
 
-    def _sender(self) -> Callable[[Any], None]:
+    def _make_sender(self) -> Callable[[Any], None]:
         put_sample, gid, now, write = self._zenoh.put, self.token.gid, time.time_ns, attachment.write
         numbers, lock = itertools.count(1), Lock()
 
@@ -149,7 +149,7 @@ class IncomingTopic:
                 key,
                 handler,
                 allowed_origin=zenoh.Locality.REMOTE,
-                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=_depth(profile)),
+                history=ext.HistoryConfig(detect_late_publishers=True, max_samples=_get_depth(profile)),
                 recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True) if is_reliable else None,
                 subscriber_detection=True,
             )
@@ -173,7 +173,7 @@ class IncomingTopic:
         encoded = sample.attachment
         metadata = attachment.read(None if encoded is None else encoded.to_bytes())
         if metadata is None:
-            self._refuse()
+            self._count_malformed()
             return
         number, sent_ns, gid = metadata
         if gid in self._own_gids:
@@ -188,7 +188,7 @@ class IncomingTopic:
         except Exception as error:  # noqa: BLE001 - Zenoh's thread would print the error without logging it
             self._subscription.report(error)
 
-    def _refuse(self) -> None:
+    def _count_malformed(self) -> None:
         if not self._has_warned:
             self._has_warned = True
             self._subscription.node.logger.warning(
@@ -205,7 +205,7 @@ def _is_acknowledged(_seconds: float | None) -> bool:
     return True
 
 
-def _depth(profile: QoSProfile) -> int:
+def _get_depth(profile: QoSProfile) -> int:
     return _MAX_HISTORY if profile.queue_length is None else profile.queue_length
 
 

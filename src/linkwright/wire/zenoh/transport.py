@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from linkwright.wire.zenoh.engine import Engine as ZenohEngine
-    from linkwright.wire.zenoh.opening import SessionOpener
+    from linkwright.wire.zenoh.session_opener import SessionOpener
 
 SETTLE_TIME_S = 0.4
 """Seconds without changes after which discovery counts as complete, if another session is connected."""
@@ -25,7 +25,7 @@ SETTLE_TIME_S = 0.4
 _ANSWER_TIMEOUT_S = 2.0
 """Seconds within which the router answers with the live tokens. The first query waits for the answer."""
 
-_QUIET = 0.1
+_QUIET_S = 0.1
 """Seconds without new tokens after which the answer counts as complete."""
 
 _ALONE_TIMEOUT_S = 1.4
@@ -67,10 +67,10 @@ class ZenohTransport(BackgroundTransport):
                 self._discovery_done.wait(_ANSWER_TIMEOUT_S)
             return
         answered = Event()
-        self._do(lambda engine: cast("ZenohEngine", engine).start_discovery(_ANSWER_TIMEOUT_S, answered.set))
+        self._queue(lambda engine: cast("ZenohEngine", engine).start_discovery(_ANSWER_TIMEOUT_S, answered.set))
         if must_wait:  # if not waiting, the remote graph arrives step by step
             self._wait_for_answer(answered)
-            self._do(self._process_tokens)
+            self._queue(self._process_tokens)
             self._discovery_done.wait(_ANSWER_TIMEOUT_S)
         self._discovery_done.set()
 
@@ -86,8 +86,8 @@ class ZenohTransport(BackgroundTransport):
         """
         answered.wait(_ANSWER_TIMEOUT_S)
         start = time.monotonic()
-        while time.monotonic() < min(start + _ANSWER_TIMEOUT_S, max(self._remote.changed_at, start) + _QUIET):
-            time.sleep(_QUIET / 10)
+        while time.monotonic() < min(start + _ANSWER_TIMEOUT_S, max(self._remote.changed_at, start) + _QUIET_S):
+            time.sleep(_QUIET_S / 10)
 
     def _process_tokens(self, engine: Engine) -> None:
         cast("ZenohEngine", engine).process_tokens()
@@ -95,7 +95,7 @@ class ZenohTransport(BackgroundTransport):
 
     def _make_engine(self) -> Engine:
         from linkwright.wire.zenoh.engine import Engine as ZenohEngine
-        from linkwright.wire.zenoh.opening import SessionOpener
+        from linkwright.wire.zenoh.session_opener import SessionOpener
 
         opener = SessionOpener(self._logger, self._given_up)
         self._opener = opener
@@ -103,9 +103,9 @@ class ZenohTransport(BackgroundTransport):
         self._zenoh_engine = engine
         return engine
 
-    def _has_settled(self, quiet: float) -> bool:
+    def _has_settled(self, quiet_s: float) -> bool:
         engine = self._zenoh_engine
         if engine is None or not engine.has_neighbors():
-            return quiet >= _ALONE_TIMEOUT_S
+            return quiet_s >= _ALONE_TIMEOUT_S
         self._connected_at = self._connected_at or time.monotonic()
-        return min(quiet, time.monotonic() - self._connected_at) >= SETTLE_TIME_S
+        return min(quiet_s, time.monotonic() - self._connected_at) >= SETTLE_TIME_S

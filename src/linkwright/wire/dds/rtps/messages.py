@@ -11,23 +11,23 @@ from dataclasses import dataclass, field
 
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.wire.dds.rtps.values import (
-    PREFIX,
-    UNKNOWN,
-    VENDOR,
+    OWN_VENDOR,
+    PREFIX_SIZE,
+    UNKNOWN_ENTITY,
     VERSION,
     MalformedError,
     Parameters,
     read_parameters,
 )
 
-_HEADER = 20
+_HEADER_SIZE = 20
 _LITTLE, _FINAL = 0x01, 0x02
 _ACKNACK, _HEARTBEAT, _GAP, _INFO_TS, _INFO_SRC, _INFO_DST = 0x06, 0x07, 0x08, 0x09, 0x0C, 0x0E
 _NACK_FRAG, _DATA, _DATA_FRAG = 0x12, 0x15, 0x16
-_INLINE = 0x02
+_HAS_INLINE_QOS = 0x02
 _HAS_DATA = 0x04
 _MAX_MISSING = 256
-FRAGMENT = 60_000
+FRAGMENT_SIZE = 60_000
 """The maximum number of bytes of a sample in one datagram, which holds 65 507 bytes."""
 
 
@@ -37,7 +37,7 @@ class Data:
 
     Attributes:
         source: the GUID prefix of the sender's participant.
-        reader: the entity that the sample is for; `UNKNOWN` for all matching readers.
+        reader: the entity that the sample is for; `UNKNOWN_ENTITY` for all matching readers.
         writer: the GUID of the writer.
         sequence_number: the sequence number.
         order: the byte order of `inline`, ``<`` or ``>``.
@@ -81,7 +81,7 @@ class Heartbeat:
 class Gap:
     """GAP: some samples are not for a reader, or are no longer available.
 
-    These are the samples from `start` to before `base`, and the samples in `others`.
+    These are the samples from `start` to before `base`, and the samples in `other_numbers`.
     """
 
     source: bytes
@@ -89,7 +89,7 @@ class Gap:
     writer: bytes
     start: int
     base: int
-    others: Collection[int]
+    other_numbers: Collection[int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,15 +131,15 @@ def read_vendor(packet: bytes) -> bytes:
 
     Return empty bytes if the packet is not an RTPS message.
     """
-    return packet[6:8] if packet[:4] == b"RTPS" and len(packet) >= _HEADER else b""
+    return packet[6:8] if packet[:4] == b"RTPS" and len(packet) >= _HEADER_SIZE else b""
 
 
 def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
     """Yield the submessages for a participant, up to the first malformed one."""
     if not read_vendor(packet):
         return
-    context = _Context(packet[8:_HEADER], own_prefix=own_prefix)
-    offset = _HEADER
+    context = _Context(packet[8:_HEADER_SIZE], own_prefix=own_prefix)
+    offset = _HEADER_SIZE
     while offset + 4 <= len(packet):
         kind, flags = packet[offset], packet[offset + 1]
         order = "<" if flags & _LITTLE else ">"
@@ -147,7 +147,7 @@ def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
         start = offset + 4
         end = start + size if size or kind == _INFO_TS else len(packet)
         try:
-            submessage = _read(kind, flags, order, packet[start:end], context)
+            submessage = _read_submessage(kind, flags, order, packet[start:end], context)
         except (struct.error, MalformedError):
             return
         if submessage is not None and context.is_for_us:
@@ -155,20 +155,20 @@ def parse(packet: bytes, own_prefix: bytes) -> Iterator[Submessage]:
         offset = end
 
 
-def _read(kind: int, flags: int, order: str, body: bytes, context: _Context) -> Submessage | None:
+def _read_submessage(kind: int, flags: int, order: str, body: bytes, context: _Context) -> Submessage | None:
     if kind == _INFO_DST:
-        context.is_for_us = body[:PREFIX] in (context.own_prefix, bytes(PREFIX))
+        context.is_for_us = body[:PREFIX_SIZE] in (context.own_prefix, bytes(PREFIX_SIZE))
     elif kind == _INFO_SRC:
-        context.source = body[8 : 8 + PREFIX]
+        context.source = body[8 : 8 + PREFIX_SIZE]
     elif kind == _INFO_TS:
-        context.time = 0 if flags & _FINAL else _time(body, order)
+        context.time = 0 if flags & _FINAL else _read_time(body, order)
     elif kind in (_DATA, _DATA_FRAG):
         return _read_data(kind, flags, order, body, context)
     elif kind == _HEARTBEAT:
         first, last = _read_sequence_number(body, 8, order), _read_sequence_number(body, 16, order)
         return Heartbeat(context.source, body[:4], context.source + body[4:8], first, last, bool(flags & _FINAL))
     elif kind == _GAP:
-        base, other_numbers = _number_set(body, 16, order)
+        base, other_numbers = _read_number_set(body, 16, order)
         return Gap(
             context.source,
             body[:4],
@@ -178,11 +178,11 @@ def _read(kind: int, flags: int, order: str, body: bytes, context: _Context) -> 
             other_numbers,
         )
     elif kind == _ACKNACK:
-        base, missing = _number_set(body, 8, order)
+        base, missing = _read_number_set(body, 8, order)
         return AckNack(context.source, context.source + body[:4], body[4:8], base, missing, bool(flags & _FINAL))
     elif kind == _NACK_FRAG:
         base, count = struct.unpack_from(order + "II", body, 16)
-        missing = _bits(body, 24, base, count, order)
+        missing = _read_bits(body, 24, base, count, order)
         return NackFrag(
             context.source, context.source + body[:4], body[4:8], _read_sequence_number(body, 8, order), missing
         )
@@ -200,7 +200,7 @@ def _read_data(kind: int, flags: int, order: str, body: bytes, context: _Context
         if not first or not fragment:
             raise MalformedError("a fragment without a sequence number or a fragment number")
     inline: Parameters = {}
-    if flags & _INLINE:
+    if flags & _HAS_INLINE_QOS:
         inline, offset = read_parameters(body, offset, order)
     payload = body[offset:] if has_data else None
     writer, sequence_number = context.source + body[8:12], _read_sequence_number(body, 12, order)
@@ -209,7 +209,7 @@ def _read_data(kind: int, flags: int, order: str, body: bytes, context: _Context
     )
 
 
-def _time(body: bytes, order: str) -> int:
+def _read_time(body: bytes, order: str) -> int:
     seconds, fraction = struct.unpack_from(order + "II", body)
     return int(seconds) * NANOSECONDS_PER_SECOND + (int(fraction) * NANOSECONDS_PER_SECOND >> 32)
 
@@ -219,13 +219,13 @@ def _read_sequence_number(body: bytes, offset: int, order: str) -> int:
     return (int(high) << 32) + int(low)
 
 
-def _number_set(body: bytes, offset: int, order: str) -> tuple[int, list[int]]:
+def _read_number_set(body: bytes, offset: int, order: str) -> tuple[int, list[int]]:
     base = _read_sequence_number(body, offset, order)
     (count,) = struct.unpack_from(order + "I", body, offset + 8)
-    return base, _bits(body, offset + 12, base, count, order)
+    return base, _read_bits(body, offset + 12, base, count, order)
 
 
-def _bits(body: bytes, offset: int, base: int, count: int, order: str) -> list[int]:
+def _read_bits(body: bytes, offset: int, base: int, count: int, order: str) -> list[int]:
     if count > _MAX_MISSING:
         raise MalformedError("a set with more than 256 numbers")
     words = struct.unpack_from(f"{order}{(count + 31) // 32}I", body, offset)
@@ -235,46 +235,51 @@ def _bits(body: bytes, offset: int, base: int, count: int, order: str) -> list[i
 # --- building messages -----------------------------------------------------------------------------------------------
 
 
-def message(prefix: bytes, *submessages: bytes, to: bytes = b"") -> bytes:
-    """Return an RTPS message from a participant to the participant with the prefix `to`, or to all."""
-    destination = _submessage(_INFO_DST, 0, to) if to else b""
-    return b"RTPS" + VERSION + VENDOR + prefix + destination + b"".join(submessages)
+def build_message(prefix: bytes, *submessages: bytes, to: bytes = b"") -> bytes:
+    """Return an RTPS message from a participant to another, whose prefix is `to`, or to all."""
+    destination = _build_submessage(_INFO_DST, 0, to) if to else b""
+    return b"RTPS" + VERSION + OWN_VENDOR + prefix + destination + b"".join(submessages)
 
 
-def info_timestamp(nanoseconds: int) -> bytes:
-    """Return an INFO_TS submessage: when the following submessages were written, in ns since the epoch."""
+def build_info_timestamp(nanoseconds: int) -> bytes:
+    """Return an INFO_TS submessage with the time of the following submessages.
+
+    The time is in nanoseconds since the epoch.
+    """
     seconds, remainder = divmod(nanoseconds, NANOSECONDS_PER_SECOND)
-    return _submessage(_INFO_TS, 0, struct.pack("<II", seconds, (remainder << 32) // NANOSECONDS_PER_SECOND))
+    return _build_submessage(_INFO_TS, 0, struct.pack("<II", seconds, (remainder << 32) // NANOSECONDS_PER_SECOND))
 
 
 def data(reader: bytes, writer: bytes, sequence_number: int, payload: bytes | None, inline: bytes = b"") -> bytes:
     """Return a DATA submessage. Without a payload, it contains only the key in `inline`."""
-    flags = (_INLINE if inline else 0) | (0 if payload is None else _HAS_DATA)
+    flags = (_HAS_INLINE_QOS if inline else 0) | (0 if payload is None else _HAS_DATA)
     head = struct.pack("<HH", 0, 16) + reader + writer + _pack_sequence_number(sequence_number)
-    return _submessage(_DATA, flags, head + inline + (payload or b""))
+    return _build_submessage(_DATA, flags, head + inline + (payload or b""))
 
 
-def fragment_count(payload: bytes) -> int:
+def count_fragments(payload: bytes) -> int:
     """Return the number of fragments of a payload."""
-    return (len(payload) + FRAGMENT - 1) // FRAGMENT
+    return (len(payload) + FRAGMENT_SIZE - 1) // FRAGMENT_SIZE
 
 
-def data_fragment(
+def build_data_fragment(
     reader: bytes, writer: bytes, sequence_number: int, payload: bytes, fragment_number: int, inline: bytes = b""
 ) -> bytes:
     """Return a DATA_FRAG submessage with one fragment of a payload.
 
     Fragments are counted from 1.
     """
-    head = _fragment_head(reader, writer, sequence_number, len(payload), fragment_number)
-    fragment = payload[(fragment_number - 1) * FRAGMENT : fragment_number * FRAGMENT]
-    return _submessage(_DATA_FRAG, _INLINE if inline else 0, head + inline + fragment)
+    head = _build_fragment_head(reader, writer, sequence_number, len(payload), fragment_number)
+    fragment = payload[(fragment_number - 1) * FRAGMENT_SIZE : fragment_number * FRAGMENT_SIZE]
+    return _build_submessage(_DATA_FRAG, _HAS_INLINE_QOS if inline else 0, head + inline + fragment)
 
 
-def fragment_start(
+def build_fragment_start(
     reader: bytes, writer: bytes, sequence_number: int, size: int, fragment_number: int, length: int
 ) -> bytes:
-    """Return the beginning of a DATA_FRAG submessage. The caller appends the bytes of the fragment.
+    """Return the beginning of a DATA_FRAG submessage.
+
+    The caller appends the bytes of the fragment.
 
     Args:
         reader: the entity that the fragment is for.
@@ -284,13 +289,13 @@ def fragment_start(
         fragment_number: the number of the fragment, counted from 1.
         length: the length of the fragment in bytes, a multiple of four.
     """
-    head = _fragment_head(reader, writer, sequence_number, size, fragment_number)
+    head = _build_fragment_head(reader, writer, sequence_number, size, fragment_number)
     return struct.pack("<BBH", _DATA_FRAG, _LITTLE, len(head) + length) + head
 
 
-def _fragment_head(reader: bytes, writer: bytes, sequence_number: int, size: int, fragment_number: int) -> bytes:
+def _build_fragment_head(reader: bytes, writer: bytes, sequence_number: int, size: int, fragment_number: int) -> bytes:
     head = struct.pack("<HH", 0, 28) + reader + writer + _pack_sequence_number(sequence_number)
-    return head + struct.pack("<IHHI", fragment_number, 1, FRAGMENT, size)
+    return head + struct.pack("<IHHI", fragment_number, 1, FRAGMENT_SIZE, size)
 
 
 def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int, *, final: bool = False) -> bytes:
@@ -305,12 +310,12 @@ def heartbeat(reader: bytes, writer: bytes, first: int, last: int, count: int, *
         final: whether the reader need not respond.
     """
     body = reader + writer + _pack_sequence_number(first) + _pack_sequence_number(last) + struct.pack("<I", count)
-    return _submessage(_HEARTBEAT, _FINAL if final else 0, body)
+    return _build_submessage(_HEARTBEAT, _FINAL if final else 0, body)
 
 
 def gap(reader: bytes, writer: bytes, start: int, base: int) -> bytes:
-    """Return a GAP submessage: the samples from `start` up to but not including `base` do not exist."""
-    return _submessage(
+    """Return a GAP submessage: the samples from `start` to before `base` do not exist."""
+    return _build_submessage(
         _GAP, 0, reader + writer + _pack_sequence_number(start) + _pack_sequence_number(base) + struct.pack("<I", 0)
     )
 
@@ -327,17 +332,17 @@ def acknack(
     for sequence_number in missing:
         words[(sequence_number - base) // 32] |= 1 << (31 - (sequence_number - base) % 32)
     body = reader + writer + _pack_sequence_number(base) + struct.pack(f"<I{len(words)}II", size, *words, count)
-    return _submessage(_ACKNACK, _FINAL if final else 0, body)
+    return _build_submessage(_ACKNACK, _FINAL if final else 0, body)
 
 
 def _pack_sequence_number(sequence_number: int) -> bytes:
     return struct.pack("<iI", sequence_number >> 32, sequence_number & 0xFFFF_FFFF)
 
 
-def _submessage(kind: int, flags: int, body: bytes) -> bytes:
+def _build_submessage(kind: int, flags: int, body: bytes) -> bytes:
     body += bytes(-len(body) % 4)
     return struct.pack("<BBH", kind, flags | _LITTLE, len(body) if len(body) < 0x1_0000 else 0) + body
 
 
-ALL = UNKNOWN
+ALL = UNKNOWN_ENTITY
 """The entity id that means all readers."""

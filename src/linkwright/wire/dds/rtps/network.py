@@ -8,20 +8,20 @@ from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 
-from linkwright.wire.dds.local_sockets import multicast_port
+from linkwright.wire.dds.local_sockets import compute_multicast_port
 from linkwright.wire.dds.rtps.values import Address
 from linkwright.wire.dds.rtps.writer import Packet
-from linkwright.wire.dds.settings import Range, Settings, max_participants, own_addresses
+from linkwright.wire.dds.settings import Range, Settings, find_own_addresses, max_participants
 
 _LOOPBACK = "127.0.0.1"
-_GROUP = "239.255.0.1"
-_FIRST_UNICAST, _PORTS_EACH = 10, 2
+_MULTICAST_GROUP = "239.255.0.1"
+_FIRST_UNICAST, _PORTS_PER_PARTICIPANT = 10, 2
 _MAX_SEARCHED = 33
 """The maximum number of processes to search for on a machine if ROS's variables set the range, as in Cyclone."""
 
-_BUFFER = 4 << 20
+_BUFFER_SIZE = 4 << 20
 _MAX_PACKET_SIZE = 0x1_0000
-_MAX_BURST = 120_000
+_MAX_BURST_SIZE = 120_000
 """Bytes after which sending pauses, so that they fit into the receiver's buffer (by default 212 992 bytes)."""
 
 _PAUSE_S = 0.001
@@ -38,7 +38,7 @@ class NetworkAddresses:
         hosts: the unicast addresses of others.
         interfaces: the addresses of the interfaces through which multicast is sent.
         ttl: the time to live of multicast packets; 0 for this machine only.
-        only_here: whether packets from other machines are ignored.
+        local_only: whether packets from other machines are ignored.
     """
 
     own_hosts: tuple[str, ...]
@@ -46,7 +46,7 @@ class NetworkAddresses:
     hosts: tuple[str, ...]
     interfaces: tuple[str, ...]
     ttl: int
-    only_here: bool
+    local_only: bool
 
 
 def addresses_from_settings(settings: Settings) -> NetworkAddresses:
@@ -54,19 +54,19 @@ def addresses_from_settings(settings: Settings) -> NetworkAddresses:
 
     See `docs/decisions/0011-dds.md`.
     """
-    interface_addresses = tuple(own_addresses()[:3])
+    interface_addresses = tuple(find_own_addresses()[:3])
     is_localhost = settings.range is Range.LOCALHOST and bool(settings.peers)
     is_machine = settings.range is Range.MACHINE or (settings.range is Range.LOCALHOST and not is_localhost)
-    first_port = multicast_port(settings.domain_id) + _FIRST_UNICAST
+    first_port = compute_multicast_port(settings.domain_id) + _FIRST_UNICAST
     max_count = max_participants(settings.domain_id)
     count = max_count if is_machine else min(max_count, _MAX_SEARCHED)
     return NetworkAddresses(
         own_hosts=(_LOOPBACK,) if is_localhost or is_machine or not interface_addresses else interface_addresses,
-        ports=range(first_port, first_port + _PORTS_EACH * count, _PORTS_EACH),
+        ports=range(first_port, first_port + _PORTS_PER_PARTICIPANT * count, _PORTS_PER_PARTICIPANT),
         hosts=(_LOOPBACK, *(interface_addresses if is_machine else ()), *_resolve_peers(settings.peers)),
         interfaces=() if is_localhost else (_LOOPBACK, *interface_addresses),
         ttl=0 if is_machine else _NETWORK_TTL,
-        only_here=is_machine,
+        local_only=is_machine,
     )
 
 
@@ -93,8 +93,8 @@ class Network:
 
     def __init__(self, settings: Settings) -> None:
         self._network_addresses = addresses_from_settings(settings)
-        self._group = (_GROUP, multicast_port(settings.domain_id))
-        self._local_hosts = {_LOOPBACK, *own_addresses()}
+        self._group = (_MULTICAST_GROUP, compute_multicast_port(settings.domain_id))
+        self._local_hosts = {_LOOPBACK, *find_own_addresses()}
         self.socket = self.SOCKET(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             self.socket.bind(
@@ -108,7 +108,7 @@ class Network:
             self.socket.setblocking(False)
             for option in (socket.SO_RCVBUF, socket.SO_SNDBUF):
                 with suppress(OSError):
-                    self.socket.setsockopt(socket.SOL_SOCKET, option, _BUFFER)
+                    self.socket.setsockopt(socket.SOL_SOCKET, option, _BUFFER_SIZE)
             self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, self._network_addresses.ttl)
         except OSError:
             self.socket.close()
@@ -125,7 +125,7 @@ class Network:
                 return None
             except OSError:
                 continue  # A receiver of our packets no longer listens (Windows reports this here).
-            if not self._network_addresses.only_here or self.is_here(source[0]):
+            if not self._network_addresses.local_only or self.is_local(source[0]):
                 return packet, source
 
     def send(self, packets: Iterable[Packet]) -> None:
@@ -136,7 +136,7 @@ class Network:
         burst = 0
         for packet, addresses in packets:
             burst += len(packet)
-            if burst > _MAX_BURST:
+            if burst > _MAX_BURST_SIZE:
                 time.sleep(_PAUSE_S)
                 burst = len(packet)
             for address in addresses:
@@ -160,24 +160,24 @@ class Network:
                 self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(interface))
                 self.socket.sendto(packet, self._group)
 
-    def best_addresses(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
+    def choose_addresses(self, addresses: Iterable[Address]) -> tuple[Address, ...]:
         """Return the addresses to use for one receiver.
 
         The result is one address if the receiver is on this machine, otherwise all addresses.
         """
         unique_addresses = tuple(dict.fromkeys(addresses))
         local_addresses = sorted(
-            (address for address in unique_addresses if self.is_here(address[0])),
+            (address for address in unique_addresses if self.is_local(address[0])),
             key=lambda address: address[0] != _LOOPBACK,
         )
         if local_addresses:
             return (local_addresses[0],)
-        return () if self._network_addresses.only_here else unique_addresses
+        return () if self._network_addresses.local_only else unique_addresses
 
     def close(self) -> None:
         """Close the socket."""
         self.socket.close()
 
-    def is_here(self, host: str) -> bool:
+    def is_local(self, host: str) -> bool:
         """Return whether an address belongs to this machine."""
         return host in self._local_hosts or host.startswith("127.")

@@ -1,4 +1,4 @@
-"""An RTPS participant with readers and writers of services, for communication with Fast DDS.
+"""An RTPS participant with readers and writers of services, for Fast DDS.
 
 All participants in the domain learn that this participant exists, because the address of a Fast DDS participant is not
 known before it has answered. Endpoints are announced only to Fast DDS.
@@ -22,8 +22,8 @@ from linkwright.wire.dds.rtps.discovery_data import (
     ParticipantData,
     describe_endpoint,
     describe_participant,
-    gone_guid,
-    key_parameters,
+    find_departed_guid,
+    make_key_parameters,
     read_endpoint,
     read_participant,
 )
@@ -35,9 +35,9 @@ from linkwright.wire.dds.rtps.messages import (
     NackFrag,
     Submessage,
     acknack,
+    build_message,
     data,
     heartbeat,
-    message,
     parse,
     read_vendor,
 )
@@ -62,9 +62,9 @@ _MAX_WAIT_S = 1.0
 @dataclass(slots=True)
 class _Peer:
     participant: ParticipantData
-    until: float
-    discovery: tuple[Address, ...]
-    user: tuple[Address, ...]
+    expires_at: float
+    discovery_addresses: tuple[Address, ...]
+    user_addresses: tuple[Address, ...]
     endpoints: dict[bytes, EndpointData] = field(default_factory=dict)
 
 
@@ -103,7 +103,7 @@ class RtpsParticipant:
     """
 
     def __init__(self, settings: Settings, name: str, on_change: Callable[[], None]) -> None:
-        self.prefix = v.VENDOR + os.urandom(v.PREFIX - len(v.VENDOR))
+        self.prefix = v.OWN_VENDOR + os.urandom(v.PREFIX_SIZE - len(v.OWN_VENDOR))
         self.changed = on_change
         """Called when the graph may have changed; see the argument."""
         self._network = Network(settings)
@@ -143,12 +143,12 @@ class RtpsParticipant:
             on_data: called in the participant's thread with each sample.
         """
         with self._lock:
-            guid = self._new_guid(v.READER_KIND)
+            guid = self._create_guid(v.READER_KIND)
             packets = self._subscriptions_writer.write(
-                describe_endpoint(guid, topic, type_name, user_data), inline=key_parameters(guid)
+                describe_endpoint(guid, topic, type_name, user_data), inline=make_key_parameters(guid)
             )
             local = LocalReader(Reader(guid), topic, type_name, self._subscriptions_writer.last, on_data)
-            self._readers[guid[v.PREFIX :]] = local
+            self._readers[guid[v.PREFIX_SIZE :]] = local
             packets += self._match_all(topic)
         self._network.send(packets)
         return local
@@ -156,12 +156,12 @@ class RtpsParticipant:
     def add_writer(self, topic: str, type_name: str, user_data: bytes) -> LocalWriter:
         """Create a writer. See `add_reader` for the arguments."""
         with self._lock:
-            guid = self._new_guid(v.WRITER_KIND)
+            guid = self._create_guid(v.WRITER_KIND)
             packets = self._publications_writer.write(
-                describe_endpoint(guid, topic, type_name, user_data), inline=key_parameters(guid)
+                describe_endpoint(guid, topic, type_name, user_data), inline=make_key_parameters(guid)
             )
             local = LocalWriter(Writer(guid), topic, type_name, self._publications_writer.last)
-            self._writers[guid[v.PREFIX :]] = local
+            self._writers[guid[v.PREFIX_SIZE :]] = local
             packets += self._match_all(topic)
         self._network.send(packets)
         self._wake()
@@ -173,10 +173,10 @@ class RtpsParticipant:
         guid = local.reader.guid if isinstance(local, LocalReader) else local.writer.guid
         announcer = self._subscriptions_writer if is_reader else self._publications_writer
         with self._lock:
-            self._readers.pop(guid[v.PREFIX :], None)
-            self._writers.pop(guid[v.PREFIX :], None)
+            self._readers.pop(guid[v.PREFIX_SIZE :], None)
+            self._writers.pop(guid[v.PREFIX_SIZE :], None)
             announcer.withdraw(local.announced)
-            packets = announcer.write(None, inline=key_parameters(guid, is_gone=True))
+            packets = announcer.write(None, inline=make_key_parameters(guid, is_gone=True))
         self._network.send(packets)
 
     def write(self, local: LocalWriter, payload: bytes, *, inline: bytes = b"", to: bytes = b"") -> int:
@@ -192,12 +192,12 @@ class RtpsParticipant:
         self._wake()
         return sequence_number
 
-    def matched_readers(self, local: LocalWriter) -> list[bytes]:
+    def find_matched_readers(self, local: LocalWriter) -> list[bytes]:
         """Return the GUIDs of the remote readers that match one of our writers."""
         with self._lock:
             return list(local.writer.readers)
 
-    def matched_writers(self, local: LocalReader) -> dict[bytes, float | None]:
+    def find_matched_writers(self, local: LocalReader) -> dict[bytes, float | None]:
         """Return the GUIDs of the writers that match one of our readers, each with a time.
 
         The time is when the writer's first heartbeat arrived, in seconds of the steady clock; None if none has arrived.
@@ -205,20 +205,20 @@ class RtpsParticipant:
         with self._lock:
             return {guid: local.reader.heard_at(guid) for guid in local.reader.writers}
 
-    def reader_address(self, reader: bytes) -> Address | None:
+    def find_reader_address(self, reader: bytes) -> Address | None:
         """Return the address of a remote reader on this machine, or None if it is not known."""
         with self._lock:
-            peer = self._peers.get(reader[: v.PREFIX])
+            peer = self._peers.get(reader[: v.PREFIX_SIZE])
             endpoint = peer.endpoints.get(reader) if peer is not None else None
             if peer is None or endpoint is None:
                 return None
-            addresses = self._network.best_addresses(endpoint.addresses) or peer.user
-        return next((address for address in addresses if self._network.is_here(address[0])), None)
+            addresses = self._network.choose_addresses(endpoint.addresses) or peer.user_addresses
+        return next((address for address in addresses if self._network.is_local(address[0])), None)
 
-    def last_of(self, local: LocalReader, writer: bytes) -> int:
+    def get_last_number(self, local: LocalReader, writer: bytes) -> int:
         """Return the highest sequence number that a writer has announced to one of our readers."""
         with self._lock:
-            return local.reader.last_of(writer)
+            return local.reader.get_last_number(writer)
 
     def expect(self, prefixes: Iterable[bytes]) -> None:
         """Look for participants that were discovered elsewhere, until each has answered."""
@@ -235,7 +235,7 @@ class RtpsParticipant:
         self._wake()
         if threading.current_thread() is not self._thread:
             self._thread.join()
-        self._send_to_peers(self._spdp(is_leaving=True))
+        self._send_to_peers(self._make_announcement(is_leaving=True))
         self._network.close()
         self._wake_receiver.close()
         self._wake_sender.close()
@@ -260,11 +260,11 @@ class RtpsParticipant:
                 return
             packet, source = received
             calls: list[Callable[[], None]] = []
-            call_guarded(partial(self._answer, packet, source, calls))
+            call_guarded(partial(self._process_and_respond, packet, source, calls))
             for call in calls:
                 call_guarded(call)
 
-    def _answer(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> None:
+    def _process_and_respond(self, packet: bytes, source: Address, calls: list[Callable[[], None]]) -> None:
         with self._lock:
             packets = self._process_packet(packet, source, calls)
         self._network.send(packets)
@@ -274,9 +274,9 @@ class RtpsParticipant:
         now = time.monotonic()
         packets: list[Packet] = []
         with self._lock:
-            expired_prefixes = [prefix for prefix, peer in self._peers.items() if peer.until < now]
+            expired_prefixes = [prefix for prefix, peer in self._peers.items() if peer.expires_at < now]
             for prefix in expired_prefixes:
-                self._forget_peer(prefix)
+                self._remove_peer(prefix)
             must_search = bool(self._expected_prefixes - self._peers.keys()) and now >= self._search_at
             if must_search:
                 self._search_at = now + _SEARCH_INTERVALS_S[min(self._search_count + 1, len(_SEARCH_INTERVALS_S) - 1)]
@@ -284,7 +284,7 @@ class RtpsParticipant:
             must_announce = now >= self._announce_at
             if must_announce:
                 self._announce_at = now + _ANNOUNCEMENT_INTERVAL_S
-            entities = self._entities()
+            entities = self._list_entities()
             for entity in entities:
                 packets += entity.remind(now)
             due_times = [reminder for entity in entities if (reminder := entity.next_reminder()) is not None]
@@ -295,12 +295,12 @@ class RtpsParticipant:
         if expired_prefixes:
             self.changed()
         if must_search:
-            self._network.send_everywhere(self._spdp())
+            self._network.send_everywhere(self._make_announcement())
         if must_announce:
-            self._send_to_peers(self._spdp())
+            self._send_to_peers(self._make_announcement())
         return max(0.0, min(_MAX_WAIT_S, min(due_times) - time.monotonic()))
 
-    def _entities(self) -> list[Reader | Writer]:
+    def _list_entities(self) -> list[Reader | Writer]:
         writers = [
             self._publications_writer,
             self._subscriptions_writer,
@@ -315,42 +315,42 @@ class RtpsParticipant:
 
     # --- discovery ----------------------------------------------------------------------------------------------------
 
-    def _spdp(self, *, is_leaving: bool = False) -> bytes:
+    def _make_announcement(self, *, is_leaving: bool = False) -> bytes:
         self._announcement_count += 1
-        inline = key_parameters(self.prefix + v.PARTICIPANT, is_gone=is_leaving)
+        inline = make_key_parameters(self.prefix + v.PARTICIPANT, is_gone=is_leaving)
         payload = None if is_leaving else self._self
-        return message(self.prefix, data(v.SPDP_READER, v.SPDP_WRITER, self._announcement_count, payload, inline))
+        return build_message(self.prefix, data(v.SPDP_READER, v.SPDP_WRITER, self._announcement_count, payload, inline))
 
     def _send_to_peers(self, packet: bytes) -> None:
         with self._lock:
             peers = list(self._peers.values())
-        self._network.send((packet, peer.discovery) for peer in peers)
+        self._network.send((packet, peer.discovery_addresses) for peer in peers)
 
     def _on_participant(self, sample: Data, vendor: bytes, calls: list[Callable[[], None]]) -> list[Packet]:
-        if gone_guid(sample):
-            self._forget_peer(gone_guid(sample)[: v.PREFIX])
+        if find_departed_guid(sample):
+            self._remove_peer(find_departed_guid(sample)[: v.PREFIX_SIZE])
             calls.append(self.changed)
             return []
         if sample.payload is None:
             return []
         participant = read_participant(sample.payload)
-        if participant.vendor != v.FAST_DDS or vendor != v.FAST_DDS:
+        if participant.vendor != v.FAST_DDS_VENDOR or vendor != v.FAST_DDS_VENDOR:
             return []
         discovery, user = (
-            self._network.best_addresses(participant.discovery),
-            self._network.best_addresses(participant.user),
+            self._network.choose_addresses(participant.discovery_addresses),
+            self._network.choose_addresses(participant.user_addresses),
         )
-        expires_at = time.monotonic() + participant.lease
+        expires_at = time.monotonic() + participant.lease_s
         peer = self._peers.get(participant.prefix)
         if peer is not None and peer.participant == participant:
-            peer.until = expires_at
+            peer.expires_at = expires_at
             return []
         if not discovery or not user:
             return []
         self._peers[participant.prefix] = _Peer(
             participant, expires_at, discovery, user, peer.endpoints if peer else {}
         )
-        packets: list[Packet] = [(self._spdp(), discovery)]
+        packets: list[Packet] = [(self._make_announcement(), discovery)]
         for reader, entity in (
             (self._publications_reader, v.PUBLICATIONS_WRITER),
             (self._subscriptions_reader, v.SUBSCRIPTIONS_WRITER),
@@ -363,7 +363,7 @@ class RtpsParticipant:
             packets += writer.match(participant.prefix + entity, discovery)
         return packets
 
-    def _forget_peer(self, prefix: bytes) -> None:
+    def _remove_peer(self, prefix: bytes) -> None:
         peer = self._peers.pop(prefix, None)
         if peer is None:
             return
@@ -376,7 +376,7 @@ class RtpsParticipant:
 
     def _on_endpoint(self, sample: Data, *, is_writer: bool) -> list[Packet]:
         peer = self._peers[sample.source]
-        departed_guid = gone_guid(sample)
+        departed_guid = find_departed_guid(sample)
         if departed_guid:
             peer.endpoints.pop(departed_guid, None)
             self._unmatch(departed_guid)
@@ -401,7 +401,7 @@ class RtpsParticipant:
     def _match(self, endpoint: EndpointData, peer: _Peer) -> list[Packet]:
         if not endpoint.is_reliable:
             return []
-        addresses = self._network.best_addresses(endpoint.addresses) or peer.user
+        addresses = self._network.choose_addresses(endpoint.addresses) or peer.user_addresses
         packets = []
         if v.is_reader(endpoint.guid):
             for local in self._writers.values():
@@ -433,9 +433,9 @@ class RtpsParticipant:
                 return []
             peer = self._peers.get(submessage.source)
             if peer is not None:
-                peer.until = time.monotonic() + peer.participant.lease
+                peer.expires_at = time.monotonic() + peer.participant.lease_s
             try:
-                if isinstance(submessage, Data) and submessage.writer[v.PREFIX :] == v.SPDP_WRITER:
+                if isinstance(submessage, Data) and submessage.writer[v.PREFIX_SIZE :] == v.SPDP_WRITER:
                     packets += self._on_participant(submessage, vendor, calls)
                 elif peer is not None:
                     packets += self._on_submessage(submessage, calls)
@@ -454,19 +454,21 @@ class RtpsParticipant:
         """
         self._count += 1
         if isinstance(submessage, AckNack) and submessage.writer in (v.PUBLICATIONS_WRITER, v.SUBSCRIPTIONS_WRITER):
-            response = heartbeat(submessage.reader[v.PREFIX :], submessage.writer, 1, 0, self._count, final=True)
-        elif isinstance(submessage, Heartbeat) and submessage.writer[v.PREFIX :] in (
+            response = heartbeat(submessage.reader[v.PREFIX_SIZE :], submessage.writer, 1, 0, self._count, final=True)
+        elif isinstance(submessage, Heartbeat) and submessage.writer[v.PREFIX_SIZE :] in (
             v.PUBLICATIONS_WRITER,
             v.SUBSCRIPTIONS_WRITER,
         ):
-            response = acknack(submessage.reader, submessage.writer[v.PREFIX :], submessage.last + 1, (), self._count)
+            response = acknack(
+                submessage.reader, submessage.writer[v.PREFIX_SIZE :], submessage.last + 1, (), self._count
+            )
         else:
             return []
-        return [(message(self.prefix, response, to=submessage.source), (source,))]
+        return [(build_message(self.prefix, response, to=submessage.source), (source,))]
 
     def _on_submessage(self, submessage: Submessage, calls: list[Callable[[], None]]) -> list[Packet]:
         if isinstance(submessage, AckNack | NackFrag):
-            writer = self._writer(submessage.writer)
+            writer = self._find_writer(submessage.writer)
             if writer is None:
                 return []
             if isinstance(submessage, NackFrag):
@@ -479,7 +481,7 @@ class RtpsParticipant:
         if isinstance(submessage, Data):
             return self._on_sample(submessage, calls)
         packets = []
-        for reader in self._readers_for(submessage):
+        for reader in self._find_readers(submessage):
             if isinstance(submessage, Gap):
                 reader.on_gap(submessage)
                 continue
@@ -493,7 +495,7 @@ class RtpsParticipant:
         builtin = {
             v.PUBLICATIONS_WRITER: (self._publications_reader, True),
             v.SUBSCRIPTIONS_WRITER: (self._subscriptions_reader, False),
-        }.get(sample.writer[v.PREFIX :])
+        }.get(sample.writer[v.PREFIX_SIZE :])
         if builtin is not None:
             reader, is_writer = builtin
             complete = reader.on_data(sample)
@@ -510,7 +512,7 @@ class RtpsParticipant:
 
     def _deliver(self, sample: Data, calls: list[Callable[[], None]]) -> None:
         for local in self._readers.values():
-            if sample.reader in (v.UNKNOWN, local.reader.guid[v.PREFIX :]):
+            if sample.reader in (v.UNKNOWN_ENTITY, local.reader.guid[v.PREFIX_SIZE :]):
                 complete = local.reader.on_data(sample)
                 if complete is not None:
                     calls.append(partial(local.on_data, complete))
@@ -525,18 +527,18 @@ class RtpsParticipant:
             elif peer is not None:
                 self._early_samples.append(sample)
 
-    def _readers_for(self, submessage: Heartbeat | Gap) -> Iterable[Reader]:
-        entity = submessage.writer[v.PREFIX :]
+    def _find_readers(self, submessage: Heartbeat | Gap) -> Iterable[Reader]:
+        entity = submessage.writer[v.PREFIX_SIZE :]
         if entity == v.PUBLICATIONS_WRITER:
             return (self._publications_reader,)
         if entity == v.SUBSCRIPTIONS_WRITER:
             return (self._subscriptions_reader,)
-        if submessage.reader == v.UNKNOWN:
+        if submessage.reader == v.UNKNOWN_ENTITY:
             return tuple(reader.reader for reader in self._readers.values())
         local = self._readers.get(submessage.reader)
         return () if local is None else (local.reader,)
 
-    def _writer(self, entity: bytes) -> Writer | None:
+    def _find_writer(self, entity: bytes) -> Writer | None:
         if entity == v.PUBLICATIONS_WRITER:
             return self._publications_writer
         if entity == v.SUBSCRIPTIONS_WRITER:
@@ -544,6 +546,6 @@ class RtpsParticipant:
         local = self._writers.get(entity)
         return local.writer if local is not None else None
 
-    def _new_guid(self, kind: bytes) -> bytes:
+    def _create_guid(self, kind: bytes) -> bytes:
         self._last_entity += 1
         return self.prefix + self._last_entity.to_bytes(3, "big") + kind

@@ -10,11 +10,11 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
-from linkwright.wire.dds.rtps.messages import Data, Gap, Heartbeat, acknack, message
-from linkwright.wire.dds.rtps.values import PREFIX, Address
+from linkwright.wire.dds.rtps.messages import Data, Gap, Heartbeat, acknack, build_message
+from linkwright.wire.dds.rtps.values import PREFIX_SIZE, Address
 from linkwright.wire.dds.rtps.writer import Packet
 
-_FIRST_REPEAT, _LAST_REPEAT = 0.05, 2.0
+_FIRST_REPEAT_S, _LAST_REPEAT_S = 0.05, 2.0
 """Seconds after which a silent writer is asked for its samples, and the limit to which that interval grows."""
 
 _MAX_MISSING = 256
@@ -51,7 +51,7 @@ class _Incomplete:
 
 
 @dataclass(slots=True)
-class _Writer:
+class _WriterState:
     addresses: tuple[Address, ...]
     low: int = 1
     """All samples before this number have arrived, or are not available."""
@@ -61,7 +61,7 @@ class _Writer:
     heard_at: float | None = None
     last: int = 0
     due_at: float = 0.0
-    repeat: float = _FIRST_REPEAT
+    repeat: float = _FIRST_REPEAT_S
 
     def has(self, sequence_number: int) -> bool:
         return sequence_number < self.low or sequence_number in self.later
@@ -101,7 +101,7 @@ class Reader:
 
     def __init__(self, guid: bytes) -> None:
         self.guid = guid
-        self._writers: dict[bytes, _Writer] = {}
+        self._writers: dict[bytes, _WriterState] = {}
 
     @property
     def writers(self) -> Iterable[bytes]:
@@ -116,7 +116,7 @@ class Reader:
         writer_state = self._writers.get(writer)
         return writer_state.heard_at if writer_state is not None else None
 
-    def last_of(self, writer: bytes) -> int:
+    def get_last_number(self, writer: bytes) -> int:
         """Return the highest sequence number that a writer has announced to this reader."""
         writer_state = self._writers.get(writer)
         return writer_state.last if writer_state is not None else 0
@@ -126,7 +126,7 @@ class Reader:
         if writer in self._writers:
             self._writers[writer].addresses = addresses
             return []
-        writer_state = self._writers[writer] = _Writer(addresses)
+        writer_state = self._writers[writer] = _WriterState(addresses)
         return [self._request_heartbeat(writer, writer_state, time.monotonic())]
 
     def unmatch(self, writer: bytes) -> None:
@@ -180,7 +180,7 @@ class Reader:
         else:
             for sequence_number in range(gap.start, min(gap.base, gap.start + _MAX_AHEAD)):
                 writer_state.add(sequence_number)
-        for sequence_number in gap.others:
+        for sequence_number in gap.other_numbers:
             if not writer_state.has(sequence_number):
                 writer_state.add(sequence_number)
 
@@ -200,7 +200,7 @@ class Reader:
         )
 
     @staticmethod
-    def _complete(writer_state: _Writer, sample: Data) -> bytes | None:
+    def _complete(writer_state: _WriterState, sample: Data) -> bytes | None:
         if sample.payload is None or sample.size > _MAX_SAMPLE_SIZE:
             return None
         incomplete_sample = writer_state.incomplete.get(sample.sequence_number)
@@ -215,18 +215,25 @@ class Reader:
             )
         return incomplete_sample.add(sample.first, sample.payload)
 
-    def _request_heartbeat(self, writer: bytes, writer_state: _Writer, now: float) -> Packet:
+    def _request_heartbeat(self, writer: bytes, writer_state: _WriterState, now: float) -> Packet:
         """Return an acknowledgment of no samples (base 0), which requests a heartbeat.
 
         Fast DDS answers base 0, but not base 1, with a heartbeat.
         """
-        writer_state.due_at, writer_state.repeat = now + writer_state.repeat, min(writer_state.repeat * 2, _LAST_REPEAT)
+        writer_state.due_at, writer_state.repeat = (
+            now + writer_state.repeat,
+            min(writer_state.repeat * 2, _LAST_REPEAT_S),
+        )
         return self._acknack(writer, writer_state, 0, [], final=False)
 
-    def _acknowledge(self, writer: bytes, writer_state: _Writer) -> Packet:
+    def _acknowledge(self, writer: bytes, writer_state: _WriterState) -> Packet:
         return self._acknack(writer, writer_state, writer_state.low, writer_state.missing(), final=True)
 
-    def _acknack(self, writer: bytes, writer_state: _Writer, base: int, missing: list[int], *, final: bool) -> Packet:
+    def _acknack(
+        self, writer: bytes, writer_state: _WriterState, base: int, missing: list[int], *, final: bool
+    ) -> Packet:
         writer_state.count += 1
-        submessage = acknack(self.guid[PREFIX:], writer[PREFIX:], base, missing, writer_state.count, final=final)
-        return message(self.guid[:PREFIX], submessage, to=writer[:PREFIX]), writer_state.addresses
+        submessage = acknack(
+            self.guid[PREFIX_SIZE:], writer[PREFIX_SIZE:], base, missing, writer_state.count, final=final
+        )
+        return build_message(self.guid[:PREFIX_SIZE], submessage, to=writer[:PREFIX_SIZE]), writer_state.addresses

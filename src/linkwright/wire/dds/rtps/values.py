@@ -8,10 +8,10 @@ import struct
 Address = tuple[str, int]
 """An IPv4 address and a port."""
 
-PREFIX = 12
+PREFIX_SIZE = 12
 """The number of bytes of a GUID that identify the participant. Four more identify its entity."""
 
-UNKNOWN = bytes(4)
+UNKNOWN_ENTITY = bytes(4)
 PARTICIPANT = b"\x00\x00\x01\xc1"
 SPDP_WRITER, SPDP_READER = b"\x00\x01\x00\xc2", b"\x00\x01\x00\xc7"
 PUBLICATIONS_WRITER, PUBLICATIONS_READER = b"\x00\x00\x03\xc2", b"\x00\x00\x03\xc7"
@@ -19,8 +19,8 @@ SUBSCRIPTIONS_WRITER, SUBSCRIPTIONS_READER = b"\x00\x00\x04\xc2", b"\x00\x00\x04
 WRITER_KIND, READER_KIND = b"\x03", b"\x04"
 """The last byte of the entity id of a writer or reader of a type without keys."""
 
-FAST_DDS = b"\x01\x0f"
-VENDOR = b"\x4c\x57"
+FAST_DDS_VENDOR = b"\x01\x0f"
+OWN_VENDOR = b"\x4c\x57"
 """Linkwright's vendor id, which no other vendor uses (the OMG keeps the list)."""
 
 VERSION = b"\x02\x03"
@@ -69,15 +69,15 @@ class MalformedError(ValueError):
     """Raised when a packet does not follow the RTPS specification."""
 
 
-def parameter(pid: int, value: bytes) -> bytes:
+def encode_parameter(pid: int, value: bytes) -> bytes:
     """Encode a parameter, padded to a multiple of four bytes."""
     value += bytes(-len(value) % 4)
     return struct.pack("<HH", pid, len(value)) + value
 
 
-def parameters(*pairs: tuple[int, bytes]) -> bytes:
+def encode_parameters(*pairs: tuple[int, bytes]) -> bytes:
     """Encode a list of parameters, including its end."""
-    return b"".join(parameter(*pair) for pair in pairs) + struct.pack("<HH", _PID_SENTINEL, 0)
+    return b"".join(encode_parameter(*pair) for pair in pairs) + struct.pack("<HH", _PID_SENTINEL, 0)
 
 
 def read_parameters(data: bytes, offset: int, order: str) -> tuple[Parameters, int]:
@@ -102,13 +102,13 @@ def read_parameters(data: bytes, offset: int, order: str) -> tuple[Parameters, i
     raise MalformedError("a parameter list without a sentinel")
 
 
-def text(value: str) -> bytes:
+def encode_text(value: str) -> bytes:
     """Encode a string as CDR."""
     encoded = value.encode() + b"\0"
     return struct.pack("<I", len(encoded)) + encoded
 
 
-def octets(value: bytes) -> bytes:
+def encode_octets(value: bytes) -> bytes:
     """Encode a sequence of octets as CDR."""
     return struct.pack("<I", len(value)) + value
 
@@ -127,7 +127,7 @@ def read_text(value: bytes, order: str) -> str:
     return value[4 : 4 + size].rstrip(b"\0").decode(errors="replace")
 
 
-def locator(address: Address) -> bytes:
+def encode_locator(address: Address) -> bytes:
     """Encode a UDPv4 locator."""
     return _LOCATOR.pack(_UDP_V4, address[1]) + bytes(12) + socket.inet_aton(address[0])
 
@@ -146,14 +146,14 @@ def read_locators(values: list[bytes], order: str) -> list[Address]:
     return addresses
 
 
-def related_identity(guid: bytes, sequence_number: int) -> bytes:
+def encode_related_identity(guid: bytes, sequence_number: int) -> bytes:
     """Return inline QoS that identifies the related sample by a GUID and a sequence number.
 
     The GUID belongs to the related sample's writer or reader. The inline QoS has the forms that all versions of Fast
     DDS understand.
     """
     value = guid + _IDENTITY.pack(sequence_number >> 32, sequence_number & 0xFFFF_FFFF)
-    return parameters((PID_RELATED_SAMPLE_IDENTITY, value), (PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS, value))
+    return encode_parameters((PID_RELATED_SAMPLE_IDENTITY, value), (PID_RELATED_SAMPLE_IDENTITY_OF_FAST_DDS, value))
 
 
 def read_related_identity(inline: Parameters, order: str) -> tuple[bytes, int] | None:

@@ -10,20 +10,20 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from linkwright.wire.dds.rtps.messages import (
-    FRAGMENT,
+    FRAGMENT_SIZE,
     AckNack,
     NackFrag,
+    build_data_fragment,
+    build_info_timestamp,
+    build_message,
+    count_fragments,
     data,
-    data_fragment,
-    fragment_count,
     gap,
     heartbeat,
-    info_timestamp,
-    message,
 )
-from linkwright.wire.dds.rtps.values import PREFIX, Address
+from linkwright.wire.dds.rtps.values import PREFIX_SIZE, Address
 
-_FIRST_REPEAT, _LAST_REPEAT = 0.1, 2.0
+_FIRST_REPEAT_S, _LAST_REPEAT_S = 0.1, 2.0
 """The first and the longest interval, in seconds, between reminders to a reader that has not acknowledged."""
 
 _MAX_SAMPLES = 1000
@@ -42,19 +42,19 @@ class _Change:
     payload: bytes | None
     inline: bytes
     to: bytes
-    time: int
+    written_ns: int
 
     def is_for(self, reader: bytes) -> bool:
         return reader.startswith(self.to)
 
 
 @dataclass(slots=True)
-class _Reader:
+class _ReaderState:
     addresses: tuple[Address, ...]
     base: int
     """All samples before this number were acknowledged, or are not for this reader."""
     due_at: float = 0.0
-    repeat: float = _FIRST_REPEAT
+    repeat: float = _FIRST_REPEAT_S
     heard: bool = False
 
 
@@ -73,7 +73,7 @@ class Writer:
         self._byte_count = 0
         self._last_sequence_number = 0
         self._count = 0
-        self._readers: dict[bytes, _Reader] = {}
+        self._readers: dict[bytes, _ReaderState] = {}
 
     @property
     def readers(self) -> Iterable[bytes]:
@@ -96,12 +96,12 @@ class Writer:
         if reader in self._readers:
             self._readers[reader].addresses = addresses
             return []
-        reader_state = self._readers[reader] = _Reader(
+        reader_state = self._readers[reader] = _ReaderState(
             addresses, 1 if self._keeps_history else self._last_sequence_number + 1
         )
         if not self._keeps_history:
-            return [self._packet(reader, reader_state, self._heartbeat(reader, reader_state))]
-        return self._history_packets(reader, reader_state)
+            return [self._make_packet(reader, reader_state, self._make_heartbeat(reader, reader_state))]
+        return self._make_history_packets(reader, reader_state)
 
     def unmatch(self, reader: bytes) -> None:
         """Remove a reader.
@@ -109,7 +109,7 @@ class Writer:
         No more samples are written to it.
         """
         self._readers.pop(reader, None)
-        self._forget_acknowledged()
+        self._drop_acknowledged()
 
     def write(self, payload: bytes | None, *, inline: bytes = b"", to: bytes = b"") -> list[Packet]:
         """Write a new sample.
@@ -130,8 +130,8 @@ class Writer:
             self._drop(min(self._changes))
         packets: list[Packet] = []
         for reader, reader_state in self._readers.items():
-            reader_state.due_at, reader_state.repeat = time.monotonic() + _FIRST_REPEAT, _FIRST_REPEAT
-            packets += self._sample(reader, reader_state, sequence_number)
+            reader_state.due_at, reader_state.repeat = time.monotonic() + _FIRST_REPEAT_S, _FIRST_REPEAT_S
+            packets += self._make_sample_packets(reader, reader_state, sequence_number)
         return packets
 
     def withdraw(self, sequence_number: int) -> None:
@@ -151,16 +151,18 @@ class Writer:
         reader_state.heard = True
         if acknack.base > reader_state.base:
             reader_state.base = min(acknack.base, self._last_sequence_number + 1)
-            reader_state.repeat = _FIRST_REPEAT
+            reader_state.repeat = _FIRST_REPEAT_S
             reader_state.due_at = time.monotonic() + reader_state.repeat
-            self._forget_acknowledged()
+            self._drop_acknowledged()
         packets = [
             packet
             for sequence_number in acknack.missing
             for packet in self._repeat_sample(acknack.reader, reader_state, sequence_number)
         ]
         if packets or (not acknack.final and not acknack.missing):
-            packets.append(self._packet(acknack.reader, reader_state, self._heartbeat(acknack.reader, reader_state)))
+            packets.append(
+                self._make_packet(acknack.reader, reader_state, self._make_heartbeat(acknack.reader, reader_state))
+            )
         return packets
 
     def on_nack_frag(self, nack: NackFrag) -> list[Packet]:
@@ -168,22 +170,24 @@ class Writer:
         reader_state, change = self._readers.get(nack.reader), self._changes.get(nack.sequence_number)
         if reader_state is None or change is None or change.payload is None or not change.is_for(nack.reader):
             return []
-        fragment_total = fragment_count(change.payload)
+        fragment_total = count_fragments(change.payload)
         fragments = [fragment for fragment in nack.missing if 1 <= fragment <= fragment_total]
         packets = [
-            self._fragment(nack.reader, reader_state, nack.sequence_number, change, change.payload, fragment)
+            self._make_fragment_packet(
+                nack.reader, reader_state, nack.sequence_number, change, change.payload, fragment
+            )
             for fragment in fragments
         ]
-        return [*packets, self._packet(nack.reader, reader_state, self._heartbeat(nack.reader, reader_state))]
+        return [*packets, self._make_packet(nack.reader, reader_state, self._make_heartbeat(nack.reader, reader_state))]
 
     def remind(self, now: float) -> list[Packet]:
-        """Return heartbeats for the readers that have not acknowledged all samples, if they are due."""
+        """Return the heartbeats that are due, for readers with unacknowledged samples."""
         packets = []
         for reader, reader_state in self._readers.items():
             if reader_state.base <= self._last_sequence_number and now >= reader_state.due_at:
                 reader_state.due_at = now + reader_state.repeat
-                reader_state.repeat = min(reader_state.repeat * 2, _LAST_REPEAT)
-                packets.append(self._packet(reader, reader_state, self._heartbeat(reader, reader_state)))
+                reader_state.repeat = min(reader_state.repeat * 2, _LAST_REPEAT_S)
+                packets.append(self._make_packet(reader, reader_state, self._make_heartbeat(reader, reader_state)))
         return packets
 
     def next_reminder(self) -> float | None:
@@ -202,69 +206,77 @@ class Writer:
 
     # --- inside ------------------------------------------------------------------------------------------------------
 
-    def _history_packets(self, reader: bytes, reader_state: _Reader) -> list[Packet]:
-        reader_state.due_at = time.monotonic() + _FIRST_REPEAT
+    def _make_history_packets(self, reader: bytes, reader_state: _ReaderState) -> list[Packet]:
+        reader_state.due_at = time.monotonic() + _FIRST_REPEAT_S
         packets = [
             packet
             for sequence_number in sorted(self._changes)
-            for packet in self._sample(reader, reader_state, sequence_number)
+            for packet in self._make_sample_packets(reader, reader_state, sequence_number)
         ]
-        return packets or [self._packet(reader, reader_state, self._heartbeat(reader, reader_state))]
+        return packets or [self._make_packet(reader, reader_state, self._make_heartbeat(reader, reader_state))]
 
-    def _sample(self, reader: bytes, reader_state: _Reader, sequence_number: int) -> Iterator[Packet]:
+    def _make_sample_packets(self, reader: bytes, reader_state: _ReaderState, sequence_number: int) -> Iterator[Packet]:
         change = self._changes[sequence_number]
-        heartbeat_submessage = self._heartbeat(reader, reader_state)
-        entity = reader[PREFIX:]
+        heartbeat_submessage = self._make_heartbeat(reader, reader_state)
+        entity = reader[PREFIX_SIZE:]
         if not change.is_for(reader):
-            yield self._packet(
+            yield self._make_packet(
                 reader,
                 reader_state,
-                gap(entity, self.guid[PREFIX:], sequence_number, sequence_number + 1),
+                gap(entity, self.guid[PREFIX_SIZE:], sequence_number, sequence_number + 1),
                 heartbeat_submessage,
             )
-        elif change.payload is not None and len(change.payload) > FRAGMENT:
-            for fragment_number in range(1, fragment_count(change.payload) + 1):
-                yield self._fragment(reader, reader_state, sequence_number, change, change.payload, fragment_number)
-            yield self._packet(reader, reader_state, heartbeat_submessage)
+        elif change.payload is not None and len(change.payload) > FRAGMENT_SIZE:
+            for fragment_number in range(1, count_fragments(change.payload) + 1):
+                yield self._make_fragment_packet(
+                    reader, reader_state, sequence_number, change, change.payload, fragment_number
+                )
+            yield self._make_packet(reader, reader_state, heartbeat_submessage)
         else:
-            sample = data(entity, self.guid[PREFIX:], sequence_number, change.payload, change.inline)
-            yield self._packet(reader, reader_state, info_timestamp(change.time), sample, heartbeat_submessage)
-
-    def _repeat_sample(self, reader: bytes, reader_state: _Reader, sequence_number: int) -> Iterator[Packet]:
-        if sequence_number in self._changes:
-            yield from self._sample(reader, reader_state, sequence_number)
-        elif sequence_number <= self._last_sequence_number:
-            yield self._packet(
-                reader, reader_state, gap(reader[PREFIX:], self.guid[PREFIX:], sequence_number, sequence_number + 1)
+            sample = data(entity, self.guid[PREFIX_SIZE:], sequence_number, change.payload, change.inline)
+            yield self._make_packet(
+                reader, reader_state, build_info_timestamp(change.written_ns), sample, heartbeat_submessage
             )
 
-    def _fragment(
+    def _repeat_sample(self, reader: bytes, reader_state: _ReaderState, sequence_number: int) -> Iterator[Packet]:
+        if sequence_number in self._changes:
+            yield from self._make_sample_packets(reader, reader_state, sequence_number)
+        elif sequence_number <= self._last_sequence_number:
+            yield self._make_packet(
+                reader,
+                reader_state,
+                gap(reader[PREFIX_SIZE:], self.guid[PREFIX_SIZE:], sequence_number, sequence_number + 1),
+            )
+
+    def _make_fragment_packet(
         self,
         reader: bytes,
-        reader_state: _Reader,
+        reader_state: _ReaderState,
         sequence_number: int,
         change: _Change,
         payload: bytes,
         fragment_number: int,
     ) -> Packet:
-        submessage = data_fragment(
-            reader[PREFIX:], self.guid[PREFIX:], sequence_number, payload, fragment_number, change.inline
+        submessage = build_data_fragment(
+            reader[PREFIX_SIZE:], self.guid[PREFIX_SIZE:], sequence_number, payload, fragment_number, change.inline
         )
-        return self._packet(reader, reader_state, info_timestamp(change.time), submessage)
+        return self._make_packet(reader, reader_state, build_info_timestamp(change.written_ns), submessage)
 
-    def _heartbeat(self, reader: bytes, reader_state: _Reader) -> bytes:
+    def _make_heartbeat(self, reader: bytes, reader_state: _ReaderState) -> bytes:
         self._count += 1
         first_number = (
             min(self._changes, default=self._last_sequence_number + 1)
             if self._keeps_history
             else min(reader_state.base, self._last_sequence_number + 1)
         )
-        return heartbeat(reader[PREFIX:], self.guid[PREFIX:], first_number, self._last_sequence_number, self._count)
+        return heartbeat(
+            reader[PREFIX_SIZE:], self.guid[PREFIX_SIZE:], first_number, self._last_sequence_number, self._count
+        )
 
-    def _packet(self, reader: bytes, reader_state: _Reader, *submessages: bytes) -> Packet:
-        return message(self.guid[:PREFIX], *submessages, to=reader[:PREFIX]), reader_state.addresses
+    def _make_packet(self, reader: bytes, reader_state: _ReaderState, *submessages: bytes) -> Packet:
+        return build_message(self.guid[:PREFIX_SIZE], *submessages, to=reader[:PREFIX_SIZE]), reader_state.addresses
 
-    def _forget_acknowledged(self) -> None:
+    def _drop_acknowledged(self) -> None:
         base = min(
             (reader_state.base for reader_state in self._readers.values()), default=self._last_sequence_number + 1
         )

@@ -26,14 +26,14 @@ _CHECKED_KINDS = ("tcp", "tls")
 """The kinds of addresses that this module checks; it ignores others, such as QUIC, UDP and serial lines."""
 
 
-def configured_addresses(config: zenoh.Config) -> list[str]:
+def find_configured_addresses(config: zenoh.Config) -> list[str]:
     """Return the addresses that a session with the given configuration connects to."""
-    addresses = mode_value(config, "connect/endpoints", default=[])
+    addresses = get_mode_value(config, "connect/endpoints", default=[])
     flat = [address for group in addresses for address in (group if isinstance(group, list) else [group])]
     return [str(address) for address in flat]
 
 
-def mode_value(config: zenoh.Config, key: str, *, default: Any) -> Any:
+def get_mode_value(config: zenoh.Config, key: str, *, default: Any) -> Any:
     """Return the value of a setting for the session's mode, or `default` if it is not set.
 
     The setting may differ by mode, such as ``{client: 0, peer: -1}``.
@@ -44,16 +44,16 @@ def mode_value(config: zenoh.Config, key: str, *, default: Any) -> Any:
     return default if value is None else value
 
 
-def connection_problems(config: zenoh.Config) -> list[Phrase]:
+def find_connection_problems(config: zenoh.Config) -> list[Phrase]:
     """Return the known reasons why a session cannot connect to its addresses."""
     tls = json.loads(config.get_json("transport/link/tls")) or {}
-    found = [found for address in configured_addresses(config) if (found := connection_problem(address, tls))]
+    found = [found for address in find_configured_addresses(config) if (found := find_connection_problem(address, tls))]
     if not found and json.loads(config.get_json("id")) is not None:
         found.append(phrase("the process at this address may have the same 'id': leave 'id' out of the configuration"))
     return found
 
 
-def connection_problem(address: str, tls: Mapping[str, Any]) -> Phrase:
+def find_connection_problem(address: str, tls: Mapping[str, Any]) -> Phrase:
     """Return the reason why a connection to an address fails.
 
     Return an empty phrase if no reason is found.
@@ -75,12 +75,14 @@ def connection_problem(address: str, tls: Mapping[str, Any]) -> Phrase:
     try:
         with socket.create_connection((host, port), _RESPONSE_TIMEOUT_S) as connection:
             return (
-                _tls_obstacle(address, connection, host, tls)
+                _find_tls_obstacle(address, connection, host, tls)
                 if match["kind"] == "tls"
-                else _protocol_obstacle(address, connection)
+                else _find_protocol_obstacle(address, connection)
             )
     except socket.gaierror as error:
-        return phrase("the host name of {address} cannot be resolved: {reason}", address=address, reason=_reason(error))
+        return phrase(
+            "the host name of {address} cannot be resolved: {reason}", address=address, reason=_describe_error(error)
+        )
     except ConnectionRefusedError:
         return phrase("nothing listens at {address}: start a router there, or correct the port", address=address)
     except TimeoutError:
@@ -89,10 +91,10 @@ def connection_problem(address: str, tls: Mapping[str, Any]) -> Phrase:
             address=address,
         )
     except OSError as error:
-        return phrase("{address} is unreachable: {reason}", address=address, reason=_reason(error))
+        return phrase("{address} is unreachable: {reason}", address=address, reason=_describe_error(error))
 
 
-def _protocol_obstacle(address: str, connection: socket.socket) -> Phrase:
+def _find_protocol_obstacle(address: str, connection: socket.socket) -> Phrase:
     """Send a first Zenoh message, and return a reason if the listener answers with TLS.
 
     Otherwise the phrase is empty.
@@ -111,7 +113,7 @@ def _protocol_obstacle(address: str, connection: socket.socket) -> Phrase:
     return Phrase("")
 
 
-def _tls_obstacle(address: str, connection: socket.socket, host: str, tls: Mapping[str, Any]) -> Phrase:
+def _find_tls_obstacle(address: str, connection: socket.socket, host: str, tls: Mapping[str, Any]) -> Phrase:
     if any(
         tls.get(f"{setting}_base64")
         for setting in ("root_ca_certificate", "connect_certificate", "connect_private_key")
@@ -124,7 +126,7 @@ def _tls_obstacle(address: str, connection: socket.socket, host: str, tls: Mappi
         tls.get(setting) or "" for setting in ("root_ca_certificate", "connect_certificate", "connect_private_key")
     )
     for path in (authority, certificate, key):
-        problem = _read_problem(path)
+        problem = _find_read_problem(path)
         if problem:
             return problem
     try:
@@ -151,7 +153,7 @@ def _tls_obstacle(address: str, connection: socket.socket, host: str, tls: Mappi
             tls_connection.settimeout(_RESPONSE_TIMEOUT_S / 2)
             tls_connection.recv(1)  # With TLS 1.3, a client learns of a refusal only after the handshake.
     except TimeoutError:
-        return Phrase("") if is_handshake_done else _no_tls_problem(address)
+        return Phrase("") if is_handshake_done else _describe_missing_tls(address)
     except ssl.SSLCertVerificationError as error:
         return phrase(
             "the certificate of {address} is not accepted: {reason}",
@@ -159,15 +161,17 @@ def _tls_obstacle(address: str, connection: socket.socket, host: str, tls: Mappi
             reason=foreign(error.verify_message.rstrip(".")),
         )
     except ssl.SSLError as error:
-        return _tls_failure(address, certificate, str(error.reason or error))
+        return _describe_tls_failure(address, certificate, str(error.reason or error))
     except OSError as error:
-        return phrase("{address} closes the connection during TLS: {reason}", address=address, reason=_reason(error))
+        return phrase(
+            "{address} closes the connection during TLS: {reason}", address=address, reason=_describe_error(error)
+        )
     return Phrase("")
 
 
-def _tls_failure(address: str, certificate: str, reason: str) -> Phrase:
+def _describe_tls_failure(address: str, certificate: str, reason: str) -> Phrase:
     if "WRONG_VERSION" in reason or "RECORD_LAYER" in reason:
-        return _no_tls_problem(address)
+        return _describe_missing_tls(address)
     if "CERTIFICATE_REQUIRED" in reason:
         return phrase(
             "{address} requires a client certificate: set enable_mtls, connect_certificate and "
@@ -184,19 +188,19 @@ def _tls_failure(address: str, certificate: str, reason: str) -> Phrase:
     return phrase("TLS fails at {address}: {reason}", address=address, reason=foreign(reason.lower().replace("_", " ")))
 
 
-def _no_tls_problem(address: str) -> Phrase:
+def _describe_missing_tls(address: str) -> Phrase:
     return phrase("the process at {address} does not speak TLS: write tcp/ in place of tls/", address=address)
 
 
-def _read_problem(path: str) -> Phrase:
+def _find_read_problem(path: str) -> Phrase:
     try:
         if path:
             with Path(path).open("rb"):
                 pass
     except OSError as error:
-        return phrase("cannot read '{path}': {reason}", path=path, reason=_reason(error))
+        return phrase("cannot read '{path}': {reason}", path=path, reason=_describe_error(error))
     return Phrase("")
 
 
-def _reason(error: OSError) -> Phrase:
+def _describe_error(error: OSError) -> Phrase:
     return foreign(error.strerror or error)

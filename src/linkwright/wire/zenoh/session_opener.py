@@ -14,7 +14,11 @@ import zenoh
 
 from linkwright.diagnostics import joined
 from linkwright.graph.log.logger import Logger
-from linkwright.wire.zenoh.reaching import configured_addresses, connection_problems, mode_value
+from linkwright.wire.zenoh.connection_problems import (
+    find_configured_addresses,
+    find_connection_problems,
+    get_mode_value,
+)
 from linkwright.wire.zenoh.session import is_connection_failure, open_session, session_error
 
 _RETRY_INTERVAL_S = 1.0
@@ -49,7 +53,7 @@ class SessionOpener:
             LinkwrightError: DDS112, the session cannot be opened, no process was reached in time, or `cancel_event`
                 was set.
         """
-        seconds = _wait_seconds(config)
+        seconds = _get_wait_s(config)
         if seconds == 0:
             return open_session(config)
         config.insert_json5("connect/timeout_ms", "0")
@@ -115,8 +119,8 @@ class ObstacleReporter:
                 pause_s = _LOG_DELAY_S
                 continue
             reasons = (
-                joined(connection_problems(self._config), "; ")
-                or f"{', '.join(configured_addresses(self._config))} does not accept a session"
+                joined(find_connection_problems(self._config), "; ")
+                or f"{', '.join(find_configured_addresses(self._config))} does not accept a session"
             )
             if not self._end_event.is_set() and not self._is_connected():
                 self._log(reasons)
@@ -131,10 +135,12 @@ def _try_open(config: zenoh.Config) -> zenoh.Session | zenoh.ZError:
         return error
 
 
-def _wait_seconds(config: zenoh.Config) -> float:
-    """Return how long a new session waits for a connection according to a configuration, in seconds."""
-    is_client = mode_value(config, "mode", default="peer") == "client"
-    if not configured_addresses(config) or not mode_value(config, "connect/exit_on_failure", default=is_client):
+def _get_wait_s(config: zenoh.Config) -> float:
+    """Return how long a new session waits for a connection, in seconds."""
+    is_client = get_mode_value(config, "mode", default="peer") == "client"
+    if not find_configured_addresses(config) or not get_mode_value(
+        config, "connect/exit_on_failure", default=is_client
+    ):
         return 0.0
-    milliseconds: Any = mode_value(config, "connect/timeout_ms", default=0 if is_client else -1)
+    milliseconds: Any = get_mode_value(config, "connect/timeout_ms", default=0 if is_client else -1)
     return float("inf") if milliseconds < 0 else milliseconds / 1000
