@@ -12,7 +12,7 @@ from linkwright.planning.inverse_kinematics import ChainSolver
 
 _MAX_ROTATION_RAD = 0.05
 """The maximum rotation between two poses of a path."""
-_MAX_JOINT_STEP = 0.5
+MAX_JOINT_STEP = 0.5
 """The maximum change of a joint between two poses of a path, in rad or m; a larger one is a jump."""
 
 
@@ -45,7 +45,7 @@ def follow_poses(
     poses: Array,
     indexes: Array,
     is_valid: Callable[[Array], bool] | None = None,
-    max_joint_step: float = _MAX_JOINT_STEP,
+    max_joint_step: float = MAX_JOINT_STEP,
 ) -> tuple[Array, float]:
     """Return the joint positions at which a link passes through poses one after the other.
 

@@ -101,17 +101,16 @@ class CollisionScene:
         objects = tuple(objects)
         for scene_object in objects:
             _add_object(spec, scene_object)
-        names = [*(name for name in robot.links if shapes.get(name)), *(item.name for item in objects)]
-        bodies = {
-            **{name: body_name(name) for name in robot.links},
-            **{item.name: _object_body(item) for item in objects},
-        }
-        for first, second in _allowed_pairs(names, objects, allowed):
-            spec.add_exclude(bodyname1=bodies[first], bodyname2=bodies[second])
+        parts = [
+            *((body_name(name), name) for name in robot.links if shapes.get(name)),
+            *((_object_body(item), item.name) for item in objects),
+        ]
+        for first, second in _allowed_pairs(parts, objects, allowed):
+            spec.add_exclude(bodyname1=first, bodyname2=second)
         self._model = spec.compile()
         self._data = mujoco.MjData(self._model)
         self._expansion = PositionExpansion(joint_names, relations, self._model)
-        names_by_body = {self._model.body(body).id: name for name, body in bodies.items()}
+        names_by_body = {self._model.body(body).id: name for body, name in parts}
         self._names_by_geom = [names_by_body[int(body)] for body in self._model.geom_bodyid]
 
     def is_free(self, positions: Array) -> bool:
@@ -147,11 +146,18 @@ def _add_object(spec: Any, scene_object: SceneObject) -> None:
 
 
 def _allowed_pairs(
-    names: Sequence[str], objects: Sequence[SceneObject], allowed: AllowedCollisions
+    parts: Sequence[tuple[str, str]], objects: Sequence[SceneObject], allowed: AllowedCollisions
 ) -> Iterable[tuple[str, str]]:
+    """Yield the pairs of bodies that may collide.
+
+    Args:
+        parts: the body and the name of each link and object.
+        objects: the objects.
+        allowed: the names of links and objects that may collide.
+    """
     attached = {item.name: item.touch_links for item in objects if item.link}
-    for index, first in enumerate(names):
-        for second in names[:index]:
+    for index, (first_body, first) in enumerate(parts):
+        for second_body, second in parts[:index]:
             touches = second in attached.get(first, ()) or first in attached.get(second, ())
             if touches or allowed.allows(first, second):
-                yield first, second
+                yield first_body, second_body

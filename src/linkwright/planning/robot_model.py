@@ -145,6 +145,7 @@ def add_shape(spec: Any, body: Any, placed_shape: PlacedShape) -> None:
     set_pose(geom, placed_shape.pose)
     if isinstance(shape, np.ndarray):
         mesh = spec.add_mesh(name=f"hull {len(spec.meshes)}", uservert=shape.ravel().tolist())
+        mesh.inertia = load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL  # Thin meshes have too little volume.
         geom.type, geom.meshname = kinds.mjGEOM_MESH, mesh.name
     elif isinstance(shape, Box):
         geom.type, geom.size = kinds.mjGEOM_BOX, [length / 2 for length in shape.size]

@@ -263,6 +263,45 @@ class TestScene:
         matrix = (await bench.call("GetPlanningScene", "get_planning_scene")).scene.allowed_collision_matrix
         assert matrix.default_entry_names == ["crate"]
 
+    async def test_thin_mesh_collides(self, bench) -> None:
+        point = get_message("geometry_msgs/msg/Point")
+        corners = [point(x=x, y=y, z=z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1e-4)]
+        sheet = message("moveit_msgs/msg/CollisionObject", id="sheet")
+        sheet.header.frame_id, sheet.pose.position.z = "base", 0.45
+        sheet.pose.position.x = sheet.pose.position.y = -0.5
+        sheet.meshes = [message("shape_msgs/msg/Mesh", vertices=corners)]
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        scene.world.collision_objects = [sheet]
+        assert (await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)).success
+        response = await bench.call("GetStateValidity", "check_state_validity", group_name="arm")
+        pairs = {frozenset((contact.contact_body_1, contact.contact_body_2)) for contact in response.contacts}
+        assert frozenset(("sheet", "upper_arm")) in pairs
+
+    async def test_object_must_not_have_the_name_of_a_link(self, bench, logged) -> None:
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        scene.world.collision_objects = [box("forearm", 0.0, 0.0, 0.0, size=(0.1, 0.1, 0.1))]
+        assert not (await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)).success
+        assert "Cannot add object 'forearm': a link of the robot has this name" in logged("WARN")
+
+    async def test_object_cannot_be_attached_to_unknown_link(self, bench, logged) -> None:
+        attached = message("moveit_msgs/msg/AttachedCollisionObject", link_name="world")
+        attached.object = box("cup", 0.0, 0.0, 0.0, size=(0.1, 0.1, 0.1))
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        scene.robot_state.attached_collision_objects = [attached]
+        assert not (await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)).success
+        assert "Cannot attach object 'cup': the robot has no link 'world'" in logged("WARN")
+
+    async def test_constraints_with_unknown_names_get_a_response(self, bench, logged) -> None:
+        unknown = message("moveit_msgs/msg/JointConstraint", joint_name="tail")
+        constraints = message("moveit_msgs/msg/Constraints", joint_constraints=[unknown])
+        response = await bench.call("GetStateValidity", "check_state_validity", constraints=constraints)
+        assert not response.valid
+        request = motion_request(joint_constraints(), path_constraints=constraints)
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        code = response.motion_plan_response.error_code
+        assert code.val == code.INVALID_GOAL_CONSTRAINTS
+        assert "the robot has no 'tail'" in logged("ERROR")
+
 
 class TestPlans:
     async def test_plan_of_service_starts_at_current_state(self, bench) -> None:
@@ -347,6 +386,20 @@ class TestPlans:
         assert 0.0 < blocked.fraction < 0.8
         ignoring = await bench.call("GetCartesianPath", "compute_cartesian_path", **fields)
         assert ignoring.fraction == 1.0
+
+    @pytest.mark.parametrize(
+        ("changes", "code"),
+        [
+            ({"group_name": "leg"}, "INVALID_GROUP_NAME"),
+            ({"link_name": "nose"}, "INVALID_LINK_NAME"),
+            ({"max_step": 0.0}, "FAILURE"),
+            ({"header": get_message("std_msgs/msg/Header")(frame_id="moon")}, "FRAME_TRANSFORM_FAILURE"),
+        ],
+    )
+    async def test_invalid_cartesian_request(self, bench, changes: dict[str, Any], code: str) -> None:
+        fields = {"group_name": "arm", "max_step": 0.01, "waypoints": [message("geometry_msgs/msg/Pose")], **changes}
+        response = await bench.call("GetCartesianPath", "compute_cartesian_path", **fields)
+        assert response.error_code.val == getattr(response.error_code, code)
 
 
 class TestExecution:

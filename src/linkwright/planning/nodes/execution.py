@@ -119,6 +119,8 @@ class TrajectoryExecution:
         joint_trajectory = trajectory.joint_trajectory
         if not joint_trajectory.points:
             return
+        if is_canceled():
+            raise ExecutionError("PREEMPTED", "the execution was canceled")
         self._is_stopped = False
         controllers = self._select(joint_trajectory.joint_names)
         handles = [await self._send(controller, joint_trajectory) for controller in controllers]

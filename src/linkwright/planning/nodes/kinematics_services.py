@@ -11,13 +11,13 @@ from linkwright.geometry.arrays import Array, compose, invert
 from linkwright.graph import Node
 from linkwright.graph.time.values import Duration
 from linkwright.messages import get_message, get_service
-from linkwright.planning.cartesian import follow_poses, line_poses
+from linkwright.planning.cartesian import MAX_JOINT_STEP, follow_poses, line_poses
 from linkwright.planning.collision_scene import CollisionScene, Contact
+from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
 from linkwright.planning.nodes.conversions import (
     RequestError,
     UnknownFrameError,
-    goal_from_constraints,
     pose_message,
     pose_row,
     trajectory_message,
@@ -25,9 +25,12 @@ from linkwright.planning.nodes.conversions import (
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
-from linkwright.planning.planner import MotionPlanner, PlanRequest
+from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
+from linkwright.planning.timing import Trajectory
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
+_CARTESIAN_INTERVAL_S = 0.05
+"""The time between two points of a Cartesian path."""
 _BODY_TYPES = {"link": 0, "world": 1, "attached": 2}
 
 
@@ -104,12 +107,8 @@ class KinematicsServices:
         except UnknownFrameError as error:
             raise RequestError("FRAME_TRANSFORM_FAILURE", f"there is no frame '{error}'") from None
         timeout = Duration.from_msg(request.timeout).nanoseconds / NANOSECONDS_PER_SECOND
-        goal = goal_from_constraints(request.constraints, self._monitor.frame_lookup(start), tip)
-        scene = (
-            self._monitor.collisions(self._monitor.scene_with(request.robot_state, start))
-            if request.avoid_collisions
-            else None
-        )
+        goal = self._monitor.read_goal(request.constraints, start, tip)
+        scene = self._collision_scene(request, request.robot_state, start)
 
         def is_valid(positions: Array) -> bool:
             return (scene is None or scene.is_free(positions)) and goal.is_met(self._robot.model, positions)
@@ -131,7 +130,11 @@ class KinematicsServices:
         scene_state = self._monitor.scene_with(request.robot_state, positions)
         contacts = self._monitor.collisions(scene_state).contacts(positions)
         response.contacts = [self._contact_message(contact, scene_state) for contact in contacts]
-        goal = goal_from_constraints(request.constraints, self._monitor.frame_lookup(positions), None)
+        try:
+            goal = self._monitor.read_goal(request.constraints, positions, None)
+        except RequestError as error:
+            self._node.get_logger().error(str(error))
+            return response
         group = self._robot.groups.get(request.group_name)
         is_bounded = group is None or group.satisfies_bounds(
             positions[[self._robot.model.index(name) for name in group.joint_names]]
@@ -154,50 +157,67 @@ class KinematicsServices:
         return message
 
     def _compute_cartesian_path(self, request: Any, response: Any) -> Any:
-        group = self._robot.groups.get(request.group_name)
-        tip = request.link_name or (group.tip if group is not None else None)
-        if group is None or tip is None or not request.max_step > 0.0:
-            name = "INVALID_GROUP_NAME" if group is None else "INVALID_LINK_NAME" if tip is None else "FAILURE"
-            response.error_code.val = getattr(self._error_codes, name)
-            return response
         start = self._robot.positions_of(request.start_state)
-        model = self._robot.model
-        scene = (
-            self._monitor.collisions(self._monitor.scene_with(request.start_state, start))
-            if request.avoid_collisions
-            else None
-        )
         try:
-            base = self._robot.frame_pose(request.header.frame_id, start)
-            constraint = goal_from_constraints(request.path_constraints, self._monitor.frame_lookup(start), tip)
-        except UnknownFrameError:
-            response.error_code.val = self._error_codes.FRAME_TRANSFORM_FAILURE
+            group, trajectory, response.fraction = self._follow_waypoints(request, start)
+        except RequestError as error:
+            self._node.get_logger().error(str(error))
+            response.error_code.val = getattr(self._error_codes, error.code)
             return response
-        pose = self._robot.frame_pose(tip, start)
-        pieces = []
-        for waypoint in request.waypoints:
-            target = compose(base, pose_row(waypoint))
-            pieces.append(line_poses(pose, target, request.max_step))
-            pose = target
-        indexes = np.array([model.index(name) for name in group.joint_names])
-        jump = request.revolute_jump_threshold or request.jump_threshold
-        solver = ChainSolver(model, group, tip)
-        path, response.fraction = follow_poses(
-            solver,
-            start,
-            np.concatenate(pieces) if pieces else np.empty((0, 7)),
-            indexes,
-            lambda positions: (scene is None or scene.is_free(positions)) and constraint.is_met(model, positions),
-            *((jump,) if jump > 0.0 else ()),
-        )
-        velocity = getattr(request, "max_velocity_scaling_factor", 0.0) or 1.0
-        acceleration = getattr(request, "max_acceleration_scaling_factor", 0.0) or 1.0
-        planner = MotionPlanner(model, scene or self._monitor.compile(None))
-        plan_request = PlanRequest(
-            group, start, (), velocity_scale=velocity, acceleration_scale=acceleration, interval_s=0.05
-        )
-        trajectory = planner.time_path(plan_request, start, path[:, indexes])
         response.start_state = self._robot.state_message(start)
         response.solution = trajectory_message(group.joint_names, trajectory, self._robot.frame)
         response.error_code.val = self._error_codes.SUCCESS
         return response
+
+    def _follow_waypoints(self, request: Any, start: Array) -> tuple[JointGroup, Trajectory, float]:
+        """Return the group, its trajectory through the waypoints, and the fraction of the way that it covers.
+
+        Raises:
+            RequestError: a name, a frame or the step is not valid, or the trajectory collides.
+        """
+        group, model = self._robot.groups.get(request.group_name), self._robot.model
+        if group is None:
+            raise RequestError("INVALID_GROUP_NAME", f"there is no group '{request.group_name}'")
+        tip: str = request.link_name or group.tip or ""
+        if tip not in self._robot.robot.links:
+            raise RequestError("INVALID_LINK_NAME", f"there is no link '{tip}'")
+        if not request.max_step > 0.0:
+            raise RequestError("FAILURE", "max_step must be positive")
+        constraint = self._monitor.read_goal(request.path_constraints, start, tip)
+        scene = self._collision_scene(request, request.start_state, start)
+        indexes = np.array([model.index(name) for name in group.joint_names])
+        path, fraction = follow_poses(
+            ChainSolver(model, group, tip),
+            start,
+            self._interpolate_waypoints(request, start, tip),
+            indexes,
+            lambda positions: (scene is None or scene.is_free(positions)) and constraint.is_met(model, positions),
+            request.revolute_jump_threshold or MAX_JOINT_STEP,
+        )
+        plan_request = PlanRequest(
+            group,
+            start,
+            (),
+            velocity_scale=getattr(request, "max_velocity_scaling_factor", 0.0) or 1.0,
+            acceleration_scale=getattr(request, "max_acceleration_scaling_factor", 0.0) or 1.0,
+            interval_s=_CARTESIAN_INTERVAL_S,
+        )
+        planner = MotionPlanner(model, scene or self._monitor.compile(None))
+        try:
+            return group, planner.time_path(plan_request, start, path[:, indexes]), fraction
+        except PlanError as error:
+            raise RequestError("INVALID_MOTION_PLAN", f"the path collides between two poses: {error}") from None
+
+    def _interpolate_waypoints(self, request: Any, start: Array, tip: str) -> Array:
+        """Return poses of the tip on the lines between the waypoints of a request, shape (n, 7)."""
+        try:
+            frame = self._robot.frame_pose(request.header.frame_id, start)
+        except UnknownFrameError as error:
+            raise RequestError("FRAME_TRANSFORM_FAILURE", f"there is no frame '{error}'") from None
+        pose = self._robot.frame_pose(tip, start)
+        lines: list[Array] = [np.empty((0, 7))]
+        for waypoint in request.waypoints:
+            target = compose(frame, pose_row(waypoint))
+            lines.append(line_poses(pose, target, request.max_step))
+            pose = target
+        return np.concatenate(lines)

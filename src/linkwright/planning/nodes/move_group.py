@@ -34,8 +34,8 @@ from linkwright.planning.nodes.scene_monitor import SceneMonitor
 _DEFAULT_IK_TIMEOUT_S = 0.05
 _MIN_IK_TIMEOUT_S = 0.005
 _DEFAULT_SCALE = 0.1
-_MAX_START_DEVIATION = 0.05
-"""The distance in rad or m of the robot from the start of a trajectory that is always accepted."""
+_START_TOLERANCE = 0.01
+"""The distance in rad or m of the robot from the start of a trajectory that is accepted by default."""
 
 
 class MoveGroup(SingleNode):
@@ -187,7 +187,7 @@ class MoveGroup(SingleNode):
 
     def _check_start(self, trajectory: Any) -> None:
         """Raise ExecutionError if a trajectory does not start where the robot is."""
-        tolerance = float(self._parameters.get("trajectory_execution.allowed_start_tolerance", _MAX_START_DEVIATION))
+        tolerance = float(self._parameters.get("trajectory_execution.allowed_start_tolerance", _START_TOLERANCE))
         if not trajectory.points or tolerance <= 0.0 or not self._robot.has_state:
             return
         start, _ = updated_positions(
@@ -198,7 +198,7 @@ class MoveGroup(SingleNode):
         differences = np.abs(start - self._robot.positions)
         differences = np.minimum(differences, np.abs(differences - 2.0 * np.pi))
         farthest = int(np.argmax(differences))
-        if differences[farthest] > max(tolerance, _MAX_START_DEVIATION):
+        if differences[farthest] > tolerance:
             raise ExecutionError(
                 "CONTROL_FAILED",
                 f"Invalid Trajectory: start point deviates from current robot state more than {tolerance:g} at joint "

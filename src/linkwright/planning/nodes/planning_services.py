@@ -12,13 +12,7 @@ from linkwright.graph import Node, Publisher
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_message, get_service
 from linkwright.planning.groups import JointGroup
-from linkwright.planning.nodes.conversions import (
-    InvalidShapeError,
-    RequestError,
-    UnknownFrameError,
-    goal_from_constraints,
-    trajectory_message,
-)
+from linkwright.planning.nodes.conversions import RequestError, trajectory_message
 from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
@@ -111,23 +105,13 @@ class PlanningServices:
         Raises:
             RequestError: a name, a frame or a shape is not valid.
         """
-        lookup = self._monitor.frame_lookup(start)
         choice = self._pipelines.choose(request.pipeline_id, request.planner_id, group.name)
         if choice.replaced:
             self._node.get_logger().warning(
                 f"Planner '{choice.replaced}' is not available; {choice.planner} takes its place"
             )
-        try:
-            goals = [goal_from_constraints(item, lookup, group.tip) for item in request.goal_constraints]
-            path_constraint = goal_from_constraints(request.path_constraints, lookup, group.tip)
-            for name in {name for goal in goals for name in goal.joints}:
-                self._robot.model.index(name)
-            for target in {target.link for goal in goals for target in goal.links}:
-                self._robot.model.body(target)
-        except UnknownFrameError as error:
-            raise RequestError("FRAME_TRANSFORM_FAILURE", f"there is no frame '{error}'") from None
-        except (InvalidShapeError, KeyError) as error:
-            raise RequestError("INVALID_GOAL_CONSTRAINTS", f"the goal cannot be used: {error}") from None
+        goals = [self._monitor.read_goal(item, start, group.tip) for item in request.goal_constraints]
+        path_constraint = self._monitor.read_goal(request.path_constraints, start, group.tip)
         has_path_constraint = bool(path_constraint.joints or path_constraint.links)
         return PlanRequest(
             group,

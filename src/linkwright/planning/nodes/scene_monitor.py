@@ -10,7 +10,14 @@ from linkwright.geometry.arrays import Array
 from linkwright.graph import Node, Publisher
 from linkwright.messages import get_service
 from linkwright.planning.collision_scene import CollisionScene
-from linkwright.planning.nodes.conversions import FrameLookup
+from linkwright.planning.goals import Goal
+from linkwright.planning.nodes.conversions import (
+    FrameLookup,
+    InvalidShapeError,
+    RequestError,
+    UnknownFrameError,
+    goal_from_constraints,
+)
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_state import SceneState
 
@@ -30,7 +37,7 @@ class SceneMonitor:
     """
 
     def __init__(self, node: Node, robot: RobotContext, *, publishes_states: bool) -> None:
-        self.scene = SceneState(robot.frame, robot.allowed_collisions(), node.get_logger().warning)
+        self.scene = SceneState(robot.frame, robot.allowed_collisions(), robot.robot.links, node.get_logger().warning)
         self._robot = robot
         self._collision_scene: CollisionScene | None = None
         self._publisher: Publisher[Any] = node.create_publisher(
@@ -59,6 +66,29 @@ class SceneMonitor:
             return self._robot.frame_pose(frame, positions) if pose is None else pose
 
         return find
+
+    def read_goal(self, constraints: Any, positions: Array, default_link: str | None) -> Goal:
+        """Return the goal of a moveit_msgs/msg/Constraints.
+
+        Args:
+            constraints: the constraints.
+            positions: the positions of all joints, for frames of links.
+            default_link: the link of constraints that name none.
+
+        Raises:
+            RequestError: a frame, link or joint is not known, or a region is not valid.
+        """
+        try:
+            goal = goal_from_constraints(constraints, self.frame_lookup(positions), default_link)
+        except UnknownFrameError as error:
+            raise RequestError("FRAME_TRANSFORM_FAILURE", f"there is no frame '{error}'") from None
+        except InvalidShapeError as error:
+            raise RequestError("INVALID_GOAL_CONSTRAINTS", f"a constraint region is not valid: {error}") from None
+        joints = set(goal.joints).difference(self._robot.model.joint_names)
+        links = {target.link for target in goal.links}.difference(self._robot.robot.links)
+        if unknown := sorted(joints | links):
+            raise RequestError("INVALID_GOAL_CONSTRAINTS", f"the robot has no '{unknown[0]}'")
+        return goal
 
     def scene_with(self, state: Any, positions: Array, scene: SceneState | None = None) -> SceneState:
         """Return the scene with the objects that a moveit_msgs/msg/RobotState attaches."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from copy import deepcopy
 from typing import Any
 
@@ -21,6 +21,7 @@ from linkwright.planning.nodes.conversions import (
 _ADD, _REMOVE, _APPEND, _MOVE = b"\x00", b"\x01", b"\x02", b"\x03"
 _SHAPE_FIELDS = ("primitives", "primitive_poses", "meshes", "mesh_poses", "planes", "plane_poses")
 _SCENE_SETTINGS, _ROBOT_STATE, _ATTACHED = 1, 2, 4
+_ALL_COMPONENTS = (1 << 10) - 1
 _WORLD_NAMES, _WORLD_GEOMETRY, _OCTOMAP, _TRANSFORMS, _ALLOWED, _PADDING, _COLORS = 8, 16, 32, 64, 128, 256, 512
 
 
@@ -30,6 +31,7 @@ class SceneState:
     Args:
         frame: the planning frame, which is the frame of the robot's root link.
         allowed: the pairs of links that may collide by the SRDF.
+        links: the names of the robot's links.
         warn: receives the reasons why a part of a message was ignored.
 
     Attributes:
@@ -38,7 +40,9 @@ class SceneState:
         allowed: the pairs that may collide.
     """
 
-    def __init__(self, frame: str, allowed: AllowedCollisions, warn: Callable[[str], object]) -> None:
+    def __init__(
+        self, frame: str, allowed: AllowedCollisions, links: Collection[str], warn: Callable[[str], object]
+    ) -> None:
         self.frame = frame
         self.name = "(noname)"
         self.objects: dict[str, Any] = {}
@@ -46,11 +50,12 @@ class SceneState:
         self.allowed = allowed
         self._initial_allowed = deepcopy(allowed)
         self._colors: dict[str, Any] = {}
+        self._links = links
         self._warn = warn
 
     def copy(self) -> SceneState:
         """Return a copy that can be changed."""
-        other = SceneState(self.frame, deepcopy(self.allowed), self._warn)
+        other = SceneState(self.frame, deepcopy(self.allowed), self._links, self._warn)
         other.name, other._initial_allowed = self.name, self._initial_allowed
         other.objects, other.attached, other._colors = dict(self.objects), dict(self.attached), dict(self._colors)
         return other
@@ -90,6 +95,9 @@ class SceneState:
             for removed in [name] if name else list(self.objects):
                 del self.objects[removed]
             return True
+        if name in self._links:
+            self._warn(f"Cannot add object '{name}': a link of the robot has this name")
+            return False
         existing = self.objects.get(name)
         if operation == _MOVE and existing is None:
             self._warn(f"World object '{name}' does not exist. Cannot move.")
@@ -128,6 +136,9 @@ class SceneState:
             for removed in names:
                 self._detach(removed, lookup)
             return bool(names) or not name
+        if link not in self._links:
+            self._warn(f"Cannot attach object '{name}': the robot has no link '{link}'")
+            return False
         try:
             link_pose = lookup(link)
             attached = deepcopy(message)
@@ -189,21 +200,21 @@ class SceneState:
             robot_name: the name of the robot.
             components: the sum of the requested parts, by moveit_msgs/msg/PlanningSceneComponents; 0 for all.
         """
-        wanted = components or (1 << 10) - 1
+        components = components or _ALL_COMPONENTS
         message = get_message("moveit_msgs/msg/PlanningScene")()
-        if wanted & _SCENE_SETTINGS:
+        if components & _SCENE_SETTINGS:
             message.name, message.robot_model_name = self.name, robot_name
-        if wanted & (_ROBOT_STATE | _ATTACHED):
+        if components & (_ROBOT_STATE | _ATTACHED):
             message.robot_state = state
-        if wanted & _ATTACHED:
+        if components & _ATTACHED:
             message.robot_state.attached_collision_objects = list(self.attached.values())
-        if wanted & _WORLD_GEOMETRY:
+        if components & _WORLD_GEOMETRY:
             message.world.collision_objects = list(self.objects.values())
-        elif wanted & _WORLD_NAMES:
+        elif components & _WORLD_NAMES:
             message.world.collision_objects = [_without_shapes(item) for item in self.objects.values()]
-        if wanted & _ALLOWED:
+        if components & _ALLOWED:
             message.allowed_collision_matrix = self._allowed_message()
-        if wanted & _COLORS:
+        if components & _COLORS:
             message.object_colors = list(self._colors.values())
         return message
 
