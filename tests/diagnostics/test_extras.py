@@ -16,6 +16,7 @@ from linkwright.geometry.meshes import read_mesh
 from linkwright.images import BadImageError
 from linkwright.images.image_files import decode_file
 from linkwright.lint.engine import examine
+from linkwright.planning.library import load_ompl
 from linkwright.urdf.diagram import render
 from tests import toml_files
 
@@ -40,6 +41,7 @@ def test_extras_table_matches_pyproject():
 @pytest.mark.parametrize(
     ("extra", "use"),
     [
+        ("arm", lambda _folder: load_ompl.__wrapped__()),
         ("bag", BagReader),
         ("bag", lambda folder: BagWriter(folder / "new")),
         ("diagram", lambda folder: render("digraph G {}", folder / "robot.pdf")),

@@ -69,6 +69,7 @@ async def test_executables_start_and_close(harness, executable, terminal):
         namespace="/robot",
         parameters={
             "robot_description": robot(joint("a")),
+            "robot_description_semantic": "<robot name='test'/>",
             "port": 0,  # any free port, for the bridge
             "entity_name": "a",
             "node_names": ["a"],
@@ -92,6 +93,7 @@ async def test_default_name_matches_started_node(harness, executable, terminal):
     options = NodeOptions(
         parameters={
             "robot_description": robot(joint("a")),
+            "robot_description_semantic": "<robot name='test'/>",
             "port": 0,  # any free port, for the bridge
             "entity_name": "a",
             "node_names": ["a"],

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from linkwright.diagnostics.installation import Installation
 
 EXTRAS = {
+    "arm": "ompl",
     "bag": "rosbags",
     "colcon": "colcon_core",
     "dds": "cyclonedds",

@@ -8,12 +8,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
 from linkwright.graph.actions.client import ActionClient
 from linkwright.messages import Duration, Header, Time, get_action, get_message
 from tests.control.bench import TestBench
 
 SECOND_NS = 1_000_000_000
 JOINTS = ("shoulder", "elbow")
+TRAJECTORY_ACTION = "control_msgs/action/FollowJointTrajectory"
+TRAJECTORY_TYPE = "trajectory_msgs/msg/JointTrajectory"
+POSITION_PARAMETERS = {
+    "joints": list(JOINTS),
+    "command_interfaces": ["position"],
+    "state_interfaces": ["position", "velocity"],
+}
 
 
 def trajectory(
@@ -91,3 +99,40 @@ async def run(
         await bench.step(controller, 1.0 / rate)
         if hardware is not None:
             hardware()
+
+
+class Arm:
+    """A controller on a test bench, with hardware that follows its commands.
+
+    It follows them at once, except for stuck joints.
+    """
+
+    def __init__(self, bench: Any, **parameters: Any) -> None:
+        self.bench = bench
+        facts = {**POSITION_PARAMETERS, **parameters}
+        for joint in JOINTS:
+            bench.joint(joint, commands=tuple(facts["command_interfaces"]), position=0.0, velocity=0.0)
+        self.stuck: set[str] = set()
+        self.controller = bench.start(JointTrajectoryController, **facts)
+
+    def command(self, joint: str, interface: str = "position") -> float:
+        return self.bench.commands[f"{joint}/{interface}"].value
+
+    def follow_commands(self) -> None:
+        for name, command in self.bench.commands.items():
+            joint, _, interface = name.partition("/")
+            if joint not in self.stuck and interface == "position":
+                self.bench.states[name].value = command.value
+
+    async def run(self, seconds: float) -> None:
+        await run(self.bench, self.controller, seconds, self.follow_commands)
+
+    def publish(self, message: Any) -> None:
+        self.bench.publish(TRAJECTORY_TYPE, "/controller/joint_trajectory", message)
+
+    def send_goal(self, message: Any, **fields: Any) -> SentGoal:
+        goal = get_action(TRAJECTORY_ACTION).Goal(trajectory=message, **fields)
+        return SentGoal(self.bench, TRAJECTORY_ACTION, "/controller/follow_joint_trajectory", goal)
+
+    def log_texts(self) -> list[str]:
+        return [str(record.text) for record in self.bench.log]

@@ -14,54 +14,19 @@ from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
 from linkwright.control.controllers.registry import controller_class
 from linkwright.diagnostics import LinkwrightError
-from linkwright.messages import Duration, Time, get_action, get_service
-from tests.control.controllers.arm import JOINTS, SECOND_NS, SentGoal, run, tolerance, trajectory
+from linkwright.messages import Duration, Time, get_service
+from tests.control.controllers.arm import (
+    JOINTS,
+    POSITION_PARAMETERS,
+    SECOND_NS,
+    TRAJECTORY_TYPE,
+    Arm,
+    run,
+    tolerance,
+    trajectory,
+)
 
-ACTION = "control_msgs/action/FollowJointTrajectory"
-TYPE = "trajectory_msgs/msg/JointTrajectory"
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
-POSITION_PARAMETERS = {
-    "joints": list(JOINTS),
-    "command_interfaces": ["position"],
-    "state_interfaces": ["position", "velocity"],
-}
-
-
-class Arm:
-    """A controller on a test bench, with hardware that follows its commands.
-
-    It follows them at once, except for stuck joints.
-    """
-
-    def __init__(self, bench: Any, **parameters: Any) -> None:
-        self.bench = bench
-        facts = {**POSITION_PARAMETERS, **parameters}
-        for joint in JOINTS:
-            bench.joint(joint, commands=tuple(facts["command_interfaces"]), position=0.0, velocity=0.0)
-        self.stuck: set[str] = set()
-        self.controller = bench.start(JointTrajectoryController, **facts)
-
-    def command(self, joint: str, interface: str = "position") -> float:
-        return self.bench.commands[f"{joint}/{interface}"].value
-
-    def follow_commands(self) -> None:
-        for name, command in self.bench.commands.items():
-            joint, _, interface = name.partition("/")
-            if joint not in self.stuck and interface == "position":
-                self.bench.states[name].value = command.value
-
-    async def run(self, seconds: float) -> None:
-        await run(self.bench, self.controller, seconds, self.follow_commands)
-
-    def publish(self, message: Any) -> None:
-        self.bench.publish(TYPE, "/controller/joint_trajectory", message)
-
-    def send_goal(self, message: Any, **fields: Any) -> SentGoal:
-        goal = get_action(ACTION).Goal(trajectory=message, **fields)
-        return SentGoal(self.bench, ACTION, "/controller/follow_joint_trajectory", goal)
-
-    def log_texts(self) -> list[str]:
-        return [str(record.text) for record in self.bench.log]
 
 
 def test_controller_is_found_by_type():
@@ -110,7 +75,7 @@ async def test_accelerations_are_commanded(bench):
         JointTrajectoryController, joints=list(JOINTS), command_interfaces=interfaces, state_interfaces=interfaces
     )
     point = (2.0, [1.0, 1.0], [0.0, 0.0], [0.0, 0.0])
-    bench.publish(TYPE, "/controller/joint_trajectory", trajectory(point))
+    bench.publish(TRAJECTORY_TYPE, "/controller/joint_trajectory", trajectory(point))
     await run(bench, controller, 1.0)
     values = [bench.commands[f"shoulder/{interface}"].value for interface in interfaces]
     assert values == pytest.approx([0.5, 15.0 / 16.0, 0.0], abs=1e-9)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import Any
 
+from linkwright.diagnostics import LinkwrightError, render
 from linkwright.geometry.arrays import Array
 from linkwright.graph import Node, Publisher
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
@@ -96,6 +97,8 @@ class PlanningServices:
                 trajectory = await asyncio.to_thread(planner.plan, plan_request)
             except PlanError as error:
                 raise RequestError(error.failure.name, self._explain(error)) from None
+            except LinkwrightError as error:  # OMPL is not installed.
+                raise RequestError("FAILURE", render(error.diagnostics[0])) from None
         self._publish_path(start, trajectory, group.joint_names)
         return start, trajectory, group.joint_names
 
