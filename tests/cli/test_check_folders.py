@@ -19,6 +19,7 @@ from linkwright.lint.package import PackageContext
 from linkwright.lint.subject import Subject
 from linkwright.lint.targets import find_targets
 from linkwright.lint.xacro_facts import FileFacts
+from tests.sdf.worlds import write_files
 
 VALID_ROBOT = '<robot name="r">\n  <link name="base_link"/>\n</robot>\n'
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -44,12 +45,6 @@ SELECTION = ["--select", "LW2"]
 def working_directory(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def write_files(folder, files):
-    for name, text in files.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text)
 
 
 def test_folder_check_selects_standalone_descriptions(working_directory):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.cli import main
+from tests.sdf.worlds import write_files
 
 VALID_ROBOT = '<robot name="r">\n  <link name="base_link"/>\n</robot>\n'
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
