@@ -1,1 +1,1 @@
-"""Motion planning for arms: kinematics of groups, collisions, planners, and the nodes of MoveIt."""
+"""Motion planning for arms, with the interfaces of MoveIt."""

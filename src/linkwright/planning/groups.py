@@ -1,4 +1,7 @@
-"""Groups of joints that are planned for together: the groups of an SRDF with the limits of their joints."""
+"""Groups of joints that are planned for together.
+
+They are the groups of an SRDF, with the limits of their joints.
+"""
 
 from __future__ import annotations
 
@@ -100,7 +103,9 @@ class JointGroup:
         return random.uniform(self.lower, self.upper)
 
     def unwind(self, positions: Array, reference: Array) -> Array:
-        """Return the same configuration with full turns removed, as near to the reference as the bounds allow.
+        """Return the same configuration, moved by full turns toward a reference.
+
+        The result is as near to the reference as the bounds allow.
 
         Args:
             positions: in rad or m, shape (joints,).
@@ -161,7 +166,10 @@ def resolve_groups(
 def _find_joints(
     robot: Robot, semantics: Semantics, definition: GroupDefinition, enclosing: tuple[str, ...]
 ) -> dict[str, None]:
-    """Return the names of a group's joints, including fixed joints, as the keys of a dictionary."""
+    """Return the names of a group's joints as the keys of a dictionary.
+
+    Fixed joints are included.
+    """
     parents = parent_joints(robot)
     joints: dict[str, None] = {}
     for name in definition.joints:

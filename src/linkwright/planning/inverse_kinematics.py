@@ -58,7 +58,7 @@ class ChainSolver:
         timeout_s: float,
         is_valid: Callable[[Array], bool] | None = None,
     ) -> Array | None:
-        """Return positions of all joints at which the tip has the target pose, or None if none were found.
+        """Return positions of all joints at which the tip has a pose, or None.
 
         Args:
             target: the pose of the tip in the frame of the root link, shape (7,).
@@ -79,7 +79,7 @@ class ChainSolver:
             positions[self.indexes] = self._group.sample(self._random)
 
     def solve_from(self, target: Array, start: Array) -> Array | None:
-        """Return the positions of all joints that are reached from the start without a restart, or None."""
+        """Return the positions that are reached from the start without a restart, or None."""
         positions = start.copy()
         return positions if self._converge(positions, target[:3], np.array((target[6], *target[3:6]))) else None
 

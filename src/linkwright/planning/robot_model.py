@@ -1,4 +1,4 @@
-"""A robot in MuJoCo: the frames of its links, Jacobians, and the shapes of its links for collisions.
+"""A robot in MuJoCo, for link frames, Jacobians and collisions.
 
 Each link is a body whose frame is the link's frame, and each moving joint is a joint of MuJoCo at the origin of its
 child's body. MuJoCo computes the frames and Jacobians of an arm in a few microseconds.
@@ -72,12 +72,18 @@ class RobotModel:
         return int(self.mujoco_model.body(body_name(link)).id)
 
     def move(self, positions: Array) -> None:
-        """Set the positions of all joints in rad or m, in the order of `joint_names`, and compute the link frames."""
+        """Set the positions of all joints, and compute the link frames.
+
+        The positions are in rad or m, in the order of `joint_names`.
+        """
         self._expansion.write(positions, self.data.qpos)
         self._mujoco.mj_kinematics(self.mujoco_model, self.data)
 
     def all_positions(self) -> tuple[list[str], Array]:
-        """Return the names of all moving joints, including mimic joints, and their current positions."""
+        """Return the names and the current positions of all moving joints.
+
+        Mimic joints are included.
+        """
         names = [self.mujoco_model.joint(number).name for number in range(self.mujoco_model.njnt)]
         return names, self.data.qpos.copy()
 
@@ -89,7 +95,7 @@ class RobotModel:
 
 
 class PositionExpansion:
-    """The expansion of joint positions to the positions of all moving joints, including mimic joints."""
+    """The expansion of joint positions to all moving joints, including mimic joints."""
 
     def __init__(self, joint_names: Sequence[str], relations: Mapping[str, Any], model: Any) -> None:
         indexes = {name: index for index, name in enumerate(joint_names)}
@@ -134,7 +140,10 @@ def add_robot(spec: Any, robot: Robot, moving_joints: Iterable[str], shapes: Sha
 
 
 def body_name(link: str) -> str:
-    """Return the name of a link's body; MuJoCo's own body is named ``world``, as many root links are."""
+    """Return the name of a link's body.
+
+    It is not the link's name, because MuJoCo's own body is named ``world``, as many root links are.
+    """
     return f"link {link}"
 
 

@@ -32,7 +32,7 @@ _MAX_SIMPLIFICATION_S = 0.15
 
 
 def planner_class(name: str) -> str | None:
-    """Return the planner of OMPL for a type of MoveIt's ``ompl_planning.yaml``, or None if there is no such planner.
+    """Return the planner of OMPL for a planner in ``ompl_planning.yaml``, or None.
 
     Args:
         name: such as ``geometric::RRTConnect``, ``RRTConnectkConfigDefault`` or ``RRTConnect``.
@@ -67,7 +67,7 @@ class SamplingProblem:
         self._ompl = load_ompl()
 
     def solve(self, start: Array, goals: Sequence[Array], timeout_s: float) -> Array | None:
-        """Return a path from a configuration to one of several goals, or None if none was found in time.
+        """Return a path from a configuration to one of several goals, or None.
 
         Args:
             start: positions of the joints in rad or m, shape (joints,).
@@ -89,7 +89,10 @@ class SamplingProblem:
         return None
 
     def is_path_free(self, path: Array, max_step: float) -> bool:
-        """Return whether a path is free of collisions, checked in steps of at most `max_step` in rad or m."""
+        """Return whether a path is free of collisions.
+
+        It is checked in steps of at most `max_step`, in rad or m.
+        """
         return all(map(self._is_free, subdivide(path, max_step)))
 
     def _search(self, start: Array, goals: Sequence[Array], step: float, timeout_s: float) -> Array | None:

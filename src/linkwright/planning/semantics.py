@@ -1,4 +1,6 @@
-"""The semantic description of a robot (SRDF): groups, named states, end effectors, and links that may collide.
+"""The semantic description of a robot (SRDF).
+
+It has groups, named states, end effectors, and the pairs of links that may collide.
 
 Source: the SRDF specification and the package ``srdfdom``.
 """

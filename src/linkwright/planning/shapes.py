@@ -32,7 +32,10 @@ def robot_shapes(robot: Robot, meshes: MeshLibrary) -> tuple[dict[str, list[Plac
 
 
 def _convert_collision(collision: Collision, meshes: MeshLibrary, errors: list[LinkwrightError]) -> PlacedShape | None:
-    """Return the shape of a collision, or None if it has no volume or its mesh has an error, which is added."""
+    """Return the shape of a collision, or None if it has no volume.
+
+    An error of its mesh is added to `errors`, and the result is None.
+    """
     shape, pose = collision.geometry, row_from_pose(collision.origin)
     if isinstance(shape, Mesh):
         try:

@@ -112,7 +112,10 @@ class _Piece:
         return np.linspace(0.0, self.length, count, dtype=np.float64)
 
     def evaluate(self, distances: Array) -> tuple[Array, Array, Array]:
-        """Return the positions and their first two derivatives by the length, each of shape (n, joints)."""
+        """Return positions and their first two derivatives by the length.
+
+        Each has the shape (n, joints).
+        """
         if np.isinf(self.radius):
             zeros = np.zeros((len(distances), len(self.origin)))
             return self.origin + distances[:, None] * self.direction, zeros + self.direction, zeros
@@ -141,7 +144,9 @@ class _Path:
         self.slopes, self.curvatures = (np.concatenate([parts[index] for parts in evaluated]) for index in (1, 2))
 
     def evaluate(self, lengths: Array) -> tuple[Array, Array, Array]:
-        """Return the positions and their first two derivatives by the length, each of shape (n, joints).
+        """Return positions and their first two derivatives by the length.
+
+        Each has the shape (n, joints).
 
         Args:
             lengths: the lengths of the path up to the requested points, increasing, shape (n,).

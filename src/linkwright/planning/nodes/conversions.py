@@ -56,7 +56,10 @@ class InvalidShapeError(ValueError):
 
 
 def pose_row(message: Any) -> Array:
-    """Return the pose of a geometry_msgs/msg/Pose, shape (7,); a quaternion of zeros is the identity."""
+    """Return the pose of a geometry_msgs/msg/Pose, shape (7,).
+
+    A quaternion of zeros is the identity.
+    """
     position, rotation = message.position, message.orientation
     quaternion = np.array((rotation.x, rotation.y, rotation.z, rotation.w))
     length = float(np.linalg.norm(quaternion))
@@ -218,7 +221,10 @@ def trajectory_message(names: Sequence[str], trajectory: Trajectory, frame: str)
 
 
 def updated_positions(names: Sequence[str], positions: Array, state: Any) -> tuple[Array, Mapping[str, float]]:
-    """Return positions with those of a sensor_msgs/msg/JointState, and its positions of other joints by name."""
+    """Return positions that are updated by a sensor_msgs/msg/JointState.
+
+    The second result has the positions of joints that are not in `names`.
+    """
     result = positions.copy()
     indexes = {name: index for index, name in enumerate(names)}
     others: dict[str, float] = {}

@@ -44,7 +44,9 @@ class ControllerSettings:
 
 
 def read_controllers(parameters: Mapping[str, Any]) -> tuple[list[ControllerSettings], list[str]]:
-    """Return the controllers of the parameters ``moveit_simple_controller_manager.*``, and what is wrong with others.
+    """Return the controllers in the parameters, and the errors of other controllers.
+
+    The parameters are those of ``moveit_simple_controller_manager``.
 
     Args:
         parameters: the parameters of move_group by name.
@@ -162,7 +164,10 @@ class TrajectoryExecution:
         return selected
 
     async def _send(self, controller: ControllerSettings, trajectory: Any) -> tuple[Any, Any]:
-        """Send a controller its part of a trajectory, and return the goal handle and the future of the result."""
+        """Send a controller its part of a trajectory.
+
+        Return the handle of the goal, and the future of the result.
+        """
         client = self._clients[controller.name]
         for _ in range(round(_SERVER_TIMEOUT_S / _POLL_S)):
             if client.server_is_ready():

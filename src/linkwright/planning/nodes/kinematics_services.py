@@ -1,4 +1,4 @@
-"""The services of move_group for kinematics: link poses, inverse kinematics, validity of states, Cartesian paths."""
+"""The services of move_group for kinematics and the validity of states."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ class KinematicsServices:
         return response
 
     def _follow_waypoints(self, request: Any, start: Array) -> tuple[JointGroup, Trajectory, float]:
-        """Return the group, its trajectory through the waypoints, and the fraction of the way that it covers.
+        """Return the group, its trajectory through the waypoints, and the covered fraction.
 
         Raises:
             RequestError: a name, a frame or the step is not valid, or the trajectory collides.

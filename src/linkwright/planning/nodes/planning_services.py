@@ -26,7 +26,7 @@ _DEFAULT_PLANNING_TIME_S = 5.0
 
 
 class PlanningServices:
-    """The services plan_kinematic_path and query_planner_interface, and the planning of actions.
+    """The services that plan motions and list planners, and the planning of actions.
 
     One motion is planned at a time, in another thread.
 

@@ -92,7 +92,10 @@ class RobotContext:
             raise UnknownFrameError(name) from None
 
     def positions_of(self, state: Any) -> Array:
-        """Return the positions of all joints in a moveit_msgs/msg/RobotState; missing joints stay where they are."""
+        """Return the positions of all joints in a moveit_msgs/msg/RobotState.
+
+        Joints that it lacks keep their current positions.
+        """
         return updated_positions(self.model.joint_names, self.positions, state.joint_state)[0]
 
     def state_message(self, positions: Array) -> Any:

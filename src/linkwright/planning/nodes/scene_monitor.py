@@ -1,4 +1,4 @@
-"""The planning scene of move_group on the graph: its topics and services, and what collides in it."""
+"""The topics and services of move_group's planning scene."""
 
 from __future__ import annotations
 
@@ -59,7 +59,10 @@ class SceneMonitor:
             node.create_timer(_PERIOD_S, self._publish)
 
     def frame_lookup(self, positions: Array) -> FrameLookup:
-        """Return a function that finds frames: links at the given positions, objects, and frames of tf."""
+        """Return a function that finds the poses of links, objects and frames of tf.
+
+        Links have the given joint positions.
+        """
 
         def find(frame: str) -> Array:
             pose = self.scene.object_pose(frame, partial(self._robot.frame_pose, positions=positions))

@@ -1,4 +1,7 @@
-"""The planning scene of move_group: objects in the world and on the robot, and the pairs that may collide."""
+"""The planning scene of move_group.
+
+It has objects in the world and on the robot, and the pairs that may collide.
+"""
 
 from __future__ import annotations
 
@@ -184,7 +187,7 @@ class SceneState:
         return world + attached
 
     def object_pose(self, name: str, link_poses: Callable[[str], Array]) -> Array | None:
-        """Return the pose of an object in the planning frame, shape (7,), or None if there is no such object."""
+        """Return the pose of an object in the planning frame, shape (7,), or None."""
         if name in self.objects:
             return pose_row(self.objects[name].pose)
         if name in self.attached:
@@ -219,7 +222,10 @@ class SceneState:
         return message
 
     def _place(self, message: Any, lookup: FrameLookup) -> Any:
-        """Return a copy of a CollisionObject with its pose in the planning frame, and a pose for each shape."""
+        """Return a copy of a CollisionObject in the planning frame.
+
+        Each of its shapes has a pose.
+        """
         placed = deepcopy(message)
         for shapes, poses in zip(_SHAPE_FIELDS[::2], _SHAPE_FIELDS[1::2], strict=True):
             if not getattr(message, poses):
