@@ -324,8 +324,8 @@ def test_url_argument_is_printed_as_typed(working_directory, capsys):
         assert "'https://example.org/r.urdf'" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("manifest", "is_told"), [("web/package.json", False), ("package.json", True)])
-def test_public_folder_of_nested_web_package_is_skipped(working_directory, manifest, is_told):
+@pytest.mark.parametrize(("manifest", "is_reported"), [("web/package.json", False), ("package.json", True)])
+def test_public_folder_of_nested_web_package_is_skipped(working_directory, manifest, is_reported):
     write_files(
         working_directory,
         {
@@ -338,7 +338,7 @@ def test_public_folder_of_nested_web_package_is_skipped(working_directory, manif
     write_files(working_directory, {"inner/package.xml": "<package/>"})
     for folder in (working_directory, Path()):
         folders = [path.parent.name for path in find_targets([folder]).files]
-        assert folders == (["urdf", "public"] if is_told else ["urdf"])
+        assert folders == (["urdf", "public"] if is_reported else ["urdf"])
 
 
 def test_empty_folder_is_an_error(working_directory, capsys):
@@ -376,7 +376,7 @@ def test_warnings_in_test_folders_are_skipped_in_folder_check(working_directory,
 
 
 @pytest.mark.parametrize(
-    ("folder", "is_told"),
+    ("folder", "is_reported"),
     [
         ("old", False),
         ("bak", False),
@@ -389,7 +389,7 @@ def test_warnings_in_test_folders_are_skipped_in_folder_check(working_directory,
         ("vendors_arm", True),
     ],
 )
-def test_warnings_in_backup_and_vendor_folders_are_skipped(working_directory, capsys, folder, is_told):
+def test_warnings_in_backup_and_vendor_folders_are_skipped(working_directory, capsys, folder, is_reported):
     write_files(working_directory, {f"p/{folder}/r.urdf": LONG_AXIS})
     main(["check", *SELECTION, "p"])
-    assert ("LW221" in capsys.readouterr().err) is is_told
+    assert ("LW221" in capsys.readouterr().err) is is_reported

@@ -18,7 +18,7 @@ interface LiveDocuments {
 /** Shows the unsaved texts in the scene, soon after they were typed. */
 export class LiveTexts {
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private lastNumber = 0;
+  private lastRequestNumber = 0;
   /** The newest request about each file whose unsaved text the server has, or has not yet removed. */
   private readonly newestRequests = new Map<string, { readonly number: number; readonly isRemoval: boolean }>();
   private readonly outcomes = new Map<string, UnsavedTextShown["outcome"]>();
@@ -61,20 +61,20 @@ export class LiveTexts {
         if (document.newestSent?.changes.empty === true) continue;
         const text = document.state.doc.toString();
         if (!isWithinMessageSize(text)) continue;
-        this.lastNumber += 1;
-        document.recordSent(this.lastNumber);
+        this.lastRequestNumber += 1;
+        document.recordSent(this.lastRequestNumber);
         this.request(path, text);
       } else if (hasServerText && !document.isUnsaved) {
-        this.lastNumber += 1;
-        document.recordSent(this.lastNumber);
+        this.lastRequestNumber += 1;
+        document.recordSent(this.lastRequestNumber);
         this.request(path, null);
       }
     }
   }
 
   private request(path: string, text: string | null): void {
-    this.newestRequests.set(path, { number: this.lastNumber, isRemoval: text === null });
-    this.connection.send({ type: "show_unsaved_text", number: this.lastNumber, path, text });
+    this.newestRequests.set(path, { number: this.lastRequestNumber, isRemoval: text === null });
+    this.connection.send({ type: "show_unsaved_text", number: this.lastRequestNumber, path, text });
   }
 
   private onShown({ number, path, outcome }: UnsavedTextShown): void {

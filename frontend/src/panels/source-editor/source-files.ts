@@ -40,7 +40,7 @@ export class SourceFiles {
   private mainFile = "";
   private isOpen = false;
   private restartCount = 0;
-  private lastNumber = 0;
+  private lastRequestNumber = 0;
 
   constructor(
     private readonly session: Session,
@@ -88,9 +88,9 @@ export class SourceFiles {
   /** Creates an empty file, and rejects with the reason if it cannot be created. */
   create(path: string): Promise<void> {
     return new Promise((resolve, reject) => {
-      this.lastNumber += 1;
-      this.pendingCreations.set(this.lastNumber, { resolve, reject });
-      this.session.connection.send({ type: "create_source_file", number: this.lastNumber, path });
+      this.lastRequestNumber += 1;
+      this.pendingCreations.set(this.lastRequestNumber, { resolve, reject });
+      this.session.connection.send({ type: "create_source_file", number: this.lastRequestNumber, path });
     });
   }
 
@@ -110,9 +110,9 @@ export class SourceFiles {
         this.host.showMessage(texts.tooLong(fileNameOf(document.path)));
         continue;
       }
-      this.lastNumber += 1;
-      this.pendingWrites.set(this.lastNumber, document);
-      connection.send({ type: "write_source_file", number: this.lastNumber, path: document.path, version: document.version, text });
+      this.lastRequestNumber += 1;
+      this.pendingWrites.set(this.lastRequestNumber, document);
+      connection.send({ type: "write_source_file", number: this.lastRequestNumber, path: document.path, version: document.version, text });
     }
   }
 

@@ -22,7 +22,7 @@ export class RobotModelDrawing implements Drawing {
   private drawingCount = 0;
   private lighting: Lighting = "Camera";
   private isStyleStale = true;
-  private isContrastHigh: boolean;
+  private hasHighContrast: boolean;
   private displacement: Displacement | null = null;
   private readonly unsubscribe: readonly (() => void)[];
 
@@ -32,7 +32,7 @@ export class RobotModelDrawing implements Drawing {
     const setRobot = (robot: RobotScene | undefined): void => {
       if (robot?.display === display.id) this.setRobot(robot);
     };
-    this.isContrastHigh = session.inspect.current.contrast;
+    this.hasHighContrast = session.inspect.current.contrast;
     this.unsubscribe = [
       session.robotChanged.on(setRobot),
       session.inspect.changed.on(() => this.onInspectChanged()),
@@ -104,7 +104,7 @@ export class RobotModelDrawing implements Drawing {
   update(): void {
     if (this.isStyleStale && this.drawing) {
       const { display, session } = this.context;
-      this.drawing.applyStyle(display.rows, this.isContrastHigh, this.lighting, (link) => session.comparison.overrideOf(display.id, link));
+      this.drawing.applyStyle(display.rows, this.hasHighContrast, this.lighting, (link) => session.comparison.overrideOf(display.id, link));
       setShadowed(this.drawing.root, this.lighting === "Studio" && !session.comparison.isOld(display.id));
     }
     this.isStyleStale = false;
@@ -183,9 +183,9 @@ export class RobotModelDrawing implements Drawing {
   }
 
   private onInspectChanged(): void {
-    const { contrast: isContrastHigh } = this.context.session.inspect.current;
-    if (isContrastHigh === this.isContrastHigh) return;
-    this.isContrastHigh = isContrastHigh;
+    const { contrast: hasHighContrast } = this.context.session.inspect.current;
+    if (hasHighContrast === this.hasHighContrast) return;
+    this.hasHighContrast = hasHighContrast;
     this.isStyleStale = true;
     this.context.invalidate();
   }

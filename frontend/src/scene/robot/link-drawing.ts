@@ -17,7 +17,7 @@ export interface LinkStyle {
   alpha: number;
   showsTrail: boolean;
   /** Whether to draw collisions over pale visuals, even if the display does not show them. */
-  isContrastHigh: boolean;
+  hasHighContrast: boolean;
   /** Replaces the colors of the description. */
   override: LinkOverride | null;
 }
@@ -48,7 +48,7 @@ export class LinkDrawing {
   private readonly visualGroup = new Group();
   private readonly collisionGroup = new Group();
   private trail: LinkTrail | null = null;
-  private style: LinkStyle = { isEnabled: true, showsVisual: true, showsCollision: false, alpha: 1, showsTrail: false, isContrastHigh: false, override: null };
+  private style: LinkStyle = { isEnabled: true, showsVisual: true, showsCollision: false, alpha: 1, showsTrail: false, hasHighContrast: false, override: null };
   private hasPose = false;
   private hasLostTransform = false;
 
@@ -118,18 +118,18 @@ export class LinkDrawing {
 
   setStyle(style: LinkStyle): void {
     this.style = style;
-    this.visualGroup.visible = (style.showsVisual || style.isContrastHigh) && style.isEnabled;
-    this.collisionGroup.visible = (style.showsCollision || style.isContrastHigh) && style.isEnabled;
+    this.visualGroup.visible = (style.showsVisual || style.hasHighContrast) && style.isEnabled;
+    this.collisionGroup.visible = (style.showsCollision || style.hasHighContrast) && style.isEnabled;
     this.showTrail(style.showsTrail && style.isEnabled);
     this.paint();
   }
 
   paint(): void {
-    const { isContrastHigh, override } = this.style;
+    const { hasHighContrast, override } = this.style;
     const alpha = override?.isOpaque === true ? Math.sqrt(this.style.alpha) : this.style.alpha;
-    for (const visual of this.visuals) visual.paint(this.pool, isContrastHigh ? alpha * PALE_FACTOR : alpha, this.hasLostTransform, override);
+    for (const visual of this.visuals) visual.paint(this.pool, hasHighContrast ? alpha * PALE_FACTOR : alpha, this.hasLostTransform, override);
     for (const collision of this.collisions) {
-      if (isContrastHigh) collision.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION_OVERRIDE);
+      if (hasHighContrast) collision.paint(this.pool, alpha * COLLISION_ALPHA, this.hasLostTransform, COLLISION_OVERRIDE);
       else collision.paint(this.pool, alpha, this.hasLostTransform, override);
     }
   }
@@ -152,7 +152,7 @@ export class LinkDrawing {
     for (const shape of [...this.visuals, ...this.collisions]) shape.displace(null);
     const { style } = this;
     // Show a collision that is being moved even if collisions are hidden.
-    this.collisionGroup.visible = (style.showsCollision || style.isContrastHigh || displaced?.kind === "collision") && style.isEnabled;
+    this.collisionGroup.visible = (style.showsCollision || style.hasHighContrast || displaced?.kind === "collision") && style.isEnabled;
     if (!displaced) return;
     const shapes = displaced.kind === "visual" ? this.visuals : this.collisions;
     shapes.filter((shape) => shape.isAt(displaced.from))[displaced.index]?.displace(displaced.to);

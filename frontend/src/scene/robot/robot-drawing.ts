@@ -124,13 +124,13 @@ export class RobotDrawing {
   }
 
   /**
-   * Applies the display's properties. `isContrastHigh` draws collisions over pale visuals; `overrideOf` returns the
+   * Applies the display's properties. `hasHighContrast` draws collisions over pale visuals; `overrideOf` returns the
    * colors that replace those of a link.
    */
-  applyStyle(rows: PropertyRows, isContrastHigh: boolean, lighting: Lighting = "Camera", overrideOf: OverrideOf = () => null): void {
+  applyStyle(rows: PropertyRows, hasHighContrast: boolean, lighting: Lighting = "Camera", overrideOf: OverrideOf = () => null): void {
     this.pool.lighting = lighting;
     this.solids.isSoft = this.movingMeshes.isSoft = lighting === "Soft";
-    this.pool.repaint(() => this.styleLinks(rows, isContrastHigh, overrideOf));
+    this.pool.repaint(() => this.styleLinks(rows, hasHighContrast, overrideOf));
     this.extras.readProperties(rows);
   }
 
@@ -222,7 +222,7 @@ export class RobotDrawing {
     this.pool.dispose();
   }
 
-  private styleLinks(rows: PropertyRows, isContrastHigh: boolean, overrideOf: OverrideOf): void {
+  private styleLinks(rows: PropertyRows, hasHighContrast: boolean, overrideOf: OverrideOf): void {
     const rowsByLink = new Map(rows.find("Links")?.children.map((row) => [row.name, row]));
     const alpha = rows.number(1, "Alpha");
     const showsVisual = rows.bool(true, "Visual Enabled");
@@ -237,7 +237,7 @@ export class RobotDrawing {
         isEnabled: row?.value !== false,
         alpha: alpha * (typeof linkAlpha === "number" ? linkAlpha : 1),
         showsTrail: valueOf("Show Trail") === true,
-        isContrastHigh,
+        hasHighContrast,
         override: overrideOf(name),
       });
     }
