@@ -77,6 +77,7 @@ EXTRAS = {
     "sim": Extra(
         "mujoco", "simulation: `linkwright sim`, `drive`, `dataset`", "仿真：`linkwright sim`、`drive`、`dataset`"
     ),
+    "arm": Extra("ompl", "motions of arms", "机械臂的运动规划"),
     "navigation": Extra("scipy", "mapping, localization, planning", "建图、定位、路径规划"),
     "vision": Extra("onnxruntime", "object detectors", "目标检测"),
     "voice": Extra("vosk", "speech engines, the system's microphone", "语音引擎、系统麦克风"),

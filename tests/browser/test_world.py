@@ -78,7 +78,7 @@ def test_models_are_drawn_and_moved(start_viewer, open_page):
 def test_simulation_bar_and_mouse_control_models(start_viewer, open_page, monkeypatch, tmp_path):
     list_requested = threading.Event()
     monkeypatch.setattr(
-        entities, "model_choices", lambda packages: (list_requested.wait(TIMEOUT_S), ModelChoices([]))[1]
+        entities, "list_model_choices", lambda packages: (list_requested.wait(TIMEOUT_S), ModelChoices([]))[1]
     )
     viewer = publish_world(start_viewer)
     requests_made: list[tuple[str, object]] = []

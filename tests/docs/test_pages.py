@@ -35,7 +35,7 @@ def find_leaf_parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.Argu
 def test_command_reference_is_current() -> None:
     tool = load_tool("command_reference")
     assert (DOCS / "commands.md").read_text(encoding="utf-8") == tool.generate(), "run tools/command_reference.py"
-    assert tool.TABLE.read_text(encoding="utf-8") == tool.make_completion_table(), "run tools/command_reference.py"
+    assert tool.TABLE_PATH.read_text(encoding="utf-8") == tool.make_completion_table(), "run tools/command_reference.py"
 
 
 def test_stale_command_reference_is_found_and_fixed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -78,7 +78,7 @@ def test_folders_in_use_or_of_others_are_kept(temp_folder: Path) -> None:
 def test_temporary_folders_are_scratch_folders() -> None:
     creation = re.compile(r"\bTemporaryDirectory\(|\bmkdtemp\(")
     kept_on_exit = {"link_folder.py"}
-    inside_scratch_folder = {"contents.py", "run.py", "running.py"}  # the scratch folder of a sandbox's run
+    inside_scratch_folder = {"contents.py", "jobs.py", "run.py"}  # the scratch folder of a sandbox's run
     allowed = {"scratch_folders.py"} | kept_on_exit | inside_scratch_folder
     found = {
         path.name for path in (REPOSITORY / "src").rglob("*.py") if creation.search(path.read_text(encoding="utf-8"))

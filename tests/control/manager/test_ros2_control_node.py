@@ -186,12 +186,12 @@ async def test_simulated_time_jump_is_not_an_overrun(graph, clock, tmp_path, log
     node_under_test = start_manager_node(graph, tmp_path, CONTROL, use_sim_time=True)
     await graph.settle()
     time = node_under_test._node.get_clock()
-    time.override(1_000_000_000)
+    time.set_simulated_time(1_000_000_000)
     await graph.settle()
     periods = record_cycle_periods(node_under_test)
     count_before = len(logged("WARN"))
     for now_ns in (1_010_000_000, 1_050_000_000, 20_000_000, 30_000_000, 40_000_000):
-        time.override(now_ns)
+        time.set_simulated_time(now_ns)
         await graph.settle()
     assert periods == [0.01, 0.04, 0.01, 0.01]
     assert logged("WARN")[count_before:] == []
