@@ -185,6 +185,7 @@ def find_addition_reason(entry: Entry) -> Phrase | None:
 
 
 def _explain_required_argument(argument: Entry) -> Phrase:
+    """Return the reason why an argument without a default is breaking."""
     return phrase("callers must pass '{name}'", name=argument.name)
 
 
@@ -315,6 +316,7 @@ def _find_argument_reason(
     old_outline: LaunchOutline,
     new_outline: LaunchOutline,
 ) -> Phrase | None:
+    """Return the reason why a changed argument is breaking, or None if it is not."""
     if setting == "default" and new is None and "value" not in entry.settings:
         return _explain_required_argument(entry)
     if setting == "default" and old is not None and new is not None:
@@ -414,6 +416,7 @@ def _find_served_name_reason(entry: Entry, names: list[str], new: LaunchOutline)
 def _find_renaming_reason(
     old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
+    """Return the reason why a changed node name or namespace is breaking, or None."""
     old_name, new_name = _resolve_name(old, old_outline), _resolve_name(new, new_outline)
     if (
         _strip_known_prefix(old_name) == _strip_known_prefix(new_name)

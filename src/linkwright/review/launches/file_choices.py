@@ -46,6 +46,7 @@ class FileChoices:
                     self._compare_files(old_path, new_path, new)
 
     def _compare_files(self, old_path: str, new_path: str, entry: Entry) -> None:
+        """Report that an action has a different file, or that different arguments choose it."""
         arguments = {argument.name for argument in self._new.entries if argument.kind == "argument"}
         lost_arguments = (_find_argument_names(old_path) - _find_argument_names(new_path)) & arguments
         old_file, new_file = self._old.resolve(old_path), self._new.resolve(new_path)
@@ -73,6 +74,7 @@ class FileChoices:
             self._add(text, entry, None)
 
     def _add(self, text: Phrase, entry: Entry, reason: Phrase | None) -> None:
+        """Add a change to the report, unless the report already has a change with this text."""
         if str(text) not in self._reported_texts:
             self._reported_texts.add(str(text))
             self._pair.add(text, self._pair.location(entry.span), reason)

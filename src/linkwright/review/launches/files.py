@@ -75,15 +75,8 @@ def compare_launch_files(pair: FilePair) -> None:
     settings.report_groups()
     removed = [entry for entry in removed if all(entry is not other for other, _ in replaced)]
     added = [entry for entry in added if all(entry is not other for _, other in replaced)]
-    for name in {entry.name for entry in removed if entry.kind == "argument"} & undeclared.keys():
-        text = phrase("argument '{name}' removed", name=name)
-        reason = phrase("the launch file still uses '{name}', and fails if no other file declares it", name=name)
-        pair.add(text, pair.location(undeclared.pop(name).span), reason)
-        removed = [entry for entry in removed if (entry.kind, entry.name) != ("argument", name)]
-    for name, entry in undeclared.items():
-        text = phrase("{entry} uses argument '{name}', which is not declared", entry=format_title(entry), name=name)
-        reason = phrase("the launch file fails if no other file declares '{name}'", name=name)
-        pair.add(text, pair.location(entry.span), reason)
+    _report_undeclared(pair, undeclared, removed)
+    removed = [entry for entry in removed if entry.kind != "argument" or entry.name not in undeclared]
     report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)])
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)
@@ -91,8 +84,28 @@ def compare_launch_files(pair: FilePair) -> None:
         _compare_code(pair, old, new)
 
 
+def _report_undeclared(pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry]) -> None:
+    """Report the arguments that only the new version uses without a declaration.
+
+    Args:
+        pair: both versions of the launch file.
+        undeclared: an action that uses each argument, by the name of the argument.
+        removed: the actions that only the old version has, such as the declarations of these arguments.
+    """
+    declared_before = {entry.name for entry in removed if entry.kind == "argument"} & undeclared.keys()
+    for name in declared_before:
+        text = phrase("argument '{name}' removed", name=name)
+        reason = phrase("the launch file still uses '{name}', and fails if no other file declares it", name=name)
+        pair.add(text, pair.location(undeclared[name].span), reason)
+    for name, entry in undeclared.items():
+        if name not in declared_before:
+            text = phrase("{entry} uses argument '{name}', which is not declared", entry=format_title(entry), name=name)
+            reason = phrase("the launch file fails if no other file declares '{name}'", name=name)
+            pair.add(text, pair.location(entry.span), reason)
+
+
 def _report_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outlines: tuple[LaunchOutline, ...]) -> None:
-    """Report an action that replaces another one, or a parameter with a new name."""
+    """Report an action that replaces a different one, or a parameter with a new name."""
     location = pair.location(new_entry.span)
     if old_entry.kind != SERVER_PARAMETER:
         pair.add(phrase("{old} replaced by {new}", old=format_title(old_entry), new=format_title(new_entry)), location)
@@ -149,6 +162,16 @@ def _report_unpaired_entries(
             location,
             find_removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes),
         )
+    _report_moved(pair, moved)
+
+
+def _report_moved(pair: FilePair, moved: Mapping[tuple[str, bool], Sequence[Entry]]) -> None:
+    """Report the actions that moved between the launch file and other launch files.
+
+    Args:
+        pair: both versions of the launch file.
+        moved: the moved actions, by the other file and whether they moved to it.
+    """
     for (file, is_old), entries in moved.items():
         titles = join_titles(entries)
         text = phrase("{entry} moved from {file}", entry=titles, file=file)
@@ -265,6 +288,7 @@ def _are_versions_of_one_statement(old: CodePart, new: CodePart) -> bool:
 
 
 def _drop_common_parts(parts: Sequence[CodePart], other_parts: Sequence[CodePart]) -> list[CodePart]:
+    """Return the statements without those that the other version has, each counted once."""
     remaining_counts = Counter(part.text for part in other_parts)
     unpaired = []
     for part in parts:

@@ -68,6 +68,7 @@ class IncludedActions:
         return None if other._find_file_with(entry) else self._find_file_with(entry)
 
     def _find_file_with(self, entry: Entry) -> str | None:
+        """Return the included file with an equal action, or None if there is none."""
         name = entry.settings.get("name")
         for path, outline in self._included.items():
             for other in outline.entries:
@@ -128,6 +129,7 @@ class IncludedActions:
         return Counter(self._find_file_programs(outline, self._version.file(self._path), 0))
 
     def _find_file_programs(self, outline: LaunchOutline, file: Path, depth: int) -> Iterator[Program]:
+        """Yield the shared programs that a launch file starts by default."""
         for entry in outline.entries:
             if (
                 entry.kind in _STARTING_KINDS
@@ -140,6 +142,7 @@ class IncludedActions:
                 yield entry.kind, outline.resolve(entry.name)
 
     def _find_action_programs(self, entry: Entry, outline: LaunchOutline, file: Path, depth: int) -> Iterator[Program]:
+        """Yield the shared programs that an include starts by default."""
         resolved = replace(entry, name=outline.resolve(entry.name))
         included_file = self._find_included_file(resolved, file) if depth < _MAX_INCLUDE_DEPTH else None
         included_outline = None if included_file is None else self._read_outline(included_file)

@@ -48,6 +48,7 @@ class Literals:
         return known[1]
 
     def _copy_with_marks(self, node: ast.expr, depth: int) -> ast.expr:
+        """Return a copy of an expression with marks in place of its literals."""
         container = _find_container(self._python, node)
         if depth > _MAX_DEPTH or (container is None and not _is_literal(self._python, node)):
             return node

@@ -171,6 +171,7 @@ def _iterate_mapping(node: yaml.Node | None) -> Iterator[tuple[str, yaml.Node]]:
 
 
 def _read_entries(parent: LaunchTag, scope: Scope, other_code: list[CodePart]) -> Iterator[Entry]:
+    """Yield the entries of the tags in a group, and add the other tags to the other code."""
     for tag in parent.children:
         attributes = tag.attributes
         if tag.name in _NAMESPACE_TAGS:
@@ -271,6 +272,7 @@ def _format_node_name(attributes: Mapping[str, str]) -> str:
 
 
 def _read_node_settings(tag: LaunchTag) -> dict[str, str]:
+    """Return the settings of a node from its attributes and children."""
     settings = _select_remaining_attributes(tag.attributes)
     files: list[str] = []
     deleted: list[str] = []

@@ -98,6 +98,7 @@ def _walk_scope(scope: ast.AST, block: tuple[int, int]) -> Iterator[tuple[ast.AS
 
 
 def _find_bound_names(node: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
+    """Yield the names that a node assigns, with their values; None for unknown values."""
     if isinstance(node, ast.arguments):
         arguments = [*node.posonlyargs, *node.args, *node.kwonlyargs, node.vararg, node.kwarg]
         yield from ((argument.arg, None) for argument in arguments if argument is not None)

@@ -112,7 +112,7 @@ class _CodeNormalizer:
         self._covered = covered
         self._texts: dict[int, str] = {}
 
-    def text(self, node: ast.AST) -> str:
+    def format_node(self, node: ast.AST) -> str:
         """Return a part of the code in comparable form; empty if it only makes actions."""
         known = self._texts.get(id(node))
         if known is None:
@@ -123,33 +123,33 @@ class _CodeNormalizer:
     def format_statement(self, node: ast.stmt) -> str:
         """Return a statement without its body in comparable form; empty if it only makes actions."""
         if not any(hasattr(node, name) for name in _BODY_FIELDS):
-            return self.text(node)
+            return self.format_node(node)
         return "" if id(node) in self._branches else self._format_fields(node)
 
     def _normalize(self, node: ast.AST) -> str:
         if isinstance(node, (ast.Import, ast.ImportFrom, ast.Pass)) or id(node) in self._covered:
             return ""
         if isinstance(node, ast.Expr):
-            return "" if isinstance(node.value, ast.Constant) else self.text(node.value)
+            return "" if isinstance(node.value, ast.Constant) else self.format_node(node.value)
         if isinstance(node, ast.Name):
             assigned = self._python.assigned_expression(node.id)
-            return f"name {node.id}" if assigned is None else self.text(assigned)
+            return f"name {node.id}" if assigned is None else self.format_node(assigned)
         if isinstance(node, (ast.Assign, ast.AnnAssign)) and self.is_definition(node):
             return ""
         if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _COMBINING_CALLS:
             return self._format_group(node)
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _LIST_METHODS:
             return self._format_fields(node) if self._format_items(node.args) else ""
-        if isinstance(node, ast.AugAssign) and not self.text(node.value):
+        if isinstance(node, ast.AugAssign) and not self.format_node(node.value):
             return ""
         if isinstance(node, (ast.List, ast.Tuple)):
             return self._format_items(node.elts)
         if isinstance(node, ast.Starred):
-            return self.text(node.value)
-        if isinstance(node, ast.BinOp) and not self.text(node.left) and not self.text(node.right):
+            return self.format_node(node.value)
+        if isinstance(node, ast.BinOp) and not self.format_node(node.left) and not self.format_node(node.right):
             return ""  # a sum of lists of actions
         if isinstance(node, ast.Return):
-            value = "" if node.value is None else self.text(node.value)
+            value = "" if node.value is None else self.format_node(node.value)
             return f"return {value}" if value else ""
         return self._format_fields(node)
 
@@ -168,14 +168,14 @@ class _CodeNormalizer:
         """Return the contents of a group or launch description besides actions."""
         arguments = [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg in _ACTION_ARGUMENTS)]
         settings = [
-            f"{keyword.arg}={self.text(keyword.value)}"
+            f"{keyword.arg}={self.format_node(keyword.value)}"
             for keyword in node.keywords
             if keyword.arg not in (*_ACTION_ARGUMENTS, "condition", "initial_entities", "period")
         ]
         return self._format_items(arguments) + "".join(settings)
 
     def _format_items(self, nodes: list[ast.expr]) -> str:
-        texts = dict.fromkeys(text for text in map(self.text, nodes) if text)
+        texts = dict.fromkeys(text for text in map(self.format_node, nodes) if text)
         return f"[{', '.join(texts)}]" if texts else ""
 
     def _format_fields(self, node: ast.AST) -> str:
@@ -184,9 +184,9 @@ class _CodeNormalizer:
             if name in _UNCOMPARED_FIELDS or name in _BODY_FIELDS:
                 continue
             if isinstance(value, ast.AST):
-                text = self.text(value)
+                text = self.format_node(value)
             elif isinstance(value, list):
-                parts = (self.text(item) if isinstance(item, ast.AST) else repr(item) for item in value)
+                parts = (self.format_node(item) if isinstance(item, ast.AST) else repr(item) for item in value)
                 text = ", ".join(part for part in parts if part)
             else:
                 text = repr(value)

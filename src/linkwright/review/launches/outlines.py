@@ -215,7 +215,7 @@ class Scope:
         return Scope(self.conditions, (*self.namespaces, namespace)) if namespace else self
 
     def add_to_settings(self, kind: str, own_settings: Mapping[str, str]) -> dict[str, str]:
-        """Return the settings of an action with the settings of its scope."""
+        """Return the settings of an action together with the settings of its scope."""
         settings = dict(own_settings)
         conditions = [*self.conditions, *filter(None, [own_settings.get(CONDITION)])]
         settings.pop(CONDITION, None)

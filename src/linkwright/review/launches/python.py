@@ -112,6 +112,7 @@ class _Reader:
     _visited: set[tuple[int, tuple[int, ...], Scope]] = field(default_factory=set)
 
     def read_entries(self) -> Iterator[Entry]:
+        """Yield the entries of the visited actions."""
         unused = _find_unused_values(self.python.tree)
         for call, scope, texts in list(self.scopes.values()):
             self.texts = texts
@@ -181,7 +182,7 @@ class _Reader:
         self, target: ast.expr, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope
     ) -> None:
         """Find the actions of a loop, for each pass if the file contains the list literally."""
-        items = self.texts.items(self._mark_literals(iterable))
+        items = self.texts.find_items(self._mark_literals(iterable))
         passes = [self.texts.with_item(target, item) for item in items or ()]
         if items is None or None in passes or not self.helpers.reserve_passes(len(items)):
             for statement in body:
@@ -227,7 +228,7 @@ class _Reader:
         if function in ACTIONS or function == _HANDLER_CLASS or self._is_helper(call):
             self._add_call(call, scope)
         condition = next((keyword.value for keyword in call.keywords if keyword.arg == CONDITION), None)
-        inner = scope.with_condition(self.texts.condition(condition))
+        inner = scope.with_condition(self.texts.format_condition(condition))
         if function == "TimerAction":
             period = next((keyword.value for keyword in call.keywords if keyword.arg == "period"), None)
             inner = inner.with_condition(f"after {self.texts.text(period)} s")
@@ -274,7 +275,7 @@ class _Reader:
             return ""
         keywords = {keyword.arg: keyword.value for keyword in node.keywords}
         namespace = self.texts.text(node.args[0] if node.args else keywords.get("namespace"))
-        condition = self.texts.condition(keywords.get(CONDITION))
+        condition = self.texts.format_condition(keywords.get(CONDITION))
         return f"{namespace} ({condition})" if condition else namespace
 
     # --- helpers -----------------------------------------------------------------------------------------------------
@@ -326,7 +327,7 @@ class _Reader:
             elif keyword.arg not in known:
                 extra[keyword.arg] = self.texts.resolve(value)
             elif keyword.arg == CONDITION:
-                bindings[keyword.arg] = self.texts.condition(value)
+                bindings[keyword.arg] = self.texts.format_condition(value)
                 passed[keyword.arg] = value
             else:
                 bindings[keyword.arg] = self.texts.text(value)
@@ -374,9 +375,9 @@ class _Reader:
             kind = "node"
             name = "/".join(text(keywords[key]) for key in ("package", "executable", "plugin") if key in keywords)
             name, settings = name or text(call.func), self._read_node_settings(keywords, extra)
-        condition = self.texts.condition(keywords.get(CONDITION))
+        condition = self.texts.format_condition(keywords.get(CONDITION))
         if not condition and CONDITION in extra:
-            condition = extra[CONDITION].texts.condition(extra[CONDITION].node)
+            condition = extra[CONDITION].texts.format_condition(extra[CONDITION].node)
         if condition:
             settings[CONDITION] = condition
         return Entry(kind, name, scope.add_to_settings(kind, settings), self.python.span(call))
@@ -414,7 +415,7 @@ class _Reader:
         settings = self._read_node_settings(keywords)
         if call.args:
             settings["arguments"] = f"[{', '.join(map(self.texts.text, call.args))}]"
-        condition = self.texts.condition(keywords.get(CONDITION))
+        condition = self.texts.format_condition(keywords.get(CONDITION))
         if condition:
             settings[CONDITION] = condition
         return Entry("action", called_name(call), scope.add_to_settings("action", settings), self.python.span(call))

@@ -24,8 +24,8 @@ _POSITIONAL_READING = re.compile(r"\bsys\.argv\s*\[\s*[1-9:]")
 _ANY_READING = re.compile(
     r"\b(?:argv|sys\.orig_argv|myargv|ArgumentParser|OptionParser|getopt|docopt|fire|click|typer|absl)\b"
 )
-_RUN_COMMAND = re.compile(r"(?:\bros2\s+run|\brosrun)\s+(?P<package>[\w-]+)\s+(?P<program>[\w.-]+)(?P<rest>.*)")
-_SCRIPT_PATH = re.compile(r"(?<![\w.-])(?P<path>(?:[\w.-]+/)*[\w-]+\.py)\b(?P<rest>.*)")
+_RUN_COMMAND = re.compile(r"(?:\bros2\s+run|\brosrun)\s+(?P<package>[\w-]+)\s+(?P<program>[\w.-]+)(?P<arguments>.*)")
+_SCRIPT_PATH = re.compile(r"(?<![\w.-])(?P<path>(?:[\w.-]+/)*[\w-]+\.py)\b(?P<arguments>.*)")
 _END_OF_ARGUMENTS = re.compile(r"\s(?:--ros-args\b|#|[;|&]|\d?>|<).*|[;|&].*")
 _OPTION = re.compile(r"--[A-Za-z][\w-]*")
 _REMAPPING = re.compile(r"[^\s=]*:=\S*")
@@ -71,6 +71,7 @@ def _ignores_arguments(versions: Versions, old_path: str, new_path: str) -> bool
 def _compare_shell_script(
     versions: Versions, path: str, text: str, changed: Sequence[str], ignoring_programs: set[str]
 ) -> Iterator[tuple[str, Change]]:
+    """Yield the lines of a shell script that pass unknown arguments, each as a change."""
     for number, line in enumerate(text.splitlines(), 1):
         called = _parse_call(versions.new, line, changed)
         if called is None:
@@ -102,12 +103,12 @@ def _parse_call(version: Version, line: str, changed: Sequence[str]) -> tuple[st
     if run is not None:
         script = find_script(version.root, f"{run['package']}/{run['program']}")
         path = None if script is None else version.relative(str(script))
-        return None if path not in changed or path is None else (path, _split_arguments(run["rest"]))
+        return None if path not in changed or path is None else (path, _split_arguments(run["arguments"]))
     match = _SCRIPT_PATH.search(line)
     if match is None:
         return None
     matching_paths = [path for path in changed if f"/{path}".endswith(f"/{match['path'].lstrip('./')}")]
-    return (matching_paths[0], _split_arguments(match["rest"])) if len(matching_paths) == 1 else None
+    return (matching_paths[0], _split_arguments(match["arguments"])) if len(matching_paths) == 1 else None
 
 
 def _split_arguments(text: str) -> list[str]:
@@ -121,6 +122,7 @@ def _split_arguments(text: str) -> list[str]:
 
 
 def _compare_launch_file(version: Version, path: str, ignoring_programs: set[str]) -> Iterator[tuple[str, Change]]:
+    """Yield the nodes of a launch file that pass arguments to programs that ignore them."""
     try:
         outline = read_outline(version.file(path), version.root)
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):

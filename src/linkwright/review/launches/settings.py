@@ -223,6 +223,7 @@ class SettingChanges:
 
 
 def _explain_stopped_programs(programs: Collection[Program]) -> Phrase:
+    """Return the reason why it is breaking that programs do not start by default."""
     names = [quoted_names([name]) for name in sorted({name for _, name in programs})]
     if len(names) == 1:
         return phrase("by default, {entry} does not start any more", entry=names[0])
@@ -252,6 +253,7 @@ def _group_settings(
 
 
 def _format_group(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
+    """Return several added or removed settings of an action as one change."""
     is_remapping, is_added = group[0].name.startswith(REMAPPING), group[0].new is not None
     items = joined_first([_format_setting(setting) for setting in group], MAX_NAMES)
     if is_include:
@@ -281,6 +283,7 @@ def _format_setting(setting: _Setting) -> str:
 
 
 def _join_reasons(group: Sequence[_Setting]) -> Phrase | None:
+    """Return one reason for a group of settings, with all names that it breaks."""
     reasons = [setting.reason for setting in group if setting.reason is not None]
     if len(reasons) < 2 or any(reason.arguments.keys() != {"name"} for reason in reasons):
         return reasons[0] if reasons else None

@@ -81,7 +81,7 @@ class ExpressionTexts:
         bound = self._values.get(node.id) if isinstance(node, ast.Name) else None
         return bound or BoundExpression(self, node)
 
-    def items(self, node: ast.expr) -> list[BoundExpression] | None:
+    def find_items(self, node: ast.expr) -> list[BoundExpression] | None:
         """Return the items of a literal list or dictionary, or None for other expressions."""
         value = self.resolve(node)
         items = value.texts.find_dictionary_items(value.node)
@@ -140,7 +140,7 @@ class ExpressionTexts:
         """Return an expression as text. A list of substitutions is joined."""
         return "".join(map(self.text, self._split_pieces(node)))
 
-    def condition(self, node: ast.expr | None) -> str:
+    def format_condition(self, node: ast.expr | None) -> str:
         """Return a condition as text, such as ``unless $(var headless)``; empty if there is none."""
         if node is None:
             return ""
@@ -187,7 +187,7 @@ class ExpressionTexts:
         if isinstance(node, ast.Call) and called_name(node) == "dict" and not node.args:
             return [(keyword.arg or "", format_value(keyword.value)) for keyword in node.keywords]
         if isinstance(node, ast.Dict):
-            return list(self._format_items(node, "", format_value))
+            return list(self._flatten_items(node, "", format_value))
         if not isinstance(node, (ast.List, ast.Tuple, ast.Set)):
             return None
         pairs = [self._format_pair(item, format_value) for item in node.elts]
@@ -204,7 +204,7 @@ class ExpressionTexts:
             return None
         return self.format_joined(node.elts[0]), format_value(node.elts[1])
 
-    def _format_items(
+    def _flatten_items(
         self, node: ast.Dict, path: str, format_value: Callable[[ast.expr], str]
     ) -> Iterator[tuple[str, str]]:
         for key, value in zip(node.keys, node.values, strict=True):
@@ -213,7 +213,7 @@ class ExpressionTexts:
                 continue
             name, resolved = f"{path}{self.text(key)}", self._python.resolved(value)
             if isinstance(resolved, ast.Dict) and resolved.keys:
-                yield from self._format_items(resolved, f"{name}.", format_value)
+                yield from self._flatten_items(resolved, f"{name}.", format_value)
             else:
                 yield name, format_value(resolved)
 
@@ -303,12 +303,13 @@ class ExpressionTexts:
             node = self._python.resolved(node)
             if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add):
                 break
-            if self._is_string_literal(self._python.resolved(node.right)):
+            if self._is_string_term(self._python.resolved(node.right)):
                 return True
             node = node.left
-        return self._is_string_literal(node)
+        return self._is_string_term(node)
 
-    def _is_string_literal(self, node: ast.expr) -> bool:
+    def _is_string_term(self, node: ast.expr) -> bool:
+        """Return whether an expression other than a sum is a string, such as the path of a package."""
         if isinstance(node, ast.Call):
             return called_name(node).rpartition(".")[2] in _STRING_FUNCTIONS
         return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))

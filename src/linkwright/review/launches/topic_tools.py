@@ -20,7 +20,7 @@ _Topics = tuple[list[str], list[str]]
 def find_forwarding_reason(
     entry: Entry, setting: str, old: str | None, new: str | None, outlines: tuple[LaunchOutline, LaunchOutline]
 ) -> Phrase | None:
-    """Return the reason why a changed setting of a topic_tools program is breaking, or None if it is not.
+    """Return the reason why a changed topic_tools setting is breaking, or None.
 
     Args:
         entry: the new action.
