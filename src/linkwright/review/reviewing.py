@@ -47,8 +47,8 @@ from linkwright.review.kinds import (
     rule_of,
 )
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
-from linkwright.review.launches.helpers import makes_actions
-from linkwright.review.launches.script_callers import lost_arguments
+from linkwright.review.launches.helpers import imports_actions
+from linkwright.review.launches.script_callers import find_lost_arguments
 from linkwright.review.lost_controllers import find_lost_controllers
 from linkwright.review.lost_data import find_lost_data
 from linkwright.review.lost_files import find_lost_files
@@ -237,7 +237,7 @@ class _Reviewer:
         paths = {subject.path for subject in result}
         result += (found for found in self._run_step(source_subjects) if found.path not in paths)
         result = _with_changes(result, self._run_step(broken_callers))
-        result = _with_changes(result, self._run_step(lost_arguments))
+        result = _with_changes(result, self._run_step(find_lost_arguments))
         result = _with_changes(result, self._run_step(lost_types))
         result = _with_changes(result, self._run_step(lost_methods))
         result = _with_changes(result, self._run_step(find_lost_controllers))
@@ -306,7 +306,7 @@ class _Reviewer:
         if rule is None and any(is_launch_xml(version.file(name)) for version, name in sides if name):
             return LAUNCH_FILE
         if rule is None and may_help_launch_files(path):
-            is_helper = any(makes_actions(version.file(path)) for version, path in sides if path)
+            is_helper = any(imports_actions(version.file(path)) for version, path in sides if path)
             return LAUNCH_HELPER if is_helper else None
         return rule
 

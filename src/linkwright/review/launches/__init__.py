@@ -1,1 +1,1 @@
-"""Compare launch files: actions with their conditions, namespaces and settings, and the other code."""
+"""Compare launch files: their actions, the settings of these, and the other code."""

@@ -1,13 +1,13 @@
-"""Compare the settings of an action, including conditional ones such as ``<remap if="...">``."""
+"""Compare the settings of an action, also conditional ones: ``<remap if="...">``."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from linkwright.review.launches.conditions import condition_holds
-from linkwright.review.launches.expressions import is_same_expression
-from linkwright.review.launches.outlines import Entry, LaunchOutline, condition_of_setting, without_condition
+from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.expressions import are_equal_expressions
+from linkwright.review.launches.outlines import Entry, LaunchOutline, extract_condition, without_condition
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class SettingPair:
     has_defaults: bool = True
 
 
-def changed_settings(
+def find_changed_settings(
     old: Entry, new: Entry, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Iterator[SettingPair]:
     """Yield the settings of an action that differ.
@@ -41,15 +41,15 @@ def changed_settings(
     old_groups, new_groups = _group_by_name(old.settings), _group_by_name(new.settings)
     for name in dict.fromkeys([*new_groups, *old_groups]):
         old_values, new_values = old_groups.get(name, {}), new_groups.get(name, {})
-        has_conditions = any(map(condition_of_setting, (*old_values, *new_values)))
+        has_conditions = any(map(extract_condition, (*old_values, *new_values)))
         if old_values.keys() == new_values.keys() or not has_conditions:
             for key in dict.fromkeys([*new_values, *old_values]):
                 before, after = old_values.get(key), new_values.get(key)
-                if before != after and not is_same_expression(before, after):
+                if before != after and not are_equal_expressions(before, after):
                     yield SettingPair(key, before, after, before, after)
             continue
-        old_default, is_old_known = _default_value(old_values, old_outline)
-        new_default, is_new_known = _default_value(new_values, new_outline)
+        old_default, is_old_known = _find_default_value(old_values, old_outline)
+        new_default, is_new_known = _find_default_value(new_values, new_outline)
         texts = _format_values(old_values), _format_values(new_values)
         yield SettingPair(name, *texts, old_default, new_default, has_defaults=is_old_known and is_new_known)
 
@@ -64,17 +64,16 @@ def _group_by_name(settings: Mapping[str, str]) -> dict[str, dict[str, str]]:
 def _format_values(values: Mapping[str, str]) -> str | None:
     """Return the values of a setting with their conditions as text, or None if there are none."""
     texts = [
-        f"{value} ({condition})" if (condition := condition_of_setting(name)) else value
-        for name, value in values.items()
+        f"{value} ({condition})" if (condition := extract_condition(name)) else value for name, value in values.items()
     ]
     return ", ".join(texts) if texts else None
 
 
-def _default_value(values: Mapping[str, str], outline: LaunchOutline) -> tuple[str | None, bool]:
+def _find_default_value(values: Mapping[str, str], outline: LaunchOutline) -> tuple[str | None, bool]:
     """Return the value with the defaults of the arguments, and whether it is known."""
     result = None
     for name, value in values.items():
-        holds = condition_holds(outline.resolve(condition_of_setting(name)))
+        holds = evaluate_condition(outline.resolve(extract_condition(name)))
         if holds is None:
             return None, False
         result = value if holds else result

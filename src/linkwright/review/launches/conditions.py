@@ -6,37 +6,38 @@ import ast
 import re
 
 _SEPARATOR = re.compile(r" and (?=(?:if|unless|after) )")
-_EVALUATION = re.compile(r"\$\(eval (.*)\)", re.DOTALL)
+_EVAL_SUBSTITUTION = re.compile(r"\$\(eval (.*)\)", re.DOTALL)
 _COMPARISON = re.compile(r"(?P<left>\S*) (?P<operator>==|!=) (?P<right>\S*)")
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
-_MAX_LENGTH = 500
+_MAX_CHARACTERS = 500
+"""The maximum length of an evaluated condition."""
 
 
-def condition_holds(condition: str) -> bool | None:
+def evaluate_condition(condition: str) -> bool | None:
     """Return whether a condition holds, or None if that is unknown.
 
     Args:
         condition: conditions such as ``if true and unless $(eval 'a' == 'b')``, with values in place of variables.
             Empty if there is none.
     """
-    results = [_part_holds(part) for part in _SEPARATOR.split(condition) if part]
+    results = [_evaluate_part(part) for part in _SEPARATOR.split(condition) if part]
     if False in results:
         return False
     return None if None in results else True
 
 
-def _part_holds(part: str) -> bool | None:
-    word, _, text = part.partition(" ")
-    if word == "after":
+def _evaluate_part(part: str) -> bool | None:
+    keyword, _, text = part.partition(" ")
+    if keyword == "after":
         return True  # the delay of a timer
     value = _evaluate_text(text.strip())
-    return value if value is None or word == "if" else not value
+    return value if value is None or keyword == "if" else not value
 
 
 def _evaluate_text(text: str) -> bool | None:
-    evaluation = _EVALUATION.fullmatch(text)
+    evaluation = _EVAL_SUBSTITUTION.fullmatch(text)
     text = text if evaluation is None else _strip_quotes(evaluation[1].strip())
-    if "$(" in text or "`" in text or len(text) > _MAX_LENGTH:
+    if "$(" in text or "`" in text or len(text) > _MAX_CHARACTERS:
         return None
     if evaluation is None:
         comparison = _COMPARISON.fullmatch(text)

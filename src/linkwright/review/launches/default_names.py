@@ -15,7 +15,7 @@ from linkwright.review.sources.reading import read_source_names
 
 
 @lru_cache(maxsize=256)
-def default_name(root: Path, program: str) -> str | None:
+def find_default_name(root: Path, program: str) -> str | None:
     """Return the default name of a node, or None if the sources do not contain it.
 
     Args:
@@ -23,16 +23,16 @@ def default_name(root: Path, program: str) -> str | None:
         program: the package and the executable or the class of a component, such as ``arm/arm::Driver``.
     """
     package, _, name = program.partition("/")
-    folder = package_folders(root).get(package)
+    folder = find_package_folders(root).get(package)
     if folder is None or not name:
         return None
-    files = _sources_of_class(folder, name.rpartition("::")[2]) if "::" in name else _module_paths(folder, name)
+    files = _find_class_sources(folder, name.rpartition("::")[2]) if "::" in name else _find_module_paths(folder, name)
     names = {item.name for file in files for item in read_source_names(file).names if item.kind is NameKind.NODE}
     return names.pop() if len(names) == 1 else None
 
 
 @lru_cache(maxsize=256)
-def script_of(root: Path, program: str) -> Path | None:
+def find_script(root: Path, program: str) -> Path | None:
     """Return the Python script that a node runs, or None if the repository has none or several.
 
     Args:
@@ -40,29 +40,29 @@ def script_of(root: Path, program: str) -> Path | None:
         program: the package and the executable, such as ``arm/driver.py``.
     """
     package, _, name = program.partition("/")
-    folder = package_folders(root).get(package)
+    folder = find_package_folders(root).get(package)
     if folder is None or not name or "/" in name or "$" in name or "*" in name:
         return None
-    modules = _module_paths(folder, name)
+    modules = _find_module_paths(folder, name)
     names = (name,) if name.endswith(".py") else (name, f"{name}.py")
     scripts = modules or [file for name in names for file in sorted(folder.rglob(name)) if file.is_file()]
     return scripts[0] if len(scripts) == 1 else None
 
 
 @lru_cache(maxsize=4)
-def package_folders(root: Path) -> dict[str | None, Path]:
+def find_package_folders(root: Path) -> dict[str | None, Path]:
     """Return the folders of the packages of a repository, by name."""
     return {package_name(folder): folder for folder in find_targets([root]).packages}
 
 
-def _sources_of_class(folder: Path, name: str) -> list[Path]:
+def _find_class_sources(folder: Path, name: str) -> list[Path]:
     """Return the sources that define the constructor of a class."""
     constructor = re.compile(rf"\b{re.escape(name)}\s*\([^;{{}}]*\)\s*:")
     files = (file for file in folder.rglob("*") if file.suffix in CPP_SUFFIXES and file.is_file())
     return [file for file in files if constructor.search(file.read_text("utf-8", errors="replace"))]
 
 
-def _module_paths(folder: Path, executable: str) -> list[Path]:
+def _find_module_paths(folder: Path, executable: str) -> list[Path]:
     """Return the modules that can contain an executable of a Python package."""
     setup = folder / "setup.py"
     if not setup.is_file():

@@ -1,18 +1,22 @@
-"""Decide which changes of launch files are breaking: other programs use nodes, topics and arguments."""
+"""Decide which changes to launch files are breaking.
+
+Other programs use the nodes, topics and arguments.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 from pathlib import PurePosixPath
+from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.files.parameter_names import offers_frame, type_reason
 from linkwright.review.files.yaml_values import YamlType, YamlValue, value_of_text
-from linkwright.review.launches.conditions import condition_holds
-from linkwright.review.launches.matching import loaded_class, name_likeness
+from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.matching import compute_name_similarity, find_loaded_class
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
@@ -24,36 +28,36 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     without_condition,
 )
-from linkwright.review.launches.sides import Side, is_new_name, side_of
-from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, served_names, title
-from linkwright.review.launches.topic_tools import forwarding_reason
+from linkwright.review.launches.sides import Side, find_side, is_new_name
+from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names, format_title
+from linkwright.review.launches.topic_tools import find_forwarding_reason
 from linkwright.review.list_changes import list_items
 
-_USER_INTERFACE = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
+_USER_INTERFACE_PROGRAM = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
 """Programs that offer nothing to other programs."""
-_JOINT_STATES = "joint_state_publisher"
+_JOINT_STATE_PREFIX = "joint_state_publisher"
 """The common prefix of the names of two packages that publish the same topics."""
-_SPAWNING = re.compile(
+_SPAWN_PROGRAM = re.compile(
     r"(ros_gz_sim|ros_ign_gazebo)/(create|remove)|(gazebo_ros|gazebo)/(spawn_entity\.py|spawn_model)|webots_ros2\w*/.*spawn.*"
 )
 """Programs that request a robot from another program and exit. They offer nothing themselves."""
-_SPAWNING_FILE = re.compile(r"spawn|create")
+_SPAWN_FILE_NAME = re.compile(r"spawn|create")
 """The names of included files and commands that create robots."""
 _SHELL_SCRIPT = re.compile(r".*\.(sh|bash|zsh)")
 _NAME = re.compile(r"[~/\w]+")
-_NAMES_OF_NODES = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remappings")
+_NAME_SETTINGS = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remappings")
 _NAME_ARGUMENT = re.compile(
     r"(^|_)(namespace|ns|robot_name|tf_prefix|frame_prefix|prefix|frame|frame_id|topic|controller|controller_name)$"
 )
 """The arguments whose values, judging by the argument name, are names that other programs use."""
 _MIN_SIMILARITY_OF_NAMES = 0.75
-_NAMES_OF_PROGRAMS = {
+_DEFAULT_NODE_NAMES = {
     "robot_localization/ekf_node": "ekf_filter_node",
     "robot_localization/ukf_node": "ukf_filter_node",
 }
 """The default names of nodes that differ from the name of the program."""
 _BOOLEANS = ("true", "false")
-_CALL = re.compile(r"\w\(")
+_CALL_IN_NAME = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
 _EXPRESSION = "$(eval "
 """The beginning of an expression, whose value is unknown."""
@@ -68,76 +72,102 @@ _TOPIC = re.compile(r"[~/\w]+")
 _FRAME_PREFIX = f"{PARAMETER}frame_prefix"
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
-_NEVER = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
+_DISABLED_NAMESPACE = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
-_Use = tuple[Entry, str, Phrase]
-"""An action, its setting that uses an argument, and the reason why a new default of the argument is breaking."""
-_ALWAYS_SET = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
+_STANDARD_VARIABLES = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
 """The environment variables that every shell sets."""
 
 
-def removal_reason(
-    entry: Entry, outline: LaunchOutline, new: LaunchOutline, *, stops_nodes: bool = False
+class _BreakingUse(NamedTuple):
+    """A use of an argument for which the new default of the argument is breaking.
+
+    Attributes:
+        entry: the action that uses the argument.
+        setting: the setting of the action that uses it.
+        reason: the reason why the new default is breaking.
+    """
+
+    entry: Entry
+    setting: str
+    reason: Phrase
+
+
+def find_removal_reason(
+    entry: Entry, old: LaunchOutline, new: LaunchOutline, *, stops_nodes: bool = False
 ) -> Phrase | None:
     """Return the reason why removing a launch action is breaking, or None if it is not.
 
     Args:
         entry: the action.
-        outline: the outline of the old file, which contains the action.
+        old: the outline of the old file, which contains the action.
         new: the outline of the new file.
         stops_nodes: whether the action includes a file with nodes that nothing else starts in the new version.
     """
     if entry.kind == "argument" and "value" not in entry.settings:
-        return argument_removal_reason(entry.name, is_ros1=outline.is_ros1)
+        return explain_argument_removal(entry.name, is_ros1=old.is_ros1)
     if entry.kind == READING:
         return phrase("a value that a user sets for '{name}' has no effect", name=entry.name)
-    if condition_holds(_resolve_condition(entry, outline)) is False:
+    if evaluate_condition(_resolve_condition(entry, old)) is False:
         return None
     if entry.kind == "remapping":
-        return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
+        return _find_remapping_reason(entry.name, entry.settings.get("to"), None, old, old)
     if _is_spawner(entry):
-        return None if _spawns_as_many(outline, new) else phrase("the robot or model is not spawned any more")
+        return None if _spawns_as_many(old, new) else phrase("the robot or model is not spawned any more")
     if entry.kind not in ("node", "include") or offers_nothing(entry):
         return None
     if entry.kind == "include":
         return phrase("its nodes do not start any more") if stops_nodes else None
-    if any(_starts_same_node(entry, other, outline, new) for other in new.entries):
+    if any(_starts_same_node(entry, other, old, new) for other in new.entries):
         return None
-    if entry.name.startswith(_JOINT_STATES) and any(other.name.startswith(_JOINT_STATES) for other in new.entries):
+    if entry.name.startswith(_JOINT_STATE_PREFIX) and any(
+        other.name.startswith(_JOINT_STATE_PREFIX) for other in new.entries
+    ):
         return None
-    names = _served_names(entry, outline)
-    if entry.name.startswith(TRANSFORM_PUBLISHERS) and _publishes_states(new) and not _publishes_states(outline):
-        return None  # robot_state_publisher may place the frame, which belongs to a joint now
+    names = _find_resolved_served_names(entry, old)
+    if (
+        entry.name.startswith(TRANSFORM_PUBLISHERS)
+        and _publishes_joint_states(new)
+        and not _publishes_joint_states(old)
+    ):
+        return None  # robot_state_publisher may publish the frame, which now belongs to a joint
     if not names:
         if entry.name.startswith(TRANSFORM_PUBLISHERS):
             return phrase("programs that look up the frame of the node do not find it")
         return phrase("the topics and services of the node are missing")
-    return _served_reason(entry, names, new)
+    return _find_served_name_reason(entry, names, new)
 
 
 def _is_spawner(entry: Entry) -> bool:
     """Return whether a node requests a robot or model from a simulator and exits."""
-    return entry.kind == "node" and _SPAWNING.fullmatch(entry.name) is not None and "remove" not in entry.name
+    return entry.kind == "node" and _SPAWN_PROGRAM.fullmatch(entry.name) is not None and "remove" not in entry.name
 
 
 def _spawns_as_many(old: LaunchOutline, new: LaunchOutline) -> bool:
-    """Return whether a file creates as many robots as before, or includes another file that may create them."""
+    """Return whether a file creates at least as many robots as before.
+
+    A new include that may create them is also enough.
+    """
     counts = [sum(map(_is_spawner, outline.entries)) for outline in (old, new)]
     known = {entry.name for entry in old.entries}
-    may_include = any(_SPAWNING_FILE.search(entry.name) and entry.name not in known for entry in new.entries)
+    may_include = any(_SPAWN_FILE_NAME.search(entry.name) and entry.name not in known for entry in new.entries)
     return counts[1] >= counts[0] or may_include
 
 
-def _publishes_states(outline: LaunchOutline) -> bool:
+def _publishes_joint_states(outline: LaunchOutline) -> bool:
     """Return whether a file starts a program that publishes the positions of joints."""
-    return any(entry.kind == "node" and entry.name.startswith(_JOINT_STATES) for entry in outline.entries)
+    return any(entry.kind == "node" and entry.name.startswith(_JOINT_STATE_PREFIX) for entry in outline.entries)
 
 
 def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: LaunchOutline) -> bool:
-    """Return whether a new action may start the node of a removed one, for example under another condition."""
-    if (entry.kind, entry.name) != (other.kind, other.name) or condition_holds(_resolve_condition(other, new)) is False:
+    """Return whether a new action may start the node of a removed one.
+
+    For example, it may have a different condition.
+    """
+    if (entry.kind, entry.name) != (other.kind, other.name) or evaluate_condition(
+        _resolve_condition(other, new)
+    ) is False:
         return False
-    if _served_names(entry, old) != _served_names(other, new):
+    if _find_resolved_served_names(entry, old) != _find_resolved_served_names(other, new):
         return False
     return all(
         _resolve_name(entry.settings.get(setting), old) == _resolve_name(other.settings.get(setting), new)
@@ -145,21 +175,25 @@ def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: Launc
     )
 
 
-def addition_reason(entry: Entry) -> Phrase | None:
+def find_addition_reason(entry: Entry) -> Phrase | None:
     """Return the reason why adding a launch action is breaking, or None if it is not."""
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
-        return _required_reason(entry)
-    if entry.kind == READING and not entry.settings and entry.name not in _ALWAYS_SET:
+        return _explain_required_argument(entry)
+    if entry.kind == READING and not entry.settings and entry.name not in _STANDARD_VARIABLES:
         return phrase("the launch file fails where '{name}' is not set", name=entry.name)
     return None
 
 
-def _required_reason(argument: Entry) -> Phrase:
+def _explain_required_argument(argument: Entry) -> Phrase:
+    """Return the reason why an argument without a default is breaking."""
     return phrase("callers must pass '{name}'", name=argument.name)
 
 
-def argument_removal_reason(name: str, *, is_ros1: bool = False) -> Phrase:
-    """Return the reason why removing an argument is breaking. ROS 1 refuses arguments that a file does not declare."""
+def explain_argument_removal(name: str, *, is_ros1: bool = False) -> Phrase:
+    """Return the reason why removing an argument is breaking.
+
+    ROS 1 refuses arguments that a file does not declare.
+    """
     if is_ros1:
         return phrase("launch files that pass '{name}' to the file fail", name=name)
     return phrase("a value that a caller passes for '{name}' has no effect", name=name)
@@ -167,11 +201,11 @@ def argument_removal_reason(name: str, *, is_ros1: bool = False) -> Phrase:
 
 def offers_nothing(entry: Entry) -> bool:
     """Return whether other programs cannot use anything of the node."""
-    patterns = (_USER_INTERFACE.match, _SPAWNING.fullmatch, _SHELL_SCRIPT.fullmatch)
+    patterns = (_USER_INTERFACE_PROGRAM.match, _SPAWN_PROGRAM.fullmatch, _SHELL_SCRIPT.fullmatch)
     return any(matches(entry.name) is not None for matches in patterns)
 
 
-def setting_reason(
+def find_setting_reason(
     entry: Entry, setting: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
     """Return the reason why a changed setting of an action is breaking, or None if it is not.
@@ -185,52 +219,69 @@ def setting_reason(
         new_outline: the outline of the new file.
     """
     if entry.kind == READING:
-        return addition_reason(entry)
+        return find_addition_reason(entry)
     if entry.kind == "argument":
-        return _argument_reason(entry, setting, old, new, old_outline, new_outline)
+        return _find_argument_reason(entry, setting, old, new, old_outline, new_outline)
     if entry.kind == "remapping" and setting == "to":
-        return _remapping_reason(entry.name, old, new, old_outline, new_outline)
+        return _find_remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
-        return _renaming_reason(old, new, old_outline, new_outline)
+        return _find_renaming_reason(old, new, old_outline, new_outline)
     if entry.kind in ("node", "include") and setting == CONDITION and (_is_spawner(entry) or not offers_nothing(entry)):
-        held = condition_holds(old_outline.resolve(old or ""))
-        does_not_hold = condition_holds(new_outline.resolve(new or "")) is False
-        return phrase("by default, it does not start any more") if held and does_not_hold else None
+        old_holds = evaluate_condition(old_outline.resolve(old or ""))
+        is_stopped = evaluate_condition(new_outline.resolve(new or "")) is False
+        return phrase("by default, it does not start any more") if old_holds and is_stopped else None
     if entry.kind != "node" or offers_nothing(entry):
         return None
     if setting.startswith(REMAPPING):
         source = without_condition(setting).removeprefix(REMAPPING)
-        side = side_of(loaded_class(entry) or entry.name, source, new_outline.root)
-        if is_new_name(entry.name, source, old_outline.root, new_outline.root):
-            return None
-        if side is Side.USES or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
-            return None
-        if old is not None and old_outline.resolve(old) in _remapping_targets(entry, new_outline):
-            return None  # another topic of the node has the name now
-        return _remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
-    if setting == "name" and None in (old, new) and _is_name_of_program(entry, old or new or ""):
+        return _find_node_remapping_reason(entry, source, old, new, old_outline, new_outline)
+    if setting == "name" and None in (old, new) and _is_default_node_name(entry, old or new or ""):
         return None
-    if setting in _NAMES_OF_NODES:
-        return _renaming_reason(old, new, old_outline, new_outline)
-    forwarding = forwarding_reason(entry, setting, old, new, (old_outline, new_outline))
+    if setting in _NAME_SETTINGS:
+        return _find_renaming_reason(old, new, old_outline, new_outline)
+    forwarding = find_forwarding_reason(entry, setting, old, new, (old_outline, new_outline))
     if forwarding is not None:
         return forwarding
     if setting == "arguments":
-        old_names = _names_in_arguments(entry, old, old_outline)
-        new_names = _names_in_arguments(entry, new, new_outline)
+        old_names = _find_names_in_arguments(entry, old, old_outline)
+        new_names = _find_names_in_arguments(entry, new, new_outline)
         removed = [name for name in old_names if name not in new_names]
         is_unknown = any(_EXPRESSION in name for name in new_names)
-        return _served_reason(entry, removed, new_outline) if removed and not is_unknown else None
-    return _parameter_reason(setting, old, new, old_outline, new_outline)
+        return _find_served_name_reason(entry, removed, new_outline) if removed and not is_unknown else None
+    return _find_parameter_reason(setting, old, new, old_outline, new_outline)
 
 
-def _parameter_reason(
+def _find_node_remapping_reason(
+    entry: Entry,
+    source: str,
+    old: str | None,
+    new: str | None,
+    old_outline: LaunchOutline,
+    new_outline: LaunchOutline,
+) -> Phrase | None:
+    """Return the reason why a changed remapping of a node is breaking, or None if it is not."""
+    if is_new_name(entry.name, source, old_outline.root, new_outline.root):
+        return None
+    side = find_side(find_loaded_class(entry) or entry.name, source, new_outline.root)
+    if side is Side.USES or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
+        return None
+    if old is not None and old_outline.resolve(old) in _find_remapping_targets(entry, new_outline):
+        return None  # the new file gives the name to a different topic of the node
+    return _find_remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
+
+
+def _find_parameter_reason(
     setting: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    """Return the reason why a changed parameter is breaking: it names a shared frame or topic, or its type differs."""
+    """Return the reason why a changed parameter is breaking, or None if it is not.
+
+    It may name a shared frame or topic, or have a different type.
+    """
     if setting == _FRAME_PREFIX:
         old_prefix, new_prefix = old_outline.resolve(old or ""), new_outline.resolve(new or "")
-        is_unknown = any(_CALL.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix))
+        is_unknown = any(
+            _CALL_IN_NAME.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix)
+        )
         if old_prefix == new_prefix or is_unknown:
             return None
         return phrase("programs that look up the frames by their old names do not find them")
@@ -243,18 +294,21 @@ def _parameter_reason(
         return name_reason(old_name)
     if new_outline.is_ros1:
         return None  # ROS 1 converts numbers
-    old_value, new_value = _literal_value(old_name), _literal_value(new_name)
+    old_value, new_value = _parse_literal(old_name), _parse_literal(new_name)
     return type_reason(old_value, new_value) if old_value and new_value else None
 
 
-def _literal_value(text: str) -> YamlValue | None:
-    """Return the value of a parameter, or None if its type is unknown. A word may be the name of a variable."""
+def _parse_literal(text: str) -> YamlValue | None:
+    """Return the value of a parameter, or None if its type is unknown.
+
+    A word without quotes may be the name of a variable.
+    """
     value = None if "$(" in text else value_of_text(text)
     is_word = value is not None and value.type in (YamlType.TEXT, YamlType.MIXED) and not text.startswith(("'", '"'))
     return None if is_word else value
 
 
-def _argument_reason(
+def _find_argument_reason(
     entry: Entry,
     setting: str,
     old: str | None,
@@ -262,10 +316,11 @@ def _argument_reason(
     old_outline: LaunchOutline,
     new_outline: LaunchOutline,
 ) -> Phrase | None:
+    """Return the reason why a changed argument is breaking, or None if it is not."""
     if setting == "default" and new is None and "value" not in entry.settings:
-        return _required_reason(entry)
+        return _explain_required_argument(entry)
     if setting == "default" and old is not None and new is not None:
-        return _default_reason(entry, old, new, old_outline, new_outline)
+        return _find_default_reason(entry, old, new, old_outline, new_outline)
     if setting == "choices" and old is not None and new is not None:
         removed = [item for item in list_items(old) if item not in list_items(new)]
         if removed:
@@ -273,16 +328,19 @@ def _argument_reason(
     return None
 
 
-def _default_reason(
+def _find_default_reason(
     argument: Entry, old: str, new: str, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
-    """Return the reason why another default is breaking: a node does not start, or a shared name changes."""
+    """Return the reason why a different default is breaking, or None if it is not.
+
+    A node may not start, or a shared name may change.
+    """
     old_value, new_value = old_outline.resolve(old), new_outline.resolve(new)
     if old_value == new_value:
         return None
-    for short, long in ((old, new), (new, old)):
-        if "/" not in short and "." in short and "/" in long and PurePosixPath(long).name == short:
-            if short is old:
+    for file_name, path in ((old, new), (new, old)):
+        if "/" not in file_name and "." in file_name and "/" in path and PurePosixPath(path).name == file_name:
+            if file_name is old:
                 return phrase("callers that pass the name of a file instead of its path fail")
             return phrase("callers that pass the path of a file instead of its name fail")
     if (
@@ -291,26 +349,26 @@ def _default_reason(
         and new_value.lower() not in _BOOLEANS
     ):
         return phrase("callers that pass '{value}' fail", value=old_value)
-    uses = list(_reasons_of_uses(argument.name, old_outline, new_outline))
+    uses = list(_find_breaking_uses(argument.name, old_outline, new_outline))
     stopped = list(
-        dict.fromkeys(title(entry) for entry, setting, _ in _sort_by_importance(uses) if setting == CONDITION)
+        dict.fromkeys(format_title(use.entry) for use in _sort_by_importance(uses) if use.setting == CONDITION)
     )
     if len(stopped) > 1:
         return phrase("by default, {entries} do not start any more", entries=joined_first(stopped, MAX_NAMES))
     if stopped:
         return phrase("by default, {entry} does not start any more", entry=stopped[0])
-    reason = next((reason for _, _, reason in uses), None)
+    reason = next((use.reason for use in uses), None)
     if reason is None and old_value and _NAME_ARGUMENT.search(argument.name) and "/" not in f"{old_value}{new_value}":
         return name_reason(old_value)
     return reason
 
 
-def _sort_by_importance(uses: list[_Use]) -> list[_Use]:
+def _sort_by_importance(uses: list[_BreakingUse]) -> list[_BreakingUse]:
     """Sort the uses of an argument so that static transforms come last."""
-    return sorted(uses, key=lambda use: use[0].name.startswith(TRANSFORM_PUBLISHERS))
+    return sorted(uses, key=lambda use: use.entry.name.startswith(TRANSFORM_PUBLISHERS))
 
 
-def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchOutline) -> Iterator[_Use]:
+def _find_breaking_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchOutline) -> Iterator[_BreakingUse]:
     """Yield the uses of an argument in settings for which its new default is breaking."""
     variable = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
     for entry in new_outline.entries:
@@ -318,29 +376,35 @@ def _reasons_of_uses(name: str, old_outline: LaunchOutline, new_outline: LaunchO
             continue
         for setting, value in entry.settings.items():
             if variable.search(value):
-                reason = setting_reason(entry, setting, value, value, old_outline, new_outline)
+                reason = find_setting_reason(entry, setting, value, value, old_outline, new_outline)
                 if reason is not None:
-                    yield entry, setting, reason
+                    yield _BreakingUse(entry, setting, reason)
 
 
 def _resolve_condition(entry: Entry, outline: LaunchOutline) -> str:
     return outline.resolve(entry.settings.get(CONDITION, ""))
 
 
-def _served_names(entry: Entry, outline: LaunchOutline) -> list[str]:
-    return _names_in_arguments(entry, entry.settings.get("arguments"), outline)
+def _find_resolved_served_names(entry: Entry, outline: LaunchOutline) -> list[str]:
+    return _find_names_in_arguments(entry, entry.settings.get("arguments"), outline)
 
 
-def _names_in_arguments(entry: Entry, arguments: str | None, outline: LaunchOutline) -> list[str]:
-    """Return the controllers or the frame in the arguments of a node, with the defaults of arguments."""
-    return served_names(Entry(entry.kind, entry.name, {"arguments": outline.resolve(arguments or "")}, entry.span))
+def _find_names_in_arguments(entry: Entry, arguments: str | None, outline: LaunchOutline) -> list[str]:
+    """Return the controllers or the frame in the arguments of a node.
+
+    Variables have the defaults of the launch arguments.
+    """
+    return find_served_names(Entry(entry.kind, entry.name, {"arguments": outline.resolve(arguments or "")}, entry.span))
 
 
-def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase | None:
-    """Return the reason why it is breaking that a node no longer serves names, or None if another node serves them."""
+def _find_served_name_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase | None:
+    """Return the reason why a node that no longer serves names is breaking.
+
+    The result is None if another node serves the names.
+    """
     is_transform = entry.name.startswith(TRANSFORM_PUBLISHERS)
     others = [other for other in new.entries if other.name.startswith(TRANSFORM_PUBLISHERS) == is_transform]
-    served = {name for other in others for name in _served_names(other, new)}
+    served = {name for other in others for name in _find_resolved_served_names(other, new)}
     names = [name for name in names if name not in served]
     if not names:
         return None
@@ -349,9 +413,10 @@ def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase
     return phrase("the topics and services of {controllers} are missing", controllers=", ".join(names))
 
 
-def _renaming_reason(
+def _find_renaming_reason(
     old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
+    """Return the reason why a changed node name or namespace is breaking, or None."""
     old_name, new_name = _resolve_name(old, old_outline), _resolve_name(new, new_outline)
     if (
         _strip_known_prefix(old_name) == _strip_known_prefix(new_name)
@@ -363,29 +428,32 @@ def _renaming_reason(
 
 
 def _strip_known_prefix(name: str) -> str:
-    """Return the part of a name from its last unknown variable, or the whole name. The value may begin with ``/``."""
+    """Return the part of a name from its last unknown variable, or the whole name.
+
+    The value of the variable may begin with ``/``, which discards the prefix.
+    """
     match = _UNKNOWN_NAMESPACE.search(name)
     return name if match is None else match[1]
 
 
-def _is_name_of_program(entry: Entry, name: str) -> bool:
+def _is_default_node_name(entry: Entry, name: str) -> bool:
     """Return whether a name may be the default name of a node, judging by its program.
 
     The program is an executable or the class of a component, such as ``map_server`` and ``nav2::MapServer``.
     """
-    if _NAMES_OF_PROGRAMS.get(entry.name) == name:
+    if _DEFAULT_NODE_NAMES.get(entry.name) == name:
         return True
     program = entry.name.rpartition("/")[2].rpartition("::")[2].removesuffix(".py")
-    return name_likeness(name, program) >= _MIN_SIMILARITY_OF_NAMES
+    return compute_name_similarity(name, program) >= _MIN_SIMILARITY_OF_NAMES
 
 
 def _resolve_name(text: str | None, outline: LaunchOutline) -> str:
     """Return a name with the defaults of the arguments; empty for None."""
     resolved = outline.resolve(text or "").strip("/")
-    return _NEVER.sub("", resolved).strip("/")
+    return _DISABLED_NAMESPACE.sub("", resolved).strip("/")
 
 
-def _remapping_reason(
+def _find_remapping_reason(
     source: str,
     old: str | None,
     new: str | None,
@@ -394,7 +462,9 @@ def _remapping_reason(
     *,
     is_known: bool = False,
 ) -> Phrase | None:
-    """Return the reason why another remapping of a name is breaking, or None if the resulting name is the same.
+    """Return the reason why a changed remapping of a name is breaking.
+
+    The result is None if the resulting name is the same.
 
     Args:
         source: the name in the node.
@@ -408,7 +478,7 @@ def _remapping_reason(
     new_name = new_outline.resolve(source if new is None else new)
     if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
-    if _CALL.search(new_name) or _has_new_variable(old_name, new_name):
+    if _CALL_IN_NAME.search(new_name) or _has_new_variable(old_name, new_name):
         return None  # the name may be the same
     return name_reason(old_name) if is_known else possible_name_reason(old_name)
 
@@ -418,14 +488,17 @@ def _has_new_variable(old: str, new: str) -> bool:
     return not set(_VARIABLE.findall(new)) <= set(_VARIABLE.findall(old))
 
 
-def _remapping_targets(entry: Entry, outline: LaunchOutline) -> set[str]:
+def _find_remapping_targets(entry: Entry, outline: LaunchOutline) -> set[str]:
     """Return the names to which an action remaps others."""
     settings = entry.settings.items()
     return {outline.resolve(value) for name, value in settings if name.startswith(REMAPPING)}
 
 
 def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:
-    """Return whether arguments of nodes remap the names, for example ``--controller-ros-args`` of a spawner."""
+    """Return whether arguments of nodes remap the names.
+
+    An example is ``--controller-ros-args`` of a spawner.
+    """
     words = set(_NAME.findall(names))
     arguments = " ".join(entry.settings.get("arguments", "") for entry in outline.entries)
     return bool(words) and words <= set(_NAME.findall(arguments))

@@ -1,4 +1,4 @@
-"""Expressions in values of launch files: whether two of them differ only in their layout."""
+"""Compare expressions in values of launch files, without their layout."""
 
 from __future__ import annotations
 
@@ -7,25 +7,28 @@ import re
 
 _EXPRESSION = re.compile(r"\s*\$\(eval\s+(?P<text>.*)\)\s*", re.DOTALL)
 _SUBSTITUTION = re.compile(r"\$\([^()]*\)")
-_OUTSIDE_OF_TEXTS = re.compile(r"(?P<text>'[^']*'|\"[^\"]*\")|\s+")
+_STRING_OR_BLANKS = re.compile(r"(?P<text>'[^']*'|\"[^\"]*\")|\s+")
 
 
-def is_same_expression(old: str | None, new: str | None) -> bool:
-    """Return whether two values are expressions that differ only in blanks and needless parentheses."""
+def are_equal_expressions(old: str | None, new: str | None) -> bool:
+    """Return whether two values are expressions with equal meaning.
+
+    Such expressions differ only in blanks and unnecessary parentheses.
+    """
     matches = [_EXPRESSION.fullmatch(text or "") for text in (old, new)]
     texts = [match["text"] for match in matches if match is not None]
-    return len(texts) == 2 and _without_layout(texts[0]) == _without_layout(texts[1])
+    return len(texts) == 2 and _normalize_layout(texts[0]) == _normalize_layout(texts[1])
 
 
-def _without_layout(text: str) -> str:
-    """Return an expression in one form, in which other substitutions are names."""
+def _normalize_layout(text: str) -> str:
+    """Return an expression in normalized layout, with names in place of substitutions."""
     substitutions: dict[str, str] = {}
 
-    def name_of(match: re.Match[str]) -> str:
+    def replace_substitution(match: re.Match[str]) -> str:
         return substitutions.setdefault(match[0], f"_substitution_{len(substitutions)}")
 
     try:
-        form = ast.unparse(ast.parse(_SUBSTITUTION.sub(name_of, text).strip(), mode="eval"))
+        normalized = ast.unparse(ast.parse(_SUBSTITUTION.sub(replace_substitution, text).strip(), mode="eval"))
     except (SyntaxError, ValueError, RecursionError):
-        return _OUTSIDE_OF_TEXTS.sub(lambda match: match["text"] or "", text)
-    return f"{form} {list(substitutions)}"
+        return _STRING_OR_BLANKS.sub(lambda match: match["text"] or "", text)
+    return f"{normalized} {list(substitutions)}"

@@ -1,4 +1,7 @@
-"""Compare the arguments that choose the files of an action: such an argument may choose another file or none."""
+"""Compare the arguments that choose the files of an action.
+
+In the new version, an argument may choose a different file or none.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from collections.abc import Iterator
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.included import callers_of
+from linkwright.review.launches.included import find_callers
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)[^()]*\)")
@@ -17,7 +20,7 @@ _SEPARATORS = frozenset(" ,'\"[]=")
 
 
 class FileChoices:
-    """Report changes of the arguments that choose files in a launch file.
+    """Report changes to the arguments that choose files in a launch file.
 
     Args:
         pair: both versions of the launch file.
@@ -29,40 +32,41 @@ class FileChoices:
         self._pair = pair
         self._old = old
         self._new = new
-        self._seen: set[str] = set()
+        self._reported_texts: set[str] = set()
 
     def compare(self, old: Entry, new: Entry) -> None:
-        """Report the files of an action that depend on other arguments."""
-        old_files, new_files = set(_file_paths(old, self._old)), set(_file_paths(new, self._new))
+        """Report the files of an action that depend on different arguments."""
+        old_files, new_files = set(_find_file_paths(old, self._old)), set(_find_file_paths(new, self._new))
         removed, added = old_files - new_files, new_files - old_files
-        for before in sorted(removed):
-            for after in sorted(added):
-                is_same = self._old.resolve(before) == self._new.resolve(after)
-                is_lone = len(removed) == 1 and (not _argument_names(before) or len(added) == 1)
-                if is_same or is_lone or _last_part(before) == _last_part(after):
-                    self._compare_files(before, after, new)
+        for old_path in sorted(removed):
+            for new_path in sorted(added):
+                is_same_file = self._old.resolve(old_path) == self._new.resolve(new_path)
+                is_only_candidate = len(removed) == 1 and (not _find_argument_names(old_path) or len(added) == 1)
+                if is_same_file or is_only_candidate or _get_file_name(old_path) == _get_file_name(new_path):
+                    self._compare_files(old_path, new_path, new)
 
-    def _compare_files(self, before: str, after: str, entry: Entry) -> None:
+    def _compare_files(self, old_path: str, new_path: str, entry: Entry) -> None:
+        """Report that an action has a different file, or that different arguments choose it."""
         arguments = {argument.name for argument in self._new.entries if argument.kind == "argument"}
-        lost = (_argument_names(before) - _argument_names(after)) & arguments
-        old_file, new_file = self._old.resolve(before), self._new.resolve(after)
+        lost_arguments = (_find_argument_names(old_path) - _find_argument_names(new_path)) & arguments
+        old_file, new_file = self._old.resolve(old_path), self._new.resolve(new_path)
         is_known = not _VARIABLE.search(old_file + new_file)
-        if lost:
-            names = quoted_names(sorted(lost))
-            is_used = (is_known and old_file != new_file) or any(map(self._is_passed, lost))
+        if lost_arguments:
+            names = quoted_names(sorted(lost_arguments))
+            is_breaking = (is_known and old_file != new_file) or any(map(self._is_passed, lost_arguments))
             reason = phrase("the value that a caller passes for {names} chooses another file", names=names)
-            text = phrase("{names} does not choose the file '{file}' any more", names=names, file=after)
+            text = phrase("{names} does not choose the file '{file}' any more", names=names, file=new_path)
             if is_known and old_file != new_file:
                 text = phrase(
                     "{change}; by default, it is '{new}' instead of '{old}'", change=text, old=old_file, new=new_file
                 )
-            self._add(text, entry, reason if is_used else None)
-        elif _argument_names(before) and _argument_names(after) and is_known and old_file != new_file:
+            self._add(text, entry, reason if is_breaking else None)
+        elif _find_argument_names(old_path) and _find_argument_names(new_path) and is_known and old_file != new_file:
             text = phrase("by default, the file is '{new}' instead of '{old}'", old=old_file, new=new_file)
             self._add(text, entry, None)
-        elif not _argument_names(before) and _argument_names(after):
-            names = quoted_names(sorted(_argument_names(after)))
-            text = phrase("the file '{file}' depends on {names} now", file=after, names=names)
+        elif not _find_argument_names(old_path) and _find_argument_names(new_path):
+            names = quoted_names(sorted(_find_argument_names(new_path)))
+            text = phrase("the file '{file}' depends on {names} now", file=new_path, names=names)
             if is_known and old_file == new_file:
                 text = phrase("{change}; by default, it is the same as before", change=text)
             elif is_known:
@@ -70,17 +74,18 @@ class FileChoices:
             self._add(text, entry, None)
 
     def _add(self, text: Phrase, entry: Entry, reason: Phrase | None) -> None:
-        if str(text) not in self._seen:
-            self._seen.add(str(text))
+        """Add a change to the report, unless the report already has a change with this text."""
+        if str(text) not in self._reported_texts:
+            self._reported_texts.add(str(text))
             self._pair.add(text, self._pair.location(entry.span), reason)
 
     def _is_passed(self, name: str) -> bool:
         """Return whether another launch file passes an argument to this one."""
-        callers = callers_of(self._pair.versions.new, self._pair.new_path, name)
+        callers = find_callers(self._pair.versions.new, self._pair.new_path, name)
         return any(name in include.settings for _, include in callers)
 
 
-def _file_paths(entry: Entry, outline: LaunchOutline) -> Iterator[str]:
+def _find_file_paths(entry: Entry, outline: LaunchOutline) -> Iterator[str]:
     """Yield the paths of files in the name and the settings of an action."""
     if entry.has_value:
         return
@@ -93,7 +98,7 @@ def _file_paths(entry: Entry, outline: LaunchOutline) -> Iterator[str]:
 
 
 def _split_words(text: str) -> Iterator[str]:
-    """Yield the words of a text, such as a command line. A substitution is not split."""
+    """Yield the words of a text, such as a command line, without splitting substitutions."""
     word, depth = "", 0
     for character in text.replace("$(command ", " "):
         if depth == 0 and (character in _SEPARATORS or character == ")"):
@@ -107,9 +112,9 @@ def _split_words(text: str) -> Iterator[str]:
         yield word
 
 
-def _argument_names(path: str) -> set[str]:
+def _find_argument_names(path: str) -> set[str]:
     return set(_VARIABLE.findall(path))
 
 
-def _last_part(path: str) -> str:
+def _get_file_name(path: str) -> str:
     return path.rpartition("/")[2]

@@ -11,25 +11,25 @@ from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.breaking import name_reason
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.effects import addition_reason, removal_reason
+from linkwright.review.launches.effects import find_addition_reason, find_removal_reason
+from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
-from linkwright.review.launches.included import IncludedActions, callers_of, file_with_moved_action
+from linkwright.review.launches.included import IncludedActions, find_callers, find_file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
-from linkwright.review.launches.readers_of_environment import reader_of
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
 from linkwright.review.launches.settings import SettingChanges
-from linkwright.review.launches.titles import added_entry_text, join_titles, removed_entry_text, title
-from linkwright.review.launches.transforms import other_publisher
+from linkwright.review.launches.titles import format_added_entry, format_removed_entry, format_title, join_titles
+from linkwright.review.launches.transforms import find_other_publisher
 from linkwright.review.launches.unused_arguments import report_unused_arguments
 from linkwright.review.list_changes import differing_excerpts, shorten
 
-_MAX_SOURCE = 120
+_MAX_STATEMENT_CHARACTERS = 120
 """The maximum number of characters of a statement that are shown."""
-_MAX_STATEMENTS = 3
+_MAX_SHOWN_STATEMENTS = 3
 """The maximum number of changed statements that are shown separately."""
-_VARIABLE = re.compile(r"(?<=\bname )\w+\b|(?<=\barg=')\w+\b(?=')")
+_CODE_NAME = re.compile(r"(?<=\bname )\w+\b|(?<=\barg=')\w+\b(?=')")
 """The names of variables and parameters in the texts of statements."""
 
 
@@ -40,7 +40,7 @@ def compare_launch_files(pair: FilePair) -> None:
     if outlines is None:
         return
     old, new = outlines
-    undeclared = _undeclared_arguments(pair, old, new)
+    undeclared = _find_new_undeclared_arguments(pair, old, new)
     renamed = find_renamed_names(old, new)
     old = rename_in_outline(old, renamed)
     old_names = {new_name: old_name for old_name, new_name in renamed.items()}
@@ -50,20 +50,20 @@ def compare_launch_files(pair: FilePair) -> None:
     )
     settings = SettingChanges(pair, old, new, renamed, included[1])
     choices = FileChoices(pair, old, new)
-    settings.add_renamed()
+    settings.report_renamed()
     removed: list[Entry] = []
     added: list[Entry] = []
-    kept: list[Entry] = []
+    paired_old: list[Entry] = []
     for old_entry, new_entry in match_entries(old.entries, new.entries):
         if old_entry is not None and new_entry is not None:
             settings.compare(old_entry, new_entry)
             choices.compare(old_entry, new_entry)
-            kept.append(old_entry)
+            paired_old.append(old_entry)
         elif old_entry is not None:
             removed.append(old_entry)
         elif new_entry is not None:
             added.append(new_entry)
-    removed, added = ([entry for entry in entries if not _keeps_name(entry)] for entries in (removed, added))
+    removed, added = ([entry for entry in entries if not _remaps_to_itself(entry)] for entries in (removed, added))
     new_paths = {
         file.old_path: file.new_path for file in pair.versions.changed_files if file.old_path and file.new_path
     }
@@ -72,39 +72,52 @@ def compare_launch_files(pair: FilePair) -> None:
         _report_replaced(pair, rename_in_entry(old_entry, old_names), new_entry, outlines)
         settings.compare(old_entry, new_entry)
         choices.compare(old_entry, new_entry)
-    settings.add_groups()
+    settings.report_groups()
     removed = [entry for entry in removed if all(entry is not other for other, _ in replaced)]
     added = [entry for entry in added if all(entry is not other for _, other in replaced)]
-    for name in {entry.name for entry in removed if entry.kind == "argument"} & undeclared.keys():
-        text = phrase("argument '{name}' removed", name=name)
-        reason = phrase("the launch file still uses '{name}', and fails if no other file declares it", name=name)
-        pair.add(text, pair.location(undeclared.pop(name).span), reason)
-        removed = [entry for entry in removed if (entry.kind, entry.name) != ("argument", name)]
-    for name, entry in undeclared.items():
-        text = phrase("{entry} uses argument '{name}', which is not declared", entry=title(entry), name=name)
-        reason = phrase("the launch file fails if no other file declares '{name}'", name=name)
-        pair.add(text, pair.location(entry.span), reason)
-    report_unused_arguments(pair, old, new, [*kept, *(entry for entry, _ in replaced)])
+    _report_undeclared(pair, undeclared, removed)
+    removed = [entry for entry in removed if entry.kind != "argument" or entry.name not in undeclared]
+    report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)])
     if removed or added:
-        _report_lone_entries(pair, removed, added, included, old_names)
+        _report_unpaired_entries(pair, removed, added, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
 
 
+def _report_undeclared(pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry]) -> None:
+    """Report the arguments that only the new version uses without a declaration.
+
+    Args:
+        pair: both versions of the launch file.
+        undeclared: an action that uses each argument, by the name of the argument.
+        removed: the actions that only the old version has, such as the declarations of these arguments.
+    """
+    declared_before = {entry.name for entry in removed if entry.kind == "argument"} & undeclared.keys()
+    for name in declared_before:
+        text = phrase("argument '{name}' removed", name=name)
+        reason = phrase("the launch file still uses '{name}', and fails if no other file declares it", name=name)
+        pair.add(text, pair.location(undeclared[name].span), reason)
+    for name, entry in undeclared.items():
+        if name not in declared_before:
+            text = phrase("{entry} uses argument '{name}', which is not declared", entry=format_title(entry), name=name)
+            reason = phrase("the launch file fails if no other file declares '{name}'", name=name)
+            pair.add(text, pair.location(entry.span), reason)
+
+
 def _report_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outlines: tuple[LaunchOutline, ...]) -> None:
-    """Report an action that replaces another one, or a parameter with a new name."""
+    """Report an action that replaces a different one, or a parameter with a new name."""
     location = pair.location(new_entry.span)
     if old_entry.kind != SERVER_PARAMETER:
-        pair.add(phrase("{old} replaced by {new}", old=title(old_entry), new=title(new_entry)), location)
+        pair.add(phrase("{old} replaced by {new}", old=format_title(old_entry), new=format_title(new_entry)), location)
         return
     old, new = outlines
-    text = phrase("{entry} renamed to '{name}'", entry=title(old_entry), name=new_entry.name)
+    text = phrase("{entry} renamed to '{name}'", entry=format_title(old_entry), name=new_entry.name)
     name = old.resolve(old_entry.name)
     names = {new.resolve(entry.name).strip("/") for entry in new.entries if entry.kind == SERVER_PARAMETER}
     pair.add(text, location, None if name.strip("/") in names else name_reason(name))
 
 
-def _report_lone_entries(
+def _report_unpaired_entries(
     pair: FilePair,
     removed: Sequence[Entry],
     added: Sequence[Entry],
@@ -113,39 +126,52 @@ def _report_lone_entries(
 ) -> None:
     """Report the added, removed and moved actions."""
     old_included, new_included = included
-    stopped = old_included.all_started_programs() - new_included.all_started_programs()
+    stopped = old_included.count_all_started_programs() - new_included.count_all_started_programs()
     moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in added:
-        file = old_included.lone_file(entry, new_included)
-        file = file or file_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False)
+        file = old_included.find_unmatched_file(entry, new_included)
+        file = file or find_file_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False)
         if file is None:
-            pair.add(added_entry_text(entry), pair.location(entry.span), addition_reason(entry))
+            pair.add(format_added_entry(entry), pair.location(entry.span), find_addition_reason(entry))
         else:
             moved.setdefault((file, False), []).append(entry)
     for entry in removed:
-        file = new_included.lone_file(entry, old_included)
+        file = new_included.find_unmatched_file(entry, old_included)
         if file is not None:
             moved.setdefault((file, True), []).append(entry)
             continue
         written = rename_in_entry(entry, old_names)
-        text, location = removed_entry_text(written), pair.location(entry.span, is_old=True)
-        reader = reader_of(pair.versions.new, entry.name, pair.new_path) if entry.kind == READING else None
+        text, location = format_removed_entry(written), pair.location(entry.span, is_old=True)
+        reader = find_reader(pair.versions.new, entry.name, pair.new_path) if entry.kind == READING else None
         if reader is not None:
             pair.add(phrase("{change}; {path} uses it", change=text, path=reader), location)
             continue
-        file = file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
+        file = find_file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
         if file is not None:
-            text = phrase("{entry} moved to {file}", entry=title(written), file=file)
-        publisher = other_publisher(entry, old_included.outline, new_included.outline, pair.versions.new)
+            text = phrase("{entry} moved to {file}", entry=format_title(written), file=file)
+        publisher = find_other_publisher(entry, old_included.outline, new_included.outline, pair.versions.new)
         if publisher is not None:
             pair.add(
-                phrase("{change}; {entry} may publish its transform", change=text, entry=title(publisher)), location
+                phrase("{change}; {entry} may publish its transform", change=text, entry=format_title(publisher)),
+                location,
             )
             continue
-        stops_nodes = entry.kind == "include" and bool(old_included.started_programs(entry) & stopped)
+        stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         pair.add(
-            text, location, removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes)
+            text,
+            location,
+            find_removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes),
         )
+    _report_moved(pair, moved)
+
+
+def _report_moved(pair: FilePair, moved: Mapping[tuple[str, bool], Sequence[Entry]]) -> None:
+    """Report the actions that moved between the launch file and other launch files.
+
+    Args:
+        pair: both versions of the launch file.
+        moved: the moved actions, by the other file and whether they moved to it.
+    """
     for (file, is_old), entries in moved.items():
         titles = join_titles(entries)
         text = phrase("{entry} moved from {file}", entry=titles, file=file)
@@ -154,12 +180,15 @@ def _report_lone_entries(
         pair.add(text, pair.location(entries[0].span, is_old=is_old))
 
 
-def _undeclared_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> dict[str, Entry]:
-    """Return the arguments that only the new version uses undeclared, each with an action that uses it."""
+def _find_new_undeclared_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> dict[str, Entry]:
+    """Return the arguments that are undeclared only in the new version.
+
+    Each comes with an action that uses it.
+    """
     if not is_launch_file_name(pair.new_path):
         return {}
-    old_names = IncludedActions(pair.versions.old, pair.old_path, old).undeclared_arguments()
-    new_names = IncludedActions(pair.versions.new, pair.new_path, new).undeclared_arguments()
+    old_names = IncludedActions(pair.versions.old, pair.old_path, old).find_undeclared_arguments()
+    new_names = IncludedActions(pair.versions.new, pair.new_path, new).find_undeclared_arguments()
     names = {name: entry for name, entry in new_names.items() if name not in old_names}
     return {name: entry for name, entry in names.items() if not _is_declared_by_caller(pair, name)}
 
@@ -168,27 +197,29 @@ def _is_declared_by_caller(pair: FilePair, name: str) -> bool:
     """Return whether a launch file that includes this one passes or declares the argument."""
     return any(
         name in include.settings or (not outline.is_ros1 and name in outline.values)
-        for outline, include in callers_of(pair.versions.new, pair.new_path, name)
+        for outline, include in find_callers(pair.versions.new, pair.new_path, name)
     )
 
 
-def _keeps_name(entry: Entry) -> bool:
-    return entry.is_same_name("to", None, entry.settings.get("to"))
+def _remaps_to_itself(entry: Entry) -> bool:
+    return entry.is_identity_remapping("to", None, entry.settings.get("to"))
 
 
 def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
-    """Compare the code besides the actions: report a few changed statements as written, more of them in one sentence.
+    """Compare the code besides the actions.
 
-    A statement that uses a name with another value differs although it is written as before. The value is reported.
+    A few changed statements are reported one by one, more of them in one sentence.
+
+    A statement that uses a name with a different value differs although its text is the same. The value is reported.
     """
     if [part.text for part in old.code] == [part.text for part in new.code]:
         return
-    removed, added = _without_common(old.code, new.code), _without_common(new.code, old.code)
+    removed, added = _drop_common_parts(old.code, new.code), _drop_common_parts(new.code, old.code)
     if _differ_in_names(removed, added):
         return
-    same = {part.source for part in removed} & {part.source for part in added}
-    if same:
-        removed, added = ([part for part in parts if part.source not in same] for parts in (removed, added))
+    common_sources = {part.source for part in removed} & {part.source for part in added}
+    if common_sources:
+        removed, added = ([part for part in parts if part.source not in common_sources] for parts in (removed, added))
         old_sources, new_sources = ({part.source for part in outline.definitions} for outline in (old, new))
         removed += [part for part in old.definitions if part.source not in new_sources]
         added += [part for part in new.definitions if part.source not in old_sources]
@@ -198,32 +229,38 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
     location = pair.location(added[0].span) if added else None
     if removed and not added:
         location = pair.location(removed[0].span, is_old=True)
-    if 1 <= len(removed) == len(added) <= _MAX_STATEMENTS and all(map(_are_versions, removed, added)):
+    if 1 <= len(removed) == len(added) <= _MAX_SHOWN_STATEMENTS and all(
+        map(_are_versions_of_one_statement, removed, added)
+    ):
         for old_part, new_part in zip(removed, added, strict=True):
-            before, after = differing_excerpts(old_part.source, new_part.source)
-            pair.add(phrase("other code: {old} -> {new}", old=before, new=after), pair.location(new_part.span))
+            old_excerpt, new_excerpt = differing_excerpts(old_part.source, new_part.source)
+            pair.add(
+                phrase("other code: {old} -> {new}", old=old_excerpt, new=new_excerpt), pair.location(new_part.span)
+            )
     else:
-        pair.add(_code_text(removed, added), location)
+        pair.add(_format_code_change(removed, added), location)
 
 
 def _report_failures(pair: FilePair, removed: Sequence[CodePart], added: Sequence[CodePart]) -> list[CodePart]:
     """Report new conditions under which the launch fails, and return the other new statements."""
-    known = {part.failing_condition for part in removed}
-    others = list(added)
+    old_conditions = {part.failing_condition for part in removed}
+    other_statements = list(added)
     for part in added:
         condition = part.failing_condition
-        if condition and condition not in known:
+        if condition and condition not in old_conditions:
             reason = phrase("the launch file fails if `{condition}`", condition=condition)
-            text = phrase("added: {code}", code=shorten(part.source, _MAX_SOURCE))
+            text = phrase("added: {code}", code=shorten(part.source, _MAX_STATEMENT_CHARACTERS))
             pair.add(text, pair.location(part.span), reason)
-            others = [other for other in others if other is not part and other.source != f"if {condition}: ..."]
-    return others
+            other_statements = [
+                other for other in other_statements if other is not part and other.source != f"if {condition}: ..."
+            ]
+    return other_statements
 
 
-def _code_text(removed: Sequence[CodePart], added: Sequence[CodePart]) -> Phrase:
+def _format_code_change(removed: Sequence[CodePart], added: Sequence[CodePart]) -> Phrase:
     """Return the sentence about changed statements, which quotes the first one."""
     parts = added or removed
-    code = shorten(parts[0].source, _MAX_SOURCE)
+    code = shorten(parts[0].source, _MAX_STATEMENT_CHARACTERS)
     if removed and added:
         return phrase("other code changed, such as {code}", code=code)
     text = phrase("other code added: {code}", code=code) if added else phrase("other code removed: {code}", code=code)
@@ -236,13 +273,13 @@ def _code_text(removed: Sequence[CodePart], added: Sequence[CodePart]) -> Phrase
 def _differ_in_names(removed: Sequence[CodePart], added: Sequence[CodePart]) -> bool:
     """Return whether statements differ only in consistently renamed variables and parameters."""
     old, new = ("\n".join(part.text for part in parts) for parts in (removed, added))
-    if _VARIABLE.sub("", old) != _VARIABLE.sub("", new):
+    if _CODE_NAME.sub("", old) != _CODE_NAME.sub("", new):
         return False
-    pairs = set(zip(_VARIABLE.findall(old), _VARIABLE.findall(new), strict=True))
+    pairs = set(zip(_CODE_NAME.findall(old), _CODE_NAME.findall(new), strict=True))
     return len({before for before, _ in pairs}) == len({after for _, after in pairs}) == len(pairs)
 
 
-def _are_versions(old: CodePart, new: CodePart) -> bool:
+def _are_versions_of_one_statement(old: CodePart, new: CodePart) -> bool:
     """Return whether two statements differ and are probably versions of the same one."""
     return (
         old.source != new.source
@@ -250,12 +287,13 @@ def _are_versions(old: CodePart, new: CodePart) -> bool:
     )
 
 
-def _without_common(parts: Sequence[CodePart], others: Sequence[CodePart]) -> list[CodePart]:
-    remaining = Counter(part.text for part in others)
-    lone = []
+def _drop_common_parts(parts: Sequence[CodePart], other_parts: Sequence[CodePart]) -> list[CodePart]:
+    """Return the statements without those that the other version has, each counted once."""
+    remaining_counts = Counter(part.text for part in other_parts)
+    unpaired = []
     for part in parts:
-        if remaining[part.text]:
-            remaining[part.text] -= 1
+        if remaining_counts[part.text]:
+            remaining_counts[part.text] -= 1
         else:
-            lone.append(part)
-    return lone
+            unpaired.append(part)
+    return unpaired

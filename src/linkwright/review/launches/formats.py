@@ -9,14 +9,14 @@ from pathlib import Path, PurePosixPath
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
 
-_LAUNCH_ROOT = re.compile(rb"\s*(<\?[^>]*>\s*)?(<!--(?:[^-]|-(?!->))*-->\s*)*<launch[\s>]")
-_SUFFIX = re.compile(r"[._]launch(\.(py|xml|ya?ml))?$")
+_LAUNCH_ROOT_TAG = re.compile(rb"\s*(<\?[^>]*>\s*)?(<!--(?:[^-]|-(?!->))*-->\s*)*<launch[\s>]")
+_LAUNCH_SUFFIX = re.compile(r"[._]launch(\.(py|xml|ya?ml))?$")
 
 
 def join_format_changes(files: Sequence[ChangedFile]) -> list[ChangedFile]:
-    """Return the changed files, with a launch file converted to another format as one renamed file.
+    """Return the changed files, with a converted launch file as one renamed file.
 
-    Git recognizes renamed files by their text, but Python, XML and YAML have no text in common.
+    Git recognizes renamed files by their text. Launch files in Python, XML and YAML have little text in common.
     """
     added = {_name_without_format(file.new_path): file for file in files if file.new_path and not file.old_path}
     result: list[ChangedFile] = []
@@ -26,7 +26,7 @@ def join_format_changes(files: Sequence[ChangedFile]) -> list[ChangedFile]:
         if (
             counterpart is not None
             and counterpart.new_path
-            and _SUFFIX.search(counterpart.new_path)
+            and _LAUNCH_SUFFIX.search(counterpart.new_path)
             and counterpart.new_path not in matched_paths
         ):
             matched_paths.add(counterpart.new_path)
@@ -37,11 +37,14 @@ def join_format_changes(files: Sequence[ChangedFile]) -> list[ChangedFile]:
 
 
 def _name_without_format(path: str | None) -> tuple[str, str]:
-    """Return the folder of a launch file and its name without the format; two empty strings for other files."""
+    """Return the folder of a launch file and its name without the format.
+
+    Other files give two empty strings.
+    """
     pure_path = PurePosixPath(path or "")
-    if not _SUFFIX.search(pure_path.name):
+    if not _LAUNCH_SUFFIX.search(pure_path.name):
         return "", ""
-    return str(pure_path.parent), _SUFFIX.sub("", pure_path.name)
+    return str(pure_path.parent), _LAUNCH_SUFFIX.sub("", pure_path.name)
 
 
 def is_launch_file(path: str) -> bool:
@@ -50,15 +53,21 @@ def is_launch_file(path: str) -> bool:
 
 
 def is_launch_xml(file: Path) -> bool:
-    """Return whether the root of an XML file is ``<launch>``. Included files may have any name."""
+    """Return whether the root of an XML file is ``<launch>``.
+
+    Included files may have any name.
+    """
     try:
-        return file.suffix == ".xml" and _LAUNCH_ROOT.match(file.read_bytes()) is not None
+        return file.suffix == ".xml" and _LAUNCH_ROOT_TAG.match(file.read_bytes()) is not None
     except OSError:
         return False
 
 
 def is_launch_yaml(file: Path) -> bool:
-    """Return whether a YAML file has the top-level key ``launch``. Included files may have any name."""
+    """Return whether a YAML file has the top-level key ``launch``.
+
+    Included files may have any name.
+    """
     try:
         return re.search(rb"(?m)^launch[ \t]*:", file.read_bytes()) is not None
     except OSError:

@@ -1,4 +1,4 @@
-"""Find functions of the repository that make the actions of launch files, such as methods of mixins."""
+"""Find functions of the repository that make launch actions, such as mixin methods."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.names import LaunchPythonFile
 
-_MAX_DEPTH = 5
-"""The maximum number of files through which a name may be imported."""
+_MAX_IMPORT_DEPTH = 5
+"""The maximum number of files through which a name is imported."""
 _MAX_BYTES = 1 << 20
 _MAX_PASSES = 5000
 """The maximum number of loop passes in a launch file that are read one by one."""
-_LAUNCH = re.compile(r"launch(_\w+)?(\.|$)")
+_LAUNCH_MODULE = re.compile(r"launch(_\w+)?(\.|$)")
 """The modules whose functions are known actions, or are compared as code."""
 
 
@@ -37,11 +37,14 @@ class Function:
     is_method: bool = False
 
 
-def makes_actions(path: Path) -> bool:
-    """Return whether a Python file imports the actions of launch files, so that it can make them for other files."""
-    file = _read(path)
+def imports_actions(path: Path) -> bool:
+    """Return whether a Python file imports the actions of launch files.
+
+    Such a file can make actions for other files.
+    """
+    file = _try_parse(path)
     imports = (node for node in ast.walk(file.tree) if isinstance(node, ast.ImportFrom)) if file else ()
-    return any(not node.level and _LAUNCH.match(node.module or "") for node in imports)
+    return any(not node.level and _LAUNCH_MODULE.match(node.module or "") for node in imports)
 
 
 class HelperFunctions:
@@ -49,67 +52,74 @@ class HelperFunctions:
 
     Args:
         root: the folder of the repository.
-        makes_action: the names of classes whose calls make actions.
+        action_classes: the names of classes whose calls make actions.
     """
 
-    def __init__(self, root: Path, makes_action: frozenset[str]) -> None:
+    def __init__(self, root: Path, action_classes: frozenset[str]) -> None:
         self._root = root
-        self._makes_action = makes_action
-        self._local_names: dict[int, frozenset[str]] = {}
-        self._found: dict[tuple[int, str], Function | None] = {}
-        self._passes = _MAX_PASSES
+        self._action_classes = action_classes
+        self._names_by_file: dict[int, frozenset[str]] = {}
+        self._functions: dict[tuple[int, str], Function | None] = {}
+        self._remaining_passes = _MAX_PASSES
 
-    def take_passes(self, count: int) -> bool:
-        """Return whether a loop may be read for each item, and count its passes. Nested loops could have billions."""
-        if count > self._passes:
+    def reserve_passes(self, count: int) -> bool:
+        """Return whether a loop may be read for each item, and count its passes.
+
+        Without a limit, nested loops could have billions of passes.
+        """
+        if count > self._remaining_passes:
             return False
-        self._passes -= count
+        self._remaining_passes -= count
         return True
 
-    def local_names(self, python: PythonFile) -> frozenset[str]:
-        """Return the names of the functions of a file that make actions and are called by its other code."""
-        names = self._local_names.get(id(python))
+    def find_local_names(self, python: PythonFile) -> frozenset[str]:
+        """Return the names of a file's functions that make actions and are called in it."""
+        names = self._names_by_file.get(id(python))
         if names is None:
             called = {called_name(node) for node in ast.walk(python.tree) if isinstance(node, ast.Call)}
-            functions = (node for node in _definitions_by_name(python).values() if isinstance(node, ast.FunctionDef))
-            names = frozenset(node.name for node in functions if node.name in called and self._makes(node))
-            self._local_names[id(python)] = names
+            functions = (node for node in _index_definitions(python).values() if isinstance(node, ast.FunctionDef))
+            names = frozenset(node.name for node in functions if node.name in called and self._makes_actions(node))
+            self._names_by_file[id(python)] = names
         return names
 
     def find(self, python: PythonFile, call: ast.Call) -> Function | None:
-        """Return the function that a call calls, or None if it is not in the repository or makes no actions."""
+        """Return the called function if it is in the repository and makes actions, or None."""
         name = called_name(call)
         key = id(python), name
-        if key not in self._found:
-            self._found[key] = self._find(python, name)
-        return self._found[key]
+        if key not in self._functions:
+            self._functions[key] = self._find(python, name)
+        return self._functions[key]
 
     def is_foreign(self, python: PythonFile, call: ast.Call) -> bool:
         """Return whether the called function is imported from a package that is not part of launch."""
-        first = called_name(call).partition(".")[0]
-        modules = [module for module, _ in _import_sources(python, first)]
-        return bool(modules) and not any(_LAUNCH.match(module) for module in modules) and not self.find(python, call)
+        first_name = called_name(call).partition(".")[0]
+        modules = [module for module, _ in _find_import_sources(python, first_name)]
+        return (
+            bool(modules)
+            and not any(_LAUNCH_MODULE.match(module) for module in modules)
+            and not self.find(python, call)
+        )
 
     def _find(self, python: PythonFile, name: str) -> Function | None:
-        first, _, method = name.partition(".")
-        if not first or "." in method:
+        first_name, _, method = name.partition(".")
+        if not first_name or "." in method:
             return None
-        definition = self._find_definition(python, first, 0)
+        definition = self._find_definition(python, first_name, 0)
         if definition is None:
             return None
         file, node = definition
         if isinstance(node, ast.FunctionDef):
-            return Function(file, node) if self._makes(node) and not method else None
+            return Function(file, node) if self._makes_actions(node) and not method else None
         return self._find_method(file, node, method, 0)
 
-    def _find_method(self, file: PythonFile, owner: ast.ClassDef, name: str, depth: int) -> Function | None:
+    def _find_method(self, file: PythonFile, class_node: ast.ClassDef, name: str, depth: int) -> Function | None:
         """Return a method of a class or of its base classes, or None if it does not make actions."""
-        methods = {item.name: item for item in owner.body if isinstance(item, ast.FunctionDef)}
-        found = methods.get(name)
-        if found is not None:
-            is_method = "staticmethod" not in map(ast.unparse, found.decorator_list)
-            return Function(file, found, is_method) if self._makes(found) else None
-        for base in owner.bases if depth < _MAX_DEPTH else ():
+        methods = {item.name: item for item in class_node.body if isinstance(item, ast.FunctionDef)}
+        method = methods.get(name)
+        if method is not None:
+            is_method = "staticmethod" not in map(ast.unparse, method.decorator_list)
+            return Function(file, method, is_method) if self._makes_actions(method) else None
+        for base in class_node.bases if depth < _MAX_IMPORT_DEPTH else ():
             definition = self._find_definition(file, base.id, 0) if isinstance(base, ast.Name) else None
             if definition is not None and isinstance(definition[1], ast.ClassDef):
                 inherited = self._find_method(definition[0], definition[1], name, depth + 1)
@@ -117,29 +127,29 @@ class HelperFunctions:
                     return inherited
         return None
 
-    def _makes(self, function: ast.FunctionDef) -> bool:
+    def _makes_actions(self, function: ast.FunctionDef) -> bool:
         """Return whether a function makes actions."""
         calls = (node for node in ast.walk(function) if isinstance(node, ast.Call))
-        return any(called_name(call).rpartition(".")[2] in self._makes_action for call in calls)
+        return any(called_name(call).rpartition(".")[2] in self._action_classes for call in calls)
 
     def _find_definition(
         self, python: PythonFile, name: str, depth: int
     ) -> tuple[PythonFile, ast.FunctionDef | ast.ClassDef] | None:
         """Return the definition of a function or class that a file defines or imports."""
-        own = _definitions_by_name(python).get(name)
-        if own is not None:
-            return python, own
-        if depth >= _MAX_DEPTH:
+        definition = _index_definitions(python).get(name)
+        if definition is not None:
+            return python, definition
+        if depth >= _MAX_IMPORT_DEPTH:
             return None
-        for module, imported in _import_sources(python, name):
-            for path in self._module_files(module, Path(python.source.name)):
-                file = _read(path)
-                found = None if file is None else self._find_definition(file, imported, depth + 1)
-                if found is not None:
-                    return found
+        for module, imported in _find_import_sources(python, name):
+            for path in self._find_module_files(module, Path(python.source.name)):
+                file = _try_parse(path)
+                imported_definition = None if file is None else self._find_definition(file, imported, depth + 1)
+                if imported_definition is not None:
+                    return imported_definition
         return None
 
-    def _module_files(self, module: str, importer: Path) -> Iterator[Path]:
+    def _find_module_files(self, module: str, importer: Path) -> Iterator[Path]:
         """Yield the files of the repository that can be a module."""
         level = len(module) - len(module.lstrip("."))
         parts = tuple(part for part in module.split(".") if part)
@@ -151,17 +161,17 @@ class HelperFunctions:
             ]
             yield from (path for path in paths if path.is_relative_to(self._root))
             return
-        for path in _python_files(self._root):
-            names = (*path.parts[:-1], path.stem) if path.stem != "__init__" else path.parts[:-1]
-            if names[-len(parts) :] == parts:
+        for path in _find_python_files(self._root):
+            module_parts = (*path.parts[:-1], path.stem) if path.stem != "__init__" else path.parts[:-1]
+            if module_parts[-len(parts) :] == parts:
                 yield path
 
 
-def _definitions_by_name(python: PythonFile) -> dict[str, ast.FunctionDef | ast.ClassDef]:
+def _index_definitions(python: PythonFile) -> dict[str, ast.FunctionDef | ast.ClassDef]:
     return {node.name: node for node in python.tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
 
 
-def _import_sources(python: PythonFile, name: str) -> Iterator[tuple[str, str]]:
+def _find_import_sources(python: PythonFile, name: str) -> Iterator[tuple[str, str]]:
     """Yield the modules from which a file imports a name, with its name there."""
     for node in ast.walk(python.tree):
         if isinstance(node, ast.ImportFrom):
@@ -171,8 +181,11 @@ def _import_sources(python: PythonFile, name: str) -> Iterator[tuple[str, str]]:
 
 
 @lru_cache(maxsize=8)
-def _python_files(root: Path) -> tuple[Path, ...]:
-    """Return the Python files below a folder. The result is cached: the folder does not change during a review."""
+def _find_python_files(root: Path) -> tuple[Path, ...]:
+    """Return the Python files below a folder.
+
+    The result is cached because the folder does not change during a review.
+    """
     files = (
         path
         for path in sorted(root.rglob("*.py"))
@@ -182,7 +195,7 @@ def _python_files(root: Path) -> tuple[Path, ...]:
 
 
 @lru_cache(maxsize=64)
-def _read(path: Path) -> PythonFile | None:
+def _try_parse(path: Path) -> PythonFile | None:
     """Return a parsed file, or None if it cannot be read."""
     try:
         if path.stat().st_size > _MAX_BYTES:

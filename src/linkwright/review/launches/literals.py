@@ -1,4 +1,4 @@
-"""Find the literals passed to functions and loops that appear in the actions of a launch file."""
+"""Find the literals, passed to functions and loops, that appear in launch actions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.launches.outlines import Entry
 
 _MAX_DEPTH = 20
-_VIEWS = ("items", "keys", "values")
+_VIEW_METHODS = ("items", "keys", "values")
 """The methods of dictionaries whose results loops use."""
 _LITERAL_NODES = (ast.Constant, ast.JoinedStr, ast.BinOp, ast.UnaryOp)
 
@@ -23,40 +23,41 @@ class Literals:
 
     Args:
         python: the parsed file.
-        with_keys: whether to mark the keys of dictionaries, too. The code cannot look up marked keys.
+        marks_keys: whether to also mark the keys of dictionaries. The code cannot look up marked keys.
     """
 
-    def __init__(self, python: PythonFile, *, with_keys: bool) -> None:
+    def __init__(self, python: PythonFile, *, marks_keys: bool) -> None:
         self._python = python
-        self._with_keys = with_keys
+        self._marks_keys = marks_keys
         self._copies: dict[int, tuple[ast.expr, ast.expr]] = {}
 
     def mark_literals(self, node: ast.expr) -> ast.expr:
         """Return an expression with marks in place of its literals."""
         return self._mark_literals(node, 0)
 
-    def find_shown(self, entries: Iterable[Entry]) -> set[int]:
+    def find_shown_literals(self, entries: Iterable[Entry]) -> set[int]:
         """Return the identities (`id`) of the literals whose marks appear in actions."""
         texts = [text for entry in entries for text in (entry.name, *entry.settings, *entry.settings.values())]
-        found = "\n".join(texts)
-        return {key for key in self._copies if _mark_text(key) in found}
+        joined_texts = "\n".join(texts)
+        return {key for key in self._copies if _make_mark(key) in joined_texts}
 
     def _mark_literals(self, node: ast.expr, depth: int) -> ast.expr:
         known = self._copies.get(id(node))
         if known is None:
-            known = self._copies[id(node)] = node, self._copy(node, depth + 1)
+            known = self._copies[id(node)] = node, self._copy_with_marks(node, depth + 1)
         return known[1]
 
-    def _copy(self, node: ast.expr, depth: int) -> ast.expr:
+    def _copy_with_marks(self, node: ast.expr, depth: int) -> ast.expr:
+        """Return a copy of an expression with marks in place of its literals."""
         container = _find_container(self._python, node)
         if depth > _MAX_DEPTH or (container is None and not _is_literal(self._python, node)):
             return node
         if container is None:
-            return ast.copy_location(ast.Constant(_mark_text(id(node))), node)
+            return ast.copy_location(ast.Constant(_make_mark(id(node))), node)
         changed = copy(container)
         if isinstance(changed, ast.Dict):
             changed.values = [self._mark_literals(value, depth) for value in changed.values]
-            if self._with_keys:
+            if self._marks_keys:
                 changed.keys = [None if key is None else self._mark_literals(key, depth) for key in changed.keys]
         elif isinstance(changed, (ast.List, ast.Tuple)):
             changed.elts = [self._mark_literals(item, depth) for item in changed.elts]
@@ -119,7 +120,10 @@ class CoveredLiterals:
         return not _is_literal(self._python, node) or id(node) in self._shown
 
     def _add_item(self, key: ast.expr | None, value: ast.expr) -> bool:
-        """Add an item of a dictionary. If the value appears in no action, its key is part of the other code, too."""
+        """Add an item of a dictionary, and return whether all of it appears in actions.
+
+        If the value appears in no action, its key is also part of the other code.
+        """
         is_covered = self.add(value)
         if is_covered and key is not None and (id(key) in self._shown_keys or not _is_literal(self._python, key)):
             self.covered.add(id(key))
@@ -128,10 +132,13 @@ class CoveredLiterals:
 
 
 def _find_container(python: PythonFile, node: ast.expr) -> ast.expr | None:
-    """Return the dictionary, list or dictionary view of an expression; None for other expressions."""
+    """Return the container of an expression, or None if it has none.
+
+    A container is a dictionary, a list or a dictionary view.
+    """
     node = python.resolved(node)
     if isinstance(node, ast.Call):
-        is_view = isinstance(node.func, ast.Attribute) and node.func.attr in _VIEWS and not node.args
+        is_view = isinstance(node.func, ast.Attribute) and node.func.attr in _VIEW_METHODS and not node.args
         return node if is_view else None
     return node if isinstance(node, (ast.Dict, ast.List, ast.Tuple)) else None
 
@@ -141,5 +148,5 @@ def _is_literal(python: PythonFile, node: ast.expr) -> bool:
     return isinstance(value, _LITERAL_NODES) and not (isinstance(value, ast.Constant) and value.value is None)
 
 
-def _mark_text(key: int) -> str:
+def _make_mark(key: int) -> str:
     return f"\x01{key}\x01"

@@ -8,26 +8,26 @@ from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
 from linkwright.review.launches.outlines import CONDITION, NAMESPACE_OF_INCLUDED, SERVER_PARAMETER, Entry
-from linkwright.review.launches.titles import served_names
+from linkwright.review.launches.titles import find_served_names
 
 MIN_SIMILARITY = 0.5
 _MIN_SIMILARITY_OF_PROGRAMS = 0.75
 _MIN_SIMILARITY_OF_FILES = 0.6
 _SEPARATORS = re.compile(r"[\W_]+|node")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
-_PACKAGE = re.compile(r"\$\(find(?:-pkg-share)? [^()]+\)/")
-_PLACE = frozenset({CONDITION, NAMESPACE_OF_INCLUDED})
+_PACKAGE_FOLDER = re.compile(r"\$\(find(?:-pkg-share)? [^()]+\)/")
+_CONTEXT_SETTINGS = frozenset({CONDITION, NAMESPACE_OF_INCLUDED})
 """The settings of an include that are not passed arguments."""
-_MIN_PASSED = 2
-_MIN_SHARE_OF_PASSED = 0.5
+_MIN_COMMON_ARGUMENTS = 2
+_MIN_SHARE_OF_COMMON_ARGUMENTS = 0.5
 """The number and the share of passed arguments that an include keeps if another file replaces the included one."""
-_NODELET = re.compile(r"(?:load|standalone) (\S+)")
+_LOADED_NODELET = re.compile(r"(?:load|standalone) (\S+)")
 Match = tuple["Entry | None", "Entry | None"]
 """The old and the new action; None for a version that lacks the action."""
 
 
 def match_entries(old: Sequence[Entry], new: Sequence[Entry]) -> Iterator[Match]:
-    """Yield the pairs of actions of the same kind and name, then the actions that only one version has."""
+    """Yield the pairs of actions of the same kind and name, then the unpaired actions."""
     old_groups, new_groups = _group_by_name(old), _group_by_name(new)
     for key in dict.fromkeys([*new_groups, *old_groups]):
         yield from _match_group(old_groups.get(key, []), new_groups.get(key, []))
@@ -44,7 +44,9 @@ def find_replacements(
         new_paths: the new paths of renamed files, by old path.
     """
     names = {PurePosixPath(old).name: PurePosixPath(new).name for old, new in new_paths.items()}
-    scores = [(_replacement_score(a, b, names), i, k) for i, a in enumerate(removed) for k, b in enumerate(added)]
+    scores = [
+        (_compute_replacement_score(a, b, names), i, k) for i, a in enumerate(removed) for k, b in enumerate(added)
+    ]
     pairs: dict[int, int] = {}
     for score, i, k in sorted(scores, key=lambda item: (-item[0], item[1], item[2])):
         if score and i not in pairs and k not in pairs.values():
@@ -52,26 +54,28 @@ def find_replacements(
     return [(removed[i], added[k]) for i, k in sorted(pairs.items(), key=lambda pair: pair[1])]
 
 
-def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> float:
+def _compute_replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> float:
     """Return a score for how certainly one action replaces another; 0 if it does not."""
     if old.kind != new.kind:
         return 0.0
     if old.kind == "environment":
         return float(old.settings == new.settings)
     if old.kind == SERVER_PARAMETER:
-        return _parameter_score(old, new)
-    similarity = _settings_similarity(old, new)
+        return _compute_parameter_score(old, new)
+    similarity = _compute_settings_similarity(old, new)
     if old.kind in ("include", "parameters"):
         old_name = PurePosixPath(old.name).name
-        is_same = launch_file_key(new_names.get(old_name, old_name)) == launch_file_key(new.name)
-        is_same = is_same or (old.kind == "parameters" and _chooses_file(old.name, new.name))
-        likeness = SequenceMatcher(None, launch_file_key(old.name), launch_file_key(new.name), autojunk=False).ratio()
-        if likeness < _MIN_SIMILARITY_OF_FILES and not is_same:
-            return similarity * _is_other_file_of_package(old, new)
-        is_like = bool(old.settings) and old.settings == new.settings
-        is_beside = old.kind == "include" and PurePosixPath(old.name).parent == PurePosixPath(new.name).parent
-        return 1.0 + similarity if is_same else likeness * (is_like or is_beside)
-    if old.kind != "node" or _load_other_classes(old, new):
+        is_same_file = get_launch_file_stem(new_names.get(old_name, old_name)) == get_launch_file_stem(new.name)
+        is_same_file = is_same_file or (old.kind == "parameters" and _chooses_file(old.name, new.name))
+        name_similarity = SequenceMatcher(
+            None, get_launch_file_stem(old.name), get_launch_file_stem(new.name), autojunk=False
+        ).ratio()
+        if name_similarity < _MIN_SIMILARITY_OF_FILES and not is_same_file:
+            return similarity * _are_files_of_same_package(old, new)
+        has_equal_settings = bool(old.settings) and old.settings == new.settings
+        is_in_same_folder = old.kind == "include" and PurePosixPath(old.name).parent == PurePosixPath(new.name).parent
+        return 1.0 + similarity if is_same_file else name_similarity * (has_equal_settings or is_in_same_folder)
+    if old.kind != "node" or _load_different_classes(old, new):
         return 0.0
     (old_package, old_program), (new_package, new_program) = _split_program_name(old), _split_program_name(new)
     name = old.settings.get("name")
@@ -79,25 +83,38 @@ def _replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> 
         return 3.0 + similarity
     if old_program == new_program:
         return 2.0 + similarity if similarity >= MIN_SIMILARITY or not (old.settings and new.settings) else 0.0
-    likeness = name_likeness(old_program.rpartition("::")[2], new_program.rpartition("::")[2])
-    others = (old_package, new_package), (name or "", new.settings.get("name", ""))
-    is_renamed = all(a == b or name_likeness(a, b) >= _MIN_SIMILARITY_OF_PROGRAMS for a, b in others)
-    is_like = likeness >= _MIN_SIMILARITY_OF_PROGRAMS and (similarity >= MIN_SIMILARITY or likeness == 1.0)
-    return likeness + similarity if is_like and is_renamed else 0.0
+    name_similarity = compute_name_similarity(old_program.rpartition("::")[2], new_program.rpartition("::")[2])
+    other_names = (old_package, new_package), (name or "", new.settings.get("name", ""))
+    is_renamed = all(a == b or compute_name_similarity(a, b) >= _MIN_SIMILARITY_OF_PROGRAMS for a, b in other_names)
+    is_similar = name_similarity >= _MIN_SIMILARITY_OF_PROGRAMS and (
+        similarity >= MIN_SIMILARITY or name_similarity == 1.0
+    )
+    return name_similarity + similarity if is_similar and is_renamed else 0.0
 
 
-def _is_other_file_of_package(old: Entry, new: Entry) -> bool:
-    """Return whether two includes pass mostly equal arguments to different files of the same package."""
-    packages = {match[0] if (match := _PACKAGE.match(entry.name)) else "" for entry in (old, new)}
-    common = old.settings.items() & new.settings.items()
-    common = {(name, value) for name, value in common if name not in _PLACE}
-    count = len(old.settings.keys() - _PLACE)
-    is_same_place = all(old.settings.get(name) == new.settings.get(name) for name in _PLACE)
-    is_mostly_same = len(common) >= max(_MIN_PASSED, count * _MIN_SHARE_OF_PASSED)
-    return old.kind == "include" and len(packages) == 1 and "" not in packages and is_same_place and is_mostly_same
+def _are_files_of_same_package(old: Entry, new: Entry) -> bool:
+    """Return whether two includes replace each other in a package.
+
+    They pass mostly equal arguments to different files of the same package.
+    """
+    packages = {match[0] if (match := _PACKAGE_FOLDER.match(entry.name)) else "" for entry in (old, new)}
+    common_arguments = old.settings.items() & new.settings.items()
+    common_arguments = {(name, value) for name, value in common_arguments if name not in _CONTEXT_SETTINGS}
+    argument_count = len(old.settings.keys() - _CONTEXT_SETTINGS)
+    has_same_context = all(old.settings.get(name) == new.settings.get(name) for name in _CONTEXT_SETTINGS)
+    has_common_arguments = len(common_arguments) >= max(
+        _MIN_COMMON_ARGUMENTS, argument_count * _MIN_SHARE_OF_COMMON_ARGUMENTS
+    )
+    return (
+        old.kind == "include"
+        and len(packages) == 1
+        and "" not in packages
+        and has_same_context
+        and has_common_arguments
+    )
 
 
-def _parameter_score(old: Entry, new: Entry) -> float:
+def _compute_parameter_score(old: Entry, new: Entry) -> float:
     """Return a score for how certainly a server parameter was renamed; 0 if it was not.
 
     Many parameters have values such as ``true``, so an equal value is not enough.
@@ -107,24 +124,27 @@ def _parameter_score(old: Entry, new: Entry) -> float:
     if f"/{old.name}".endswith(f"/{new.name}") or f"/{new.name}".endswith(f"/{old.name}"):
         return 3.0  # another namespace
     old_words, new_words = (sorted(filter(None, _SEPARATORS.split(entry.name))) for entry in (old, new))
-    likeness = name_likeness(old.name, new.name)
+    name_similarity = compute_name_similarity(old.name, new.name)
     if old_words == new_words:
         return 2.0
-    return likeness if likeness >= _MIN_SIMILARITY_OF_PROGRAMS else 0.0
+    return name_similarity if name_similarity >= _MIN_SIMILARITY_OF_PROGRAMS else 0.0
 
 
-def _chooses_file(path: str, fixed: str) -> bool:
-    """Return whether a path chooses a file by arguments, and the fixed path is a file in its folder."""
+def _chooses_file(path: str, fixed_path: str) -> bool:
+    """Return whether a path chooses a file by arguments, such as the file of a fixed path."""
     folder, _, name = path.rpartition("/")
-    fixed_folder, _, fixed_name = fixed.rpartition("/")
+    fixed_folder, _, fixed_name = fixed_path.rpartition("/")
     pieces = _VARIABLE.split(name)
     if folder != fixed_folder or len(pieces) == 1 or "$(" in fixed_name:
         return False
     return re.fullmatch(".+".join(map(re.escape, pieces)), fixed_name) is not None
 
 
-def name_likeness(old: str, new: str) -> float:
-    """Return the similarity of two names, from 0 to 1, without separators and the word ``node``."""
+def compute_name_similarity(old: str, new: str) -> float:
+    """Return the similarity of two names, from 0 to 1.
+
+    Separators and the word ``node`` do not count.
+    """
     old_word, new_word = (_SEPARATORS.sub("", text.lower()) for text in (old, new))
     return SequenceMatcher(None, old_word, new_word, autojunk=False).ratio()
 
@@ -134,7 +154,7 @@ def _split_program_name(entry: Entry) -> tuple[str, str]:
     return package, program.removesuffix(".py")
 
 
-def launch_file_key(path: str) -> str:
+def get_launch_file_stem(path: str) -> str:
     """Return the name of a launch file without endings such as ``.launch.py``."""
     name = PurePosixPath(path).name
     return re.sub(r"[._]launch(\.(py|xml|ya?ml))?$|\.(py|xml|ya?ml)$", "", name)
@@ -147,62 +167,64 @@ def _group_by_name(entries: Sequence[Entry]) -> dict[tuple[str, str], list[Entry
     return groups
 
 
-def loaded_class(entry: Entry) -> str | None:
+def find_loaded_class(entry: Entry) -> str | None:
     """Return the class that a nodelet loads, or None for another action."""
-    match = _NODELET.match(entry.settings.get("arguments", "")) if entry.name == "nodelet/nodelet" else None
+    match = _LOADED_NODELET.match(entry.settings.get("arguments", "")) if entry.name == "nodelet/nodelet" else None
     return None if match is None else match[1]
 
 
-def _load_other_classes(old: Entry, new: Entry) -> bool:
+def _load_different_classes(old: Entry, new: Entry) -> bool:
     """Return whether two nodelets load different classes."""
-    classes = {loaded for entry in (old, new) if (loaded := loaded_class(entry)) is not None}
+    classes = {loaded for entry in (old, new) if (loaded := find_loaded_class(entry)) is not None}
     return old.name == new.name == "nodelet/nodelet" and len(classes) > 1
 
 
 def _match_group(old: list[Entry], new: list[Entry]) -> Iterator[Match]:
-    """Yield the pairs of matched entries of a group. An entry without a partner is paired with None.
+    """Yield the pairs of matched entries of a group.
+
+    An entry without a partner is paired with None.
 
     Equal entries are matched first, then those with the same node name, then those that serve the same names, and then
     the most similar ones.
     """
-    old_rest, new_rest = list(old), list(new)
+    remaining_old, remaining_new = list(old), list(new)
     pairs: list[tuple[Entry, Entry]] = []
     criteria: tuple[Callable[[Entry, Entry], bool], ...] = (_are_equal, _have_same_node_name, _serve_same_names)
     for is_match in criteria:
-        for entry in tuple(new_rest):
-            match = next((other for other in old_rest if is_match(other, entry)), None)
-            if match is not None:
-                old_rest.remove(match)
-                new_rest.remove(entry)
-                pairs.append((match, entry))
+        for entry in tuple(remaining_new):
+            partner = next((old_entry for old_entry in remaining_old if is_match(old_entry, entry)), None)
+            if partner is not None:
+                remaining_old.remove(partner)
+                remaining_new.remove(entry)
+                pairs.append((partner, entry))
     candidates = sorted(
         (
-            (_settings_similarity(other, entry), i, k)
-            for i, other in enumerate(old_rest)
-            for k, entry in enumerate(new_rest)
+            (_compute_settings_similarity(old_entry, entry), i, k)
+            for i, old_entry in enumerate(remaining_old)
+            for k, entry in enumerate(remaining_new)
         ),
         key=lambda item: (-item[0], item[1], item[2]),
     )
-    old_left, new_left = set(range(len(old_rest))), set(range(len(new_rest)))
+    unpaired_old, unpaired_new = set(range(len(remaining_old))), set(range(len(remaining_new)))
     for similarity, i, k in candidates:
-        if new_rest[k].kind == "process" and similarity < MIN_SIMILARITY:
+        if remaining_new[k].kind == "process" and similarity < MIN_SIMILARITY:
             continue
-        if _load_other_classes(old_rest[i], new_rest[k]):
+        if _load_different_classes(remaining_old[i], remaining_new[k]):
             continue
-        if i in old_left and k in new_left:
-            old_left.remove(i)
-            new_left.remove(k)
-            pairs.append((old_rest[i], new_rest[k]))
+        if i in unpaired_old and k in unpaired_new:
+            unpaired_old.remove(i)
+            unpaired_new.remove(k)
+            pairs.append((remaining_old[i], remaining_new[k]))
     yield from sorted(pairs, key=lambda item: new.index(item[1]))
-    yield from ((None, new_rest[k]) for k in sorted(new_left))
-    yield from ((old_rest[i], None) for i in sorted(old_left))
+    yield from ((None, remaining_new[k]) for k in sorted(unpaired_new))
+    yield from ((remaining_old[i], None) for i in sorted(unpaired_old))
 
 
 def _are_equal(old: Entry, new: Entry) -> bool:
-    return old.settings == new.settings and _command_words(old) == _command_words(new)
+    return old.settings == new.settings and _get_commands(old) == _get_commands(new)
 
 
-def _command_words(entry: Entry) -> list[str]:
+def _get_commands(entry: Entry) -> list[str]:
     return [entry.name] if entry.kind == "process" else []
 
 
@@ -211,14 +233,14 @@ def _have_same_node_name(old: Entry, new: Entry) -> bool:
 
 
 def _serve_same_names(old: Entry, new: Entry) -> bool:
-    names = served_names(new)
-    return bool(names) and served_names(old) == names
+    names = find_served_names(new)
+    return bool(names) and find_served_names(old) == names
 
 
-def _settings_similarity(old: Entry, new: Entry) -> float:
+def _compute_settings_similarity(old: Entry, new: Entry) -> float:
     """Return the similarity of the settings, and of the commands of processes, from 0 to 1."""
     old_words, new_words = (
-        " ".join([*(f"{name}={value}" for name, value in entry.settings.items()), *_command_words(entry)]).split()
+        " ".join([*(f"{name}={value}" for name, value in entry.settings.items()), *_get_commands(entry)]).split()
         for entry in (old, new)
     )
     return SequenceMatcher(None, old_words, new_words, autojunk=False).ratio()

@@ -9,19 +9,19 @@ from functools import cached_property
 
 from linkwright.packages.readers.python_values import PythonFile
 
-_MAX_DEPTH = 40
-_EVERYWHERE = (0, 1 << 30)
+_MAX_ASSIGNMENTS = 40
+_WHOLE_FILE = (0, 1 << 30)
 _Branching = ast.If | ast.For | ast.While | ast.Try
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 
 @dataclass(frozen=True)
 class _Binding:
-    """A place that gives a name a value.
+    """A statement that gives a name a value.
 
     Attributes:
         line: the last line of the statement.
-        value: the value, or None if it is not written there, such as for parameters of functions.
+        value: the value; None if the statement does not contain it, as for parameters of functions.
         block: the first and last line of the block in which the value certainly applies.
     """
 
@@ -31,49 +31,58 @@ class _Binding:
 
 
 class LaunchPythonFile(PythonFile):
-    """A Python launch file. A name has the value of the last assignment before it in its function."""
+    """A Python launch file.
+
+    A name has the value of the last assignment before it in its function.
+    """
 
     def resolved(self, node: ast.expr) -> ast.expr:
         """Return the expression that is assigned to a name, and any other expression unchanged."""
-        for _ in range(_MAX_DEPTH):
+        for _ in range(_MAX_ASSIGNMENTS):
             if not isinstance(node, ast.Name):
                 break
-            value = self.assigned_expression(node.id) or self._last_value(node)
+            value = self.assigned_expression(node.id) or self._find_last_value(node)
             if value is None:
                 break
             node = value
         return node
 
-    def _last_value(self, node: ast.Name) -> ast.expr | None:
+    def _find_last_value(self, node: ast.Name) -> ast.expr | None:
         """Return the last value of a name before a line, or None if it is not certain."""
-        for start, end, bindings in self._functions:
-            before = [binding for binding in bindings.get(node.id, ()) if binding.line < node.lineno]
+        for start, end, bindings in self._scopes:
+            earlier = [binding for binding in bindings.get(node.id, ()) if binding.line < node.lineno]
             if start <= node.lineno <= end and node.id in bindings:
-                latest = max(before, key=lambda binding: binding.line) if before else None
+                latest = max(earlier, key=lambda binding: binding.line) if earlier else None
                 is_certain = latest is not None and latest.block[0] <= node.lineno <= latest.block[1]
                 return latest.value if latest is not None and is_certain else None
         return None
 
     @cached_property
-    def _functions(self) -> list[tuple[int, int, dict[str, list[_Binding]]]]:
-        """The first line, last line and bindings of each function, the innermost first, and finally of the file."""
+    def _scopes(self) -> list[tuple[int, int, dict[str, list[_Binding]]]]:
+        """The first line, last line and bindings of each function and of the file.
+
+        The innermost functions come first, and the file is the last.
+        """
         functions = [node for node in ast.walk(self.tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
-        found = [(node.lineno, node.end_lineno or node.lineno, _bindings_by_name(node)) for node in functions]
-        found.sort(key=lambda item: item[1] - item[0])
-        return [*found, (0, len(self.source.text), _bindings_by_name(self.tree))]
+        scopes = [(node.lineno, node.end_lineno or node.lineno, _collect_bindings(node)) for node in functions]
+        scopes.sort(key=lambda scope: scope[1] - scope[0])
+        return [*scopes, (0, len(self.source.text), _collect_bindings(self.tree))]
 
 
-def _bindings_by_name(scope: ast.AST) -> dict[str, list[_Binding]]:
+def _collect_bindings(scope: ast.AST) -> dict[str, list[_Binding]]:
     bindings: dict[str, list[_Binding]] = {}
-    for node, block in _walk_scope(scope, _EVERYWHERE):
-        for name, value in _bound_names(node):
+    for node, block in _walk_scope(scope, _WHOLE_FILE):
+        for name, value in _find_bound_names(node):
             line = getattr(node, "end_lineno", None) or 0
             bindings.setdefault(name, []).append(_Binding(line, value, block))
     return bindings
 
 
 def _walk_scope(scope: ast.AST, block: tuple[int, int]) -> Iterator[tuple[ast.AST, tuple[int, int]]]:
-    """Yield the nodes of a function or file with the lines of their blocks, without nested functions."""
+    """Yield the nodes of a function or file with the lines of their blocks.
+
+    Nested functions are left out.
+    """
     for child in ast.iter_child_nodes(scope):
         yield child, block
         if isinstance(child, _Branching):
@@ -88,7 +97,8 @@ def _walk_scope(scope: ast.AST, block: tuple[int, int]) -> Iterator[tuple[ast.AS
             yield from _walk_scope(child, block)
 
 
-def _bound_names(node: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
+def _find_bound_names(node: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
+    """Yield the names that a node assigns, with their values; None for unknown values."""
     if isinstance(node, ast.arguments):
         arguments = [*node.posonlyargs, *node.args, *node.kwonlyargs, node.vararg, node.kwarg]
         yield from ((argument.arg, None) for argument in arguments if argument is not None)

@@ -1,4 +1,4 @@
-"""Define the outline of a launch file: its actions with their settings, read without running the file."""
+"""Define the outline of a launch file: its actions with their settings."""
 
 from __future__ import annotations
 
@@ -9,29 +9,32 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.diagnostics import Span
-from linkwright.review.launches.conditions import condition_holds
+from linkwright.review.launches.conditions import evaluate_condition
 
 CONDITION = "condition"
 NAMESPACE = "namespace"
 NAMESPACE_OF_INCLUDED = "namespace of its nodes"
 """The setting of an include that is not a passed argument."""
 REMAPPING = "remapping "
+"""The prefix of the settings that are remappings of a node, before the remapped name."""
 ENVIRONMENT = "environment variable "
 READING = "reading"
+"""The kind of an entry for an environment variable that the file reads."""
 DELETION = "deletion"
 """The kind of an action that deletes parameters of ROS 1."""
 SERVER_PARAMETER = "server parameter"
 """The kind of a parameter of ROS 1 that does not belong to a node of the file."""
 PARAMETER = "parameter "
+"""The prefix of the settings that are parameters of a node, before the name of the parameter."""
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
-_ENVIRONMENT = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
-_CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
+_ENVIRONMENT_SUBSTITUTION = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
+_SETTING_CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
 """The condition of a setting after its name."""
-_PUSH = "\n"
+_NAMESPACE_SEPARATOR = "\n"
 """The separator of pushed namespaces, which are joined when the defaults of arguments are known."""
-_MAX_DEPTH = 5
+_MAX_VARIABLE_DEPTH = 5
 """The maximum depth of variables in the values of variables."""
-_MAX_LENGTH = 10_000
+_MAX_CHARACTERS = 10_000
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ class Entry:
         name: the name of the argument or variable, ``package/executable`` of the node, the command, the path of the
             file, or the function that makes the action.
         settings: the values, by name. The value of an argument is its default.
-        span: where it is.
+        span: the location of the action.
     """
 
     kind: str
@@ -58,7 +61,7 @@ class Entry:
         """Whether it declares an argument or sets a variable."""
         return self.kind in ("argument", "variable")
 
-    def is_same_name(self, setting: str, old: str | None, new: str | None) -> bool:
+    def is_identity_remapping(self, setting: str, old: str | None, new: str | None) -> bool:
         """Return whether a changed setting only adds or removes a remapping of a name to itself."""
         if self.kind == "node" and setting.startswith(REMAPPING):
             source = without_condition(setting).removeprefix(REMAPPING)
@@ -76,12 +79,12 @@ def with_condition(setting: str, condition: str) -> str:
 
 def without_condition(setting: str) -> str:
     """Return the name of a setting without its condition."""
-    return _CONDITION.sub("", setting)
+    return _SETTING_CONDITION.sub("", setting)
 
 
-def condition_of_setting(setting: str) -> str:
+def extract_condition(setting: str) -> str:
     """Return the condition of a setting; empty if there is none."""
-    match = _CONDITION.search(setting)
+    match = _SETTING_CONDITION.search(setting)
     return "" if match is None else match["condition"]
 
 
@@ -92,7 +95,7 @@ class CodePart:
     Attributes:
         text: a comparable form without names of variables, comments and layout.
         source: the statement as it is written.
-        span: where it is.
+        span: the location of the action.
         failing_condition: the condition under which the statement ends the launch with an error; empty for other
             statements.
     """
@@ -109,7 +112,7 @@ class LaunchOutline:
 
     Attributes:
         entries: the entries in the order of the text.
-        code: the rest of the file.
+        code: the code besides the actions.
         definitions: the statements that assign a name. Its value is compared where the name is used.
         is_ros1: whether it is a launch file of ROS 1.
         root: the folder of the repository; None if it is unknown.
@@ -122,16 +125,21 @@ class LaunchOutline:
     root: Path | None = None
 
     def resolve(self, text: str) -> str:
-        """Return a text with the defaults of arguments and environment variables in place of ``$(var NAME)``."""
-        for _ in range(_MAX_DEPTH):
-            resolved = _ENVIRONMENT.sub(lambda match: match["default"] or "", _VARIABLE.sub(self._value, text))
-            if resolved == text or len(resolved) > _MAX_LENGTH:
+        """Return a text with values in place of ``$(var NAME)``.
+
+        The values are the defaults of arguments and environment variables.
+        """
+        for _ in range(_MAX_VARIABLE_DEPTH):
+            resolved = _ENVIRONMENT_SUBSTITUTION.sub(
+                lambda match: match["default"] or "", _VARIABLE.sub(self._replace_variable, text)
+            )
+            if resolved == text or len(resolved) > _MAX_CHARACTERS:
                 break
             text = resolved
         return text
 
     def with_defaults(self, values: Mapping[str, str]) -> LaunchOutline:
-        """Return the outline with the values that a caller passes in place of the defaults of arguments."""
+        """Return the outline with passed values in place of the defaults of arguments."""
         entries = [
             replace(entry, settings={**entry.settings, "default": values[entry.name]})
             if entry.kind == "argument" and "value" not in entry.settings and entry.name in values
@@ -140,7 +148,7 @@ class LaunchOutline:
         ]
         return replace(self, entries=entries)
 
-    def _value(self, variable: re.Match[str]) -> str:
+    def _replace_variable(self, variable: re.Match[str]) -> str:
         value = self.values.get(variable["name"], variable["default"])
         return variable[0] if value is None else value
 
@@ -154,25 +162,31 @@ class LaunchOutline:
         for entry in self.entries:
             if entry.has_value and not {"value", "default"}.isdisjoint(entry.settings):
                 values.setdefault(entry.name, []).append(entry)
-        result = {name: found for name, entries in values.items() if (found := _only_value(entries)) is not None}
-        several = {name: entries for name, entries in values.items() if name not in result}
-        known = replace(self, entries=[entry for name in result for entry in values[name][:1]]) if several else self
-        for name, entries in several.items():
-            holding = [entry for entry in entries if _condition_holds(entry, known) is not False]
-            value = _only_value(holding) if all(_condition_holds(entry, known) for entry in holding) else None
+        result = {name: value for name, entries in values.items() if (value := _find_only_value(entries)) is not None}
+        ambiguous = {name: entries for name, entries in values.items() if name not in result}
+        known_outline = (
+            replace(self, entries=[entry for name in result for entry in values[name][:1]]) if ambiguous else self
+        )
+        for name, entries in ambiguous.items():
+            possible = [entry for entry in entries if _evaluate_entry_condition(entry, known_outline) is not False]
+            value = (
+                _find_only_value(possible)
+                if all(_evaluate_entry_condition(entry, known_outline) for entry in possible)
+                else None
+            )
             if value is not None:
                 result[name] = value
         return result
 
 
-def _only_value(entries: Sequence[Entry]) -> str | None:
+def _find_only_value(entries: Sequence[Entry]) -> str | None:
     """Return the value of actions that set a name, or None if there are several."""
     values = {entry.settings.get("value", entry.settings.get("default")) for entry in entries}
     return next(iter(values)) if len(values) == 1 else None
 
 
-def _condition_holds(entry: Entry, outline: LaunchOutline) -> bool | None:
-    return condition_holds(outline.resolve(entry.settings.get(CONDITION, "")))
+def _evaluate_entry_condition(entry: Entry, outline: LaunchOutline) -> bool | None:
+    return evaluate_condition(outline.resolve(entry.settings.get(CONDITION, "")))
 
 
 @dataclass(frozen=True)
@@ -192,29 +206,32 @@ class Scope:
         """The number of settings."""
         return len(self.conditions) + len(self.namespaces)
 
-    def inside(self, condition: str) -> Scope:
-        """Return the scope inside an action with a condition. The condition may be empty."""
+    def with_condition(self, condition: str) -> Scope:
+        """Return the scope of the actions inside an action with a condition, which may be empty."""
         return Scope((*self.conditions, condition), self.namespaces) if condition else self
 
     def with_namespace(self, namespace: str) -> Scope:
         """Return the scope after a namespace is pushed."""
         return Scope(self.conditions, (*self.namespaces, namespace)) if namespace else self
 
-    def settings(self, kind: str, own: Mapping[str, str]) -> dict[str, str]:
-        """Return the settings of an action with the settings of its scope."""
-        settings = dict(own)
-        conditions = [*self.conditions, *filter(None, [own.get(CONDITION)])]
+    def add_to_settings(self, kind: str, own_settings: Mapping[str, str]) -> dict[str, str]:
+        """Return the settings of an action together with the settings of its scope."""
+        settings = dict(own_settings)
+        conditions = [*self.conditions, *filter(None, [own_settings.get(CONDITION)])]
         settings.pop(CONDITION, None)
         if conditions:
             settings[CONDITION] = " and ".join(dict.fromkeys(conditions))
         key = NAMESPACE if kind == "node" else NAMESPACE_OF_INCLUDED
         if self.namespaces and kind in ("node", "include"):
-            settings[key] = _PUSH.join([*self.namespaces, *filter(None, [own.get(key)])])
+            settings[key] = _NAMESPACE_SEPARATOR.join([*self.namespaces, *filter(None, [own_settings.get(key)])])
         return settings
 
 
 def join_namespaces(outline: LaunchOutline) -> LaunchOutline:
-    """Return an outline with the namespaces pushed by groups joined into one text for each action."""
+    """Return an outline with one namespace for each action.
+
+    It joins the namespaces that groups push.
+    """
     entries = [
         replace(entry, settings={name: _join_namespace(name, text, outline) for name, text in entry.settings.items()})
         for entry in outline.entries
@@ -223,10 +240,13 @@ def join_namespaces(outline: LaunchOutline) -> LaunchOutline:
 
 
 def _join_namespace(setting: str, text: str, outline: LaunchOutline) -> str:
-    """Return the namespace after all pushes. A name whose default begins with ``/`` replaces the previous ones."""
+    """Return the namespace after all pushes.
+
+    A name whose default begins with ``/`` replaces the previous ones.
+    """
     if setting not in (NAMESPACE, NAMESPACE_OF_INCLUDED):
         return text
     joined = ""
-    for name in text.split(_PUSH):
+    for name in text.split(_NAMESPACE_SEPARATOR):
         joined = name if not joined or outline.resolve(name).startswith("/") else f"{joined}/{name}"
     return joined

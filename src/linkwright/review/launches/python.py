@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.helpers import Function, HelperFunctions
 from linkwright.review.launches.literals import CoveredLiterals, Literals
+from linkwright.review.launches.other_code import find_definitions, read_other_code
 from linkwright.review.launches.outlines import (
     CONDITION,
     PARAMETER,
@@ -17,32 +18,31 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     Scope,
 )
-from linkwright.review.launches.rest import code_besides_actions, definitions_of
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts
 
-_NODES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
-_PROCESSES = ("ExecuteProcess", "ExecuteLocal")
-_ARGUMENTS = ("DeclareLaunchArgument", "DeclareBooleanLaunchArg")
+_NODE_CLASSES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
+_PROCESS_CLASSES = ("ExecuteProcess", "ExecuteLocal")
+_ARGUMENT_CLASSES = ("DeclareLaunchArgument", "DeclareBooleanLaunchArg")
 """The classes that declare arguments; the second is one of MoveIt."""
-_ENVIRONMENT = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable")
-_OTHERS = (*_ARGUMENTS, "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
-ACTIONS = frozenset({*_NODES, *_PROCESSES, *_ENVIRONMENT, *_OTHERS})
+_ENVIRONMENT_CLASSES = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable")
+_OTHER_ACTIONS = (*_ARGUMENT_CLASSES, "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
+ACTIONS = frozenset({*_NODE_CLASSES, *_PROCESS_CLASSES, *_ENVIRONMENT_CLASSES, *_OTHER_ACTIONS})
 """The classes whose calls make actions."""
-_HANDLER = "RegisterEventHandler"
-_PUSHES = ("PushRosNamespace", "PushROSNamespace", "PushNamespace")
-_LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
+_HANDLER_CLASS = "RegisterEventHandler"
+_NAMESPACE_CLASSES = ("PushRosNamespace", "PushROSNamespace", "PushNamespace")
+_ACTION_LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
 """The objects whose first argument is a list of actions."""
-_ADDITIONS = ("add_action", "add_entity")
+_ADD_METHODS = ("add_action", "add_entity")
 _LIST_METHODS = ("append", "extend", "insert")
-_OUTSIDE = Scope()
+_EMPTY_SCOPE = Scope()
 _INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
 """The arguments that contain other actions. These actions have their own entries."""
 _ALIASES = {"node_executable": "executable", "node_name": "name", "node_namespace": "namespace"}
 """The names of arguments of nodes before ROS 2 Foxy."""
-_NOT_COMPARED = frozenset({"package", "executable", "plugin", "description", "cmd"})
+_IGNORED_ARGUMENTS = frozenset({"package", "executable", "plugin", "description", "cmd"})
 """The arguments that name an action or are invisible to other programs."""
 _MAX_HELPER_DEPTH = 3
-_Place = tuple[int, tuple[int, ...]]
+_CallKey = tuple[int, tuple[int, ...]]
 """The identity of a call, and the numbers of the passes of the loops around it."""
 
 
@@ -55,22 +55,22 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     """
     reader = _Reader(python, helpers, ExpressionTexts(python))
     reader.visit(python.tree)
-    entries = sorted(reader.entries(), key=lambda entry: (entry.span.line, entry.span.column))
-    covered = reader.covered | _covered_literals(python, helpers, reader.evaluated)
-    return LaunchOutline(entries, code_besides_actions(python, covered, reader.branches), definitions_of(python))
+    entries = sorted(reader.read_entries(), key=lambda entry: (entry.span.line, entry.span.column))
+    covered = reader.covered | _find_covered_literals(python, helpers, reader.evaluated)
+    return LaunchOutline(entries, read_other_code(python, covered, reader.branches), find_definitions(python))
 
 
-def _covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: Sequence[ast.expr]) -> set[int]:
-    """Return the identities of the function arguments and loop iterables that appear in actions."""
+def _find_covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: Sequence[ast.expr]) -> set[int]:
+    """Return the identities of function arguments and loop iterables in actions."""
     if not evaluated:
         return set()
-    shown = []
-    for with_keys in (False, True):
-        literals = Literals(python, with_keys=with_keys)
+    shown_literals = []
+    for marks_keys in (False, True):
+        literals = Literals(python, marks_keys=marks_keys)
         reader = _Reader(python, helpers, ExpressionTexts(python), literals=literals)
         reader.visit(python.tree)
-        shown.append(literals.find_shown(reader.entries()))
-    parts = CoveredLiterals(python, *shown)
+        shown_literals.append(literals.find_shown_literals(reader.read_entries()))
+    parts = CoveredLiterals(python, *shown_literals)
     for node in evaluated:
         if isinstance(node, ast.Call) and helpers.find(python, node) is not None:
             parts.add_call(node)
@@ -91,7 +91,7 @@ class _Reader:
         depth: the depth of nested calls at which the function is read.
         scopes: each call that makes an action, with its scope and its texts, by the identity of its syntax tree and
             the passes of the loops around it.
-        covered: the calls that entries describe, which do not belong to the rest of the file.
+        covered: the calls that entries describe, which do not belong to the other code.
         branches: the ``if`` statements whose conditions actions have.
         evaluated: the calls of read functions, and the iterables of loops that are read for each item.
         literals: the marks in place of the literals of the file; None to read the literals themselves.
@@ -102,53 +102,54 @@ class _Reader:
     texts: ExpressionTexts
     extra: Mapping[str, BoundExpression] = field(default_factory=dict)
     depth: int = 0
-    scopes: dict[_Place, tuple[ast.Call, Scope, ExpressionTexts]] = field(default_factory=dict)
+    scopes: dict[_CallKey, tuple[ast.Call, Scope, ExpressionTexts]] = field(default_factory=dict)
     covered: set[int] = field(default_factory=set)
     branches: set[int] = field(default_factory=set)
     evaluated: list[ast.expr] = field(default_factory=list)
     literals: Literals | None = None
-    _loops: tuple[int, ...] = ()
-    _outside: list[tuple[int, int, ExpressionTexts, tuple[int, ...]]] = field(default_factory=list)
-    _seen: set[tuple[int, tuple[int, ...], Scope]] = field(default_factory=set)
+    _passes: tuple[int, ...] = ()
+    _open_loops: list[tuple[int, int, ExpressionTexts, tuple[int, ...]]] = field(default_factory=list)
+    _visited: set[tuple[int, tuple[int, ...], Scope]] = field(default_factory=set)
 
-    def entries(self) -> Iterator[Entry]:
-        unused = _unused_values(self.python.tree)
+    def read_entries(self) -> Iterator[Entry]:
+        """Yield the entries of the visited actions."""
+        unused = _find_unused_values(self.python.tree)
         for call, scope, texts in list(self.scopes.values()):
             self.texts = texts
             function = called_name(call).rpartition(".")[2]
             if id(call) in unused:
                 self.covered.add(id(call))
-            elif function == _HANDLER:
+            elif function == _HANDLER_CLASS:
                 self.covered.add(id(call))
                 yield self._read_handler(call, scope)
             elif function in ACTIONS:
                 self.covered.add(id(call))
                 yield self._read_action(call, function, scope)
             elif self._is_helper(call):
-                yield from self._helper_entries(call, scope)
+                yield from self._read_helper_entries(call, scope)
             else:
                 self.covered.add(id(call))
                 yield self._read_foreign_action(call, scope)
 
     # --- the scopes of actions ---------------------------------------------------------------------------------------
 
-    def visit(self, node: ast.AST, scope: Scope = _OUTSIDE) -> None:
+    def visit(self, node: ast.AST, scope: Scope = _EMPTY_SCOPE) -> None:
         """Find the actions below a node, which is in a scope."""
         if isinstance(node, ast.Name):
             value = self.python.resolved(node)
             if value is not node and not isinstance(node.ctx, ast.Store):
                 self._visit_value(value, scope)
             return
-        if (id(node), self._loops, scope) in self._seen:
+        if (id(node), self._passes, scope) in self._visited:
             return
-        self._seen.add((id(node), self._loops, scope))
+        self._visited.add((id(node), self._passes, scope))
         if isinstance(node, ast.Call):
             self._visit_call(node, scope)
         elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             return  # the object of a method, whose value is not in the scope of the call
         elif isinstance(node, (ast.List, ast.Tuple)):
             for item in node.elts:
-                scope = scope.with_namespace(self._pushed_namespace(item))
+                scope = scope.with_namespace(self._find_pushed_namespace(item))
                 self.visit(item, scope)
         elif isinstance(node, ast.For):
             self._visit_loop(node.target, node.iter, node.body, scope)
@@ -157,78 +158,83 @@ class _Reader:
         elif isinstance(node, ast.If):
             self._visit_branches(node, scope)
         elif isinstance(node, ast.FunctionDef):
-            if node.name not in self.helpers.local_names(self.python):
+            if node.name not in self.helpers.find_local_names(self.python):
                 self._visit_body(node, scope)
         else:
             for child in ast.iter_child_nodes(node):
                 self.visit(child, scope)
 
     def _visit_value(self, value: ast.expr, scope: Scope) -> None:
-        """Find the actions in the value of a name. The name may be assigned outside of the loops that use it."""
-        texts, loops = self.texts, self._loops
-        outside = next((outer for outer in self._outside if not outer[0] <= value.lineno <= outer[1]), None)
-        if outside is not None:
-            _, _, self.texts, self._loops = outside
+        """Find the actions in the value of a name.
+
+        The name may be assigned outside of the loops that use it.
+        """
+        texts, loops = self.texts, self._passes
+        left_loop = next(
+            (enclosing for enclosing in self._open_loops if not enclosing[0] <= value.lineno <= enclosing[1]), None
+        )
+        if left_loop is not None:
+            _, _, self.texts, self._passes = left_loop
         self.visit(value, scope)
-        self.texts, self._loops = texts, loops
+        self.texts, self._passes = texts, loops
 
     def _visit_loop(
         self, target: ast.expr, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope
     ) -> None:
-        """Find the actions of a loop; of each pass if the list is written in the file."""
-        items = self.texts.items(self._mark_literals(iterable))
+        """Find the actions of a loop, for each pass if the file contains the list literally."""
+        items = self.texts.find_items(self._mark_literals(iterable))
         passes = [self.texts.with_item(target, item) for item in items or ()]
-        if items is None or None in passes or not self.helpers.take_passes(len(items)):
+        if items is None or None in passes or not self.helpers.reserve_passes(len(items)):
             for statement in body:
                 self.visit(statement, scope)
             return
         self.evaluated.append(iterable)
-        texts, loops = self.texts, self._loops
+        texts, loops = self.texts, self._passes
         lines = [line for node in body for line in (node.lineno, node.end_lineno or node.lineno)]
-        self._outside.append((min(lines), max(lines), texts, loops))
+        self._open_loops.append((min(lines), max(lines), texts, loops))
         for number, pass_texts in enumerate(filter(None, passes)):
-            self.texts, self._loops = pass_texts, (*loops, number)
+            self.texts, self._passes = pass_texts, (*loops, number)
             for statement in body:
                 self.visit(statement, scope)
-        self.texts, self._loops = texts, loops
-        self._outside.pop()
+        self.texts, self._passes = texts, loops
+        self._open_loops.pop()
 
     def _visit_branches(self, node: ast.If, scope: Scope) -> None:
         """Find the actions of both branches, with the condition of the statement."""
         source = " ".join(ast.unparse(node.test).split())
         conditions = [f"{word} `{source}`" for word in ("if", "unless")]
         for condition, body in zip(conditions, (node.body, node.orelse), strict=True):
-            inner = scope.inside(condition)
+            inner = scope.with_condition(condition)
             for statement in body:
-                inner = inner.with_namespace(self._pushed_namespace(_added_action(statement)))
+                inner = inner.with_namespace(self._find_pushed_namespace(_find_added_action(statement)))
                 self.visit(statement, inner)
         if any(condition in inner.conditions for _, inner, _ in self.scopes.values() for condition in conditions):
             self.branches.add(id(node))
 
     def _visit_body(self, function: ast.FunctionDef, scope: Scope) -> None:
         for statement in function.body:
-            scope = scope.with_namespace(self._pushed_namespace(_added_action(statement)))
+            scope = scope.with_namespace(self._find_pushed_namespace(_find_added_action(statement)))
             self.visit(statement, scope)
 
     def visit_function(self, function: ast.FunctionDef) -> None:
         """Find the actions of a function."""
-        self._visit_body(function, _OUTSIDE)
+        self._visit_body(function, _EMPTY_SCOPE)
 
     def _visit_call(self, call: ast.Call, scope: Scope) -> None:
         function = called_name(call).rpartition(".")[2]
-        if function in _PUSHES:
+        if function in _NAMESPACE_CLASSES:
             self.covered.add(id(call))
             return
-        if function in ACTIONS or function == _HANDLER or self._is_helper(call):
-            self._add(call, scope)
+        if function in ACTIONS or function == _HANDLER_CLASS or self._is_helper(call):
+            self._add_call(call, scope)
         condition = next((keyword.value for keyword in call.keywords if keyword.arg == CONDITION), None)
-        inner = scope.inside(self.texts.condition(condition))
+        inner = scope.with_condition(self.texts.format_condition(condition))
         if function == "TimerAction":
             period = next((keyword.value for keyword in call.keywords if keyword.arg == "period"), None)
-            inner = inner.inside(f"after {self.texts.text(period)} s")
-        if function in _LISTS or function in _ADDITIONS:
-            for action in self._foreign_actions(call):
-                self._add(action, inner)
+            inner = inner.with_condition(f"after {self.texts.text(period)} s")
+        if function in _ACTION_LISTS or function in _ADD_METHODS:
+            for action in self._find_foreign_actions(call):
+                self._add_call(action, inner)
         children = [call.func, *call.args, *(item.value for item in call.keywords if item.arg != CONDITION)]
         if not self._takes_actions(call, function):
             children = [child for child in children if not isinstance(child, ast.Name)]
@@ -237,17 +243,17 @@ class _Reader:
 
     def _takes_actions(self, call: ast.Call, function: str) -> bool:
         """Return whether the actions in the arguments of a call are in the scope of the call."""
-        is_list = function in (*_LISTS, *_ADDITIONS, *_LIST_METHODS, _HANDLER) or function in ACTIONS
+        is_list = function in (*_ACTION_LISTS, *_ADD_METHODS, *_LIST_METHODS, _HANDLER_CLASS) or function in ACTIONS
         return is_list or self._is_helper(call)
 
-    def _add(self, call: ast.Call, scope: Scope) -> None:
-        """Add an action with the innermost scope in which it is named."""
-        place = id(call), self._loops
-        known = self.scopes.get(place)
+    def _add_call(self, call: ast.Call, scope: Scope) -> None:
+        """Add an action with the innermost scope that contains it."""
+        key = id(call), self._passes
+        known = self.scopes.get(key)
         if known is None or known[1].depth < scope.depth:
-            self.scopes[place] = call, scope, self.texts
+            self.scopes[key] = call, scope, self.texts
 
-    def _foreign_actions(self, call: ast.Call) -> Iterator[ast.Call]:
+    def _find_foreign_actions(self, call: ast.Call) -> Iterator[ast.Call]:
         """Yield the calls in a list that make actions in functions of other packages."""
         arguments = [
             *call.args[:1],
@@ -262,19 +268,19 @@ class _Reader:
     def _is_helper(self, call: ast.Call) -> bool:
         return self.depth < _MAX_HELPER_DEPTH and self.helpers.find(self.python, call) is not None
 
-    def _pushed_namespace(self, node: ast.AST | None) -> str:
+    def _find_pushed_namespace(self, node: ast.AST | None) -> str:
         """Return the namespace that an action pushes, with its condition; empty for other actions."""
         node = self.python.resolved(node) if isinstance(node, ast.expr) else node
-        if not isinstance(node, ast.Call) or called_name(node).rpartition(".")[2] not in _PUSHES:
+        if not isinstance(node, ast.Call) or called_name(node).rpartition(".")[2] not in _NAMESPACE_CLASSES:
             return ""
         keywords = {keyword.arg: keyword.value for keyword in node.keywords}
         namespace = self.texts.text(node.args[0] if node.args else keywords.get("namespace"))
-        condition = self.texts.condition(keywords.get(CONDITION))
+        condition = self.texts.format_condition(keywords.get(CONDITION))
         return f"{namespace} ({condition})" if condition else namespace
 
     # --- helpers -----------------------------------------------------------------------------------------------------
 
-    def _helper_entries(self, call: ast.Call, scope: Scope) -> Iterator[Entry]:
+    def _read_helper_entries(self, call: ast.Call, scope: Scope) -> Iterator[Entry]:
         """Yield the actions that a function of the repository makes."""
         function = self.helpers.find(self.python, call)
         if function is None:
@@ -288,8 +294,8 @@ class _Reader:
         reader.visit_function(function.node)
         span = self.python.span(call)
         self.evaluated.append(call)
-        for entry in reader.entries():
-            yield replace(entry, span=span, settings=scope.settings(entry.kind, entry.settings))
+        for entry in reader.read_entries():
+            yield replace(entry, span=span, settings=scope.add_to_settings(entry.kind, entry.settings))
 
     def _mark_literals(self, node: ast.expr) -> ast.expr:
         return node if self.literals is None else self.literals.mark_literals(node)
@@ -297,18 +303,21 @@ class _Reader:
     def _bind_arguments(
         self, call: ast.Call, function: Function
     ) -> tuple[dict[str, str], dict[str, BoundExpression], dict[str, BoundExpression]]:
-        """Return the texts and expressions of a function's parameters, and the expressions of its ``**`` parameter."""
+        """Return the texts and expressions of a function's parameters.
+
+        The third item has the expressions of its ``**`` parameter.
+        """
         arguments = function.node.args
         names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
         defaults = dict(zip(names[len(names) - len(arguments.defaults) :], arguments.defaults, strict=True))
         keyword_defaults = zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
         defaults |= {argument.arg: value for argument, value in keyword_defaults if value is not None}
-        outer_texts = ExpressionTexts(function.python)
-        bindings = {name: outer_texts.text(value) for name, value in defaults.items()}
+        default_texts = ExpressionTexts(function.python)
+        bindings = {name: default_texts.text(value) for name, value in defaults.items()}
         if function.is_method:
             names = names[1:]
-        given = dict(zip(names, map(self._mark_literals, call.args), strict=False))
-        bindings |= {name: self.texts.text(value) for name, value in given.items()}
+        passed = dict(zip(names, map(self._mark_literals, call.args), strict=False))
+        bindings |= {name: self.texts.text(value) for name, value in passed.items()}
         extra: dict[str, BoundExpression] = {}
         known = {*names, *(argument.arg for argument in arguments.kwonlyargs)}
         for keyword in call.keywords:
@@ -316,14 +325,14 @@ class _Reader:
             if keyword.arg is None:
                 extra |= self.extra
             elif keyword.arg not in known:
-                extra[keyword.arg] = self.texts.value(value)
+                extra[keyword.arg] = self.texts.resolve(value)
             elif keyword.arg == CONDITION:
-                bindings[keyword.arg] = self.texts.condition(value)
-                given[keyword.arg] = value
+                bindings[keyword.arg] = self.texts.format_condition(value)
+                passed[keyword.arg] = value
             else:
                 bindings[keyword.arg] = self.texts.text(value)
-                given[keyword.arg] = value
-        values = {name: self.texts.value(value) for name, value in given.items()}
+                passed[keyword.arg] = value
+        values = {name: self.texts.resolve(value) for name, value in passed.items()}
         return bindings, values, extra
 
     # --- actions -----------------------------------------------------------------------------------------------------
@@ -338,85 +347,90 @@ class _Reader:
         extra = self.extra if any(keyword.arg is None for keyword in call.keywords) else {}
         first = call.args[0] if call.args else next(iter(call.keywords), None)
         first_text = text(first.value if isinstance(first, ast.keyword) else first)
-        second_text = text(call.args[1] if len(call.args) > 1 else _second_argument(call))
+        second_text = text(call.args[1] if len(call.args) > 1 else _find_second_argument(call))
         settings: dict[str, str] = {}
-        if function in _ARGUMENTS:
+        if function in _ARGUMENT_CLASSES:
             kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
             names = {"default_value": "default", "choices": "choices"}
             settings = {names[key]: text(value) for key, value in keywords.items() if key in names}
             if "default" in settings:
-                settings["default"] = self.texts.joined_text(keywords["default_value"])
+                settings["default"] = self.texts.format_joined(keywords["default_value"])
         elif function == "SetLaunchConfiguration":
             kind, name, settings = "variable", first_text, {"value": second_text}
         elif function == "SetRemap":
             kind, name, settings = "remapping", first_text, {"to": second_text}
         elif function == "SetParameter":
             kind, name, settings = "parameter", first_text, {"value": second_text}
-        elif function in _ENVIRONMENT:
+        elif function in _ENVIRONMENT_CLASSES:
             kind, name = "environment", first_text
             key = {"SetEnvironmentVariable": "value", "AppendEnvironmentVariable": "appended value"}.get(function)
             settings = {key: second_text} if key else {"unset": "true"}
-        elif function in _PROCESSES:
+        elif function in _PROCESS_CLASSES:
             kind, name = "process", text(keywords.get("cmd"))
-            settings = self._other_settings(keywords)
+            settings = self._read_settings(keywords)
         elif function == "IncludeLaunchDescription":
             kind, name = "include", text(call.args[0] if call.args else keywords.get("launch_description_source"))
-            settings = self._passed_arguments(keywords.get("launch_arguments"))
+            settings = self._read_passed_arguments(keywords.get("launch_arguments"))
         else:
             kind = "node"
             name = "/".join(text(keywords[key]) for key in ("package", "executable", "plugin") if key in keywords)
-            name, settings = name or text(call.func), self._node_settings(keywords, extra)
-        condition = self.texts.condition(keywords.get(CONDITION))
+            name, settings = name or text(call.func), self._read_node_settings(keywords, extra)
+        condition = self.texts.format_condition(keywords.get(CONDITION))
         if not condition and CONDITION in extra:
-            condition = extra[CONDITION].texts.condition(extra[CONDITION].node)
+            condition = extra[CONDITION].texts.format_condition(extra[CONDITION].node)
         if condition:
             settings[CONDITION] = condition
-        return Entry(kind, name, scope.settings(kind, settings), self.python.span(call))
+        return Entry(kind, name, scope.add_to_settings(kind, settings), self.python.span(call))
 
     def _read_handler(self, call: ast.Call, scope: Scope) -> Entry:
         """Return the handler of an event: its class and the action whose event it handles."""
-        value = call.args[0] if call.args else next((item.value for item in call.keywords), None)
-        event = None if value is None else self.python.resolved(value)
+        argument = call.args[0] if call.args else next((item.value for item in call.keywords), None)
+        event = None if argument is None else self.python.resolved(argument)
         if not isinstance(event, ast.Call):
-            return Entry("handler", self.texts.text(value), scope.settings("handler", {}), self.python.span(call))
+            return Entry(
+                "handler", self.texts.text(argument), scope.add_to_settings("handler", {}), self.python.span(call)
+            )
         keywords = {keyword.arg: keyword.value for keyword in event.keywords if keyword.arg is not None}
         target = keywords.pop("target_action", event.args[0] if event.args else None)
         name = called_name(event).rpartition(".")[2]
-        name = f"{name} of {self._short_name(target)}" if target is not None else name
-        settings = {key: self._short_name(item) for key, item in keywords.items()}
-        return Entry("handler", name, scope.settings("handler", settings), self.python.span(call))
+        name = f"{name} of {self._format_short_name(target)}" if target is not None else name
+        settings = {key: self._format_short_name(item) for key, item in keywords.items()}
+        return Entry("handler", name, scope.add_to_settings("handler", settings), self.python.span(call))
 
-    def _short_name(self, node: ast.expr) -> str:
-        """Return the program of a node or the class of another action, also for each item of a list."""
+    def _format_short_name(self, node: ast.expr) -> str:
+        """Return the program of a node or the class of another action.
+
+        For a list, the result names each item.
+        """
         node = self.python.resolved(node)
         if isinstance(node, (ast.List, ast.Tuple)):
-            return f"[{', '.join(map(self._short_name, node.elts))}]"
+            return f"[{', '.join(map(self._format_short_name, node.elts))}]"
         if not isinstance(node, ast.Call):
             return self.texts.text(node)
         function = called_name(node).rpartition(".")[2]
-        return self._read_action(node, function, _OUTSIDE).name if function in _NODES else function
+        return self._read_action(node, function, _EMPTY_SCOPE).name if function in _NODE_CLASSES else function
 
     def _read_foreign_action(self, call: ast.Call, scope: Scope) -> Entry:
         keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
-        settings = self._node_settings(keywords)
+        settings = self._read_node_settings(keywords)
         if call.args:
             settings["arguments"] = f"[{', '.join(map(self.texts.text, call.args))}]"
-        condition = self.texts.condition(keywords.get(CONDITION))
+        condition = self.texts.format_condition(keywords.get(CONDITION))
         if condition:
             settings[CONDITION] = condition
-        return Entry("action", called_name(call), scope.settings("action", settings), self.python.span(call))
+        return Entry("action", called_name(call), scope.add_to_settings("action", settings), self.python.span(call))
 
-    def _passed_arguments(self, node: ast.expr | None) -> dict[str, str]:
+    def _read_passed_arguments(self, node: ast.expr | None) -> dict[str, str]:
         """Return the arguments of an include: ``{...}.items()``, a dictionary or a list of pairs."""
         if node is None:
             return {}
-        pairs = self.texts.pairs(node)
+        pairs = self.texts.find_pairs(node)
         return {"launch_arguments": self.texts.text(node)} if pairs is None else dict(pairs)
 
-    def _other_settings(self, keywords: Mapping[str, ast.expr]) -> dict[str, str]:
-        return _texts_by_name({key: BoundExpression(self.texts, value) for key, value in keywords.items()})
+    def _read_settings(self, keywords: Mapping[str, ast.expr]) -> dict[str, str]:
+        return _format_settings({key: BoundExpression(self.texts, value) for key, value in keywords.items()})
 
-    def _node_settings(
+    def _read_node_settings(
         self, keywords: Mapping[str, ast.expr], extra: Mapping[str, BoundExpression] | None = None
     ) -> dict[str, str]:
         """Return the settings of a node, with each parameter and remapping alone.
@@ -428,19 +442,19 @@ class _Reader:
         others = {key: BoundExpression(self.texts, value) for key, value in keywords.items()} | dict(extra or {})
         parts: dict[str, str] = {}
         arguments = others.get("arguments")
-        if arguments is not None and isinstance(arguments.texts.value(arguments.node).node, (ast.List, ast.Tuple)):
-            words = arguments.texts.list_parts(arguments.node)
-            parts["arguments"] = f"[{', '.join(word.texts.joined_text(word.node) for word in words)}]"
+        if arguments is not None and isinstance(arguments.texts.resolve(arguments.node).node, (ast.List, ast.Tuple)):
+            words = arguments.texts.find_list_parts(arguments.node)
+            parts["arguments"] = f"[{', '.join(word.texts.format_joined(word.node) for word in words)}]"
             del others["arguments"]
         if "remappings" in others:
             parts |= _split_remappings(others.pop("remappings"))
         if "parameters" in others:
             parts |= _split_parameters(others.pop("parameters"))
-        return {**_texts_by_name(others), **parts}
+        return {**_format_settings(others), **parts}
 
 
-def _texts_by_name(values: Mapping[str, BoundExpression]) -> dict[str, str]:
-    ignored = {*_NOT_COMPARED, *_INNER_ACTIONS, CONDITION}
+def _format_settings(values: Mapping[str, BoundExpression]) -> dict[str, str]:
+    ignored = {*_IGNORED_ARGUMENTS, *_INNER_ACTIONS, CONDITION}
     return {key: value.texts.text(value.node) for key, value in values.items() if key not in ignored}
 
 
@@ -448,40 +462,40 @@ def _split_remappings(value: BoundExpression) -> dict[str, str]:
     """Return each remapping of a list by name, and the unknown parts of the list."""
     remappings: dict[str, str] = {}
     others: list[BoundExpression] = []
-    for part in value.texts.list_parts(value.node):
-        pair = part.texts.pair(part.node)
-        pairs = [pair] if pair is not None else part.texts.pairs(part.node)
+    for part in value.texts.find_list_parts(value.node):
+        pair = part.texts.find_pair(part.node)
+        pairs = [pair] if pair is not None else part.texts.find_pairs(part.node)
         if pairs is None:
             others.append(part)
         else:
             remappings |= {f"{REMAPPING}{source}": target for source, target in pairs}
-    return _unknown_parts("remappings", value, others) | remappings
+    return _format_unknown_parts("remappings", value, others) | remappings
 
 
 def _split_parameters(value: BoundExpression) -> dict[str, str]:
     """Return each parameter of a list by name, and the files and other parts of the list."""
     parameters: dict[str, str] = {}
     others: list[BoundExpression] = []
-    for part in value.texts.list_parts(value.node):
+    for part in value.texts.find_list_parts(value.node):
         is_mapping = isinstance(part.node, (ast.Dict, ast.Call))
-        pairs = part.texts.pairs(part.node, are_parameters=True) if is_mapping else None
+        pairs = part.texts.find_pairs(part.node, are_parameters=True) if is_mapping else None
         if pairs is None:
             others.append(part)
         else:
             parameters |= {f"{PARAMETER}{name}": text for name, text in pairs}
-    return _unknown_parts("parameters", value, others) | parameters
+    return _format_unknown_parts("parameters", value, others) | parameters
 
 
-def _unknown_parts(name: str, value: BoundExpression, parts: Sequence[BoundExpression]) -> dict[str, str]:
+def _format_unknown_parts(name: str, value: BoundExpression, parts: Sequence[BoundExpression]) -> dict[str, str]:
     """Return the parts of a list as one setting, or the value itself if it is not a list."""
     if not parts:
         return {}
     texts = [part.texts.text(part.node) for part in parts]
-    is_list = len(parts) > 1 or isinstance(value.texts.value(value.node).node, (ast.List, ast.Tuple))
+    is_list = len(parts) > 1 or isinstance(value.texts.resolve(value.node).node, (ast.List, ast.Tuple))
     return {name: f"[{', '.join(texts)}]" if is_list else texts[0]}
 
 
-def _unused_values(tree: ast.AST) -> frozenset[int]:
+def _find_unused_values(tree: ast.AST) -> frozenset[int]:
     """Return the identities of the values of unused names."""
     nodes = list(ast.walk(tree))
     used = {node.id for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)}
@@ -493,14 +507,14 @@ def _unused_values(tree: ast.AST) -> frozenset[int]:
     )
 
 
-def _second_argument(call: ast.Call) -> ast.expr | None:
+def _find_second_argument(call: ast.Call) -> ast.expr | None:
     """Return the value of the second argument of a call, which may be the first keyword."""
     values = [*call.args, *(keyword.value for keyword in call.keywords if keyword.arg not in (None, CONDITION))]
     return values[1] if len(values) > 1 else None
 
 
-def _added_action(statement: ast.stmt) -> ast.expr | None:
-    """Return the action that a statement adds to a launch description, or None if it does something else."""
+def _find_added_action(statement: ast.stmt) -> ast.expr | None:
+    """Return the action that a statement adds to a launch description, or None."""
     value = statement.value if isinstance(statement, ast.Expr) else None
-    is_addition = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in _ADDITIONS
+    is_addition = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in _ADD_METHODS
     return value.args[0] if is_addition and isinstance(value, ast.Call) and value.args else None

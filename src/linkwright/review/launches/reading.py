@@ -7,9 +7,9 @@ from pathlib import Path
 
 from linkwright.diagnostics import SourceText, foreign, phrase
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.launches.environment import python_readings
+from linkwright.review.launches.environment import find_python_readings
 from linkwright.review.launches.helpers import HelperFunctions
-from linkwright.review.launches.markup import read_markup_outline, xml_tags, yaml_tags
+from linkwright.review.launches.markup import read_markup_outline, read_yaml_tags, tag_from_xml
 from linkwright.review.launches.names import LaunchPythonFile
 from linkwright.review.launches.outlines import LaunchOutline, join_namespaces
 from linkwright.review.launches.python import ACTIONS, read_python_outline
@@ -34,9 +34,9 @@ def read_outline(path: Path, root: Path) -> LaunchOutline:
 
 def _read(path: Path, root: Path) -> LaunchOutline:
     if path.suffix in (".yaml", ".yml"):
-        return read_markup_outline(yaml_tags(path))
+        return read_markup_outline(read_yaml_tags(path))
     if path.suffix != ".py":
-        return read_markup_outline(xml_tags(read_document(str(path)).root))
+        return read_markup_outline(tag_from_xml(read_document(str(path)).root))
     try:
         python = LaunchPythonFile(SourceText(str(path), path.read_text("utf-8")))
     except SyntaxError as error:
@@ -44,4 +44,4 @@ def _read(path: Path, root: Path) -> LaunchOutline:
         message = phrase("line {line} is not valid Python: {reason}", line=line, reason=reason)
         raise UnreadableFileError(message) from None
     outline = read_python_outline(python, HelperFunctions(root, ACTIONS))
-    return replace(outline, entries=[*outline.entries, *python_readings(python)])
+    return replace(outline, entries=[*outline.entries, *find_python_readings(python)])

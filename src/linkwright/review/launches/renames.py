@@ -10,11 +10,11 @@ from difflib import SequenceMatcher
 
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 
-_KINDS = ("argument", "variable")
-_MIN_USES = 0.5
+_NAMED_KINDS = ("argument", "variable")
+_MIN_SHARE_OF_USES = 0.5
 """The minimum share of the uses of a name that must be uses of the new name."""
-_MIN_SIMILARITY = 0.6
-_MIN_LIKENESS_OF_USES = 0.8
+_MIN_SIMILARITY_OF_NAMES = 0.6
+_MIN_SIMILARITY_OF_USES = 0.8
 _Use = tuple[str, str]
 """The kind of an action, and a value that contains a variable."""
 
@@ -26,12 +26,12 @@ def find_renamed_names(old: LaunchOutline, new: LaunchOutline) -> dict[str, str]
     the same settings.
     """
     renamed: dict[str, str] = {}
-    for kind in _KINDS:
-        old_entries, new_entries = (_entries_by_name(outline, kind) for outline in (old, new))
+    for kind in _NAMED_KINDS:
+        old_entries, new_entries = (_index_entries(outline, kind) for outline in (old, new))
         removed = [entry for name, entry in old_entries.items() if name not in new_entries]
         added = [entry for name, entry in new_entries.items() if name not in old_entries]
         scores = [
-            (_rename_likelihood(a, b, old, new), i, k) for i, a in enumerate(removed) for k, b in enumerate(added)
+            (_compute_rename_score(a, b, old, new), i, k) for i, a in enumerate(removed) for k, b in enumerate(added)
         ]
         for score, i, k in sorted(scores, key=lambda item: (-item[0], item[1], item[2])):
             if score and removed[i].name not in renamed and added[k].name not in renamed.values():
@@ -57,29 +57,34 @@ def rename_in_entry(entry: Entry, renamed: Mapping[str, str]) -> Entry:
     )
 
 
-def _entries_by_name(outline: LaunchOutline, kind: str) -> dict[str, Entry]:
+def _index_entries(outline: LaunchOutline, kind: str) -> dict[str, Entry]:
     return {entry.name: entry for entry in reversed(outline.entries) if entry.kind == kind}
 
 
-def _rename_likelihood(old_entry: Entry, new_entry: Entry, old: LaunchOutline, new: LaunchOutline) -> float:
-    """Return a score for how likely one argument is another one under a new name; 0 if it is not."""
+def _compute_rename_score(old_entry: Entry, new_entry: Entry, old: LaunchOutline, new: LaunchOutline) -> float:
+    """Return a score for how likely an argument was renamed; 0 if it was not."""
     names = {old_entry.name: new_entry.name}
     old_uses = Counter((kind, rename_in_text(value, names)) for kind, value in _find_uses(old, old_entry.name))
     new_uses = Counter(_find_uses(new, new_entry.name))
     similarity = SequenceMatcher(None, old_entry.name, new_entry.name, autojunk=False).ratio()
-    is_same = old_entry.settings == new_entry.settings
+    has_equal_settings = old_entry.settings == new_entry.settings
     if not old_uses:
-        return similarity if is_same and similarity >= _MIN_SIMILARITY and not new_uses else 0.0
-    common = old_uses & new_uses
-    rest = list((new_uses - common).elements())
-    alike = sum(any(_are_alike(use, other) for other in rest) for use in (old_uses - common).elements())
-    share = (common.total() + alike) / old_uses.total()
-    return share + similarity + is_same if share >= _MIN_USES else 0.0
+        return similarity if has_equal_settings and similarity >= _MIN_SIMILARITY_OF_NAMES and not new_uses else 0.0
+    common_uses = old_uses & new_uses
+    unmatched_new = list((new_uses - common_uses).elements())
+    similar_count = sum(
+        any(_are_similar(use, other) for other in unmatched_new) for use in (old_uses - common_uses).elements()
+    )
+    share = (common_uses.total() + similar_count) / old_uses.total()
+    return share + similarity + has_equal_settings if share >= _MIN_SHARE_OF_USES else 0.0
 
 
-def _are_alike(old: _Use, new: _Use) -> bool:
-    """Return whether two values with a variable are mostly equal, such as command lines that differ in an option."""
-    return old[0] == new[0] and SequenceMatcher(None, old[1], new[1], autojunk=False).ratio() >= _MIN_LIKENESS_OF_USES
+def _are_similar(old: _Use, new: _Use) -> bool:
+    """Return whether two values with a variable are mostly equal.
+
+    Examples are command lines that differ in one option.
+    """
+    return old[0] == new[0] and SequenceMatcher(None, old[1], new[1], autojunk=False).ratio() >= _MIN_SIMILARITY_OF_USES
 
 
 def _find_uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:

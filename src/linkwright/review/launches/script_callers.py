@@ -1,4 +1,4 @@
-"""Find shell scripts and launch files that pass arguments which a Python program no longer reads."""
+"""Find callers that pass arguments which a Python program no longer reads."""
 
 from __future__ import annotations
 
@@ -11,47 +11,51 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.launches.default_names import script_of
+from linkwright.review.launches.default_names import find_script
 from linkwright.review.launches.formats import is_launch_file
 from linkwright.review.launches.reading import read_outline
-from linkwright.review.launches.script_options import LAUNCH_SUFFIXES, accepted_options, accepts
+from linkwright.review.launches.script_options import LAUNCH_SUFFIXES, accepts_option, read_accepted_options
 from linkwright.review.list_changes import list_items
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.versions import Version, Versions
 
 _SHELL_SUFFIXES = (".sh", ".bash", ".zsh")
-_READING = re.compile(r"\bsys\.argv\s*\[\s*[1-9:]")
+_POSITIONAL_READING = re.compile(r"\bsys\.argv\s*\[\s*[1-9:]")
 _ANY_READING = re.compile(
     r"\b(?:argv|sys\.orig_argv|myargv|ArgumentParser|OptionParser|getopt|docopt|fire|click|typer|absl)\b"
 )
-_RUN = re.compile(r"(?:\bros2\s+run|\brosrun)\s+(?P<package>[\w-]+)\s+(?P<program>[\w.-]+)(?P<rest>.*)")
-_PATH = re.compile(r"(?<![\w.-])(?P<path>(?:[\w.-]+/)*[\w-]+\.py)\b(?P<rest>.*)")
-_END = re.compile(r"\s(?:--ros-args\b|#|[;|&]|\d?>|<).*|[;|&].*")
+_RUN_COMMAND = re.compile(r"(?:\bros2\s+run|\brosrun)\s+(?P<package>[\w-]+)\s+(?P<program>[\w.-]+)(?P<arguments>.*)")
+_SCRIPT_PATH = re.compile(r"(?<![\w.-])(?P<path>(?:[\w.-]+/)*[\w-]+\.py)\b(?P<arguments>.*)")
+_END_OF_ARGUMENTS = re.compile(r"\s(?:--ros-args\b|#|[;|&]|\d?>|<).*|[;|&].*")
 _OPTION = re.compile(r"--[A-Za-z][\w-]*")
 _REMAPPING = re.compile(r"[^\s=]*:=\S*")
 
 
-def lost_arguments(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the shell scripts and launch files that pass unknown arguments to a changed program, each with a change.
+def find_lost_arguments(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the callers that pass unknown arguments to a changed program.
+
+    Each shell script or launch file comes with a change.
 
     A program took positional arguments if its old version reads ``sys.argv`` by an index. Options of argparse are
-    compared for shell scripts; see `refused_options` for launch files.
+    compared for shell scripts; see `find_refused_options` for launch files.
     """
     programs = {file.new_path: file.old_path for file in changed_files if _is_program(file)}
-    ignoring = {new for new, old in programs.items() if new and old and _ignores_arguments(versions, old, new)}
-    changed = [path for path in programs if path]
-    stems = {PurePosixPath(path).stem for path in changed}
-    if not changed:
+    ignoring_programs = {new for new, old in programs.items() if new and old and _ignores_arguments(versions, old, new)}
+    changed_programs = [path for path in programs if path]
+    stems = {PurePosixPath(path).stem for path in changed_programs}
+    if not changed_programs:
         return
     for path in versions.new.paths(_SHELL_SUFFIXES):
         text = versions.new.text(path)
         if any(stem in text for stem in stems) or "run " in text:
-            yield from _shell_changes(versions, path, text, changed, ignoring)
-    names = {PurePosixPath(path).stem for path in ignoring}
-    for path in versions.new.paths(LAUNCH_SUFFIXES) if ignoring else ():
+            yield from _compare_shell_script(versions, path, text, changed_programs, ignoring_programs)
+    ignoring_stems = {PurePosixPath(path).stem for path in ignoring_programs}
+    for path in versions.new.paths(LAUNCH_SUFFIXES) if ignoring_programs else ():
         text = versions.new.text(path)
-        if is_launch_file(path) and (any(name in text for name in names) or "args" in text or "arguments" in text):
-            yield from _launch_changes(versions.new, path, ignoring)
+        if is_launch_file(path) and (
+            any(name in text for name in ignoring_stems) or "args" in text or "arguments" in text
+        ):
+            yield from _compare_launch_file(versions.new, path, ignoring_programs)
 
 
 def _is_program(file: ChangedFile) -> bool:
@@ -61,50 +65,55 @@ def _is_program(file: ChangedFile) -> bool:
 def _ignores_arguments(versions: Versions, old_path: str, new_path: str) -> bool:
     """Return whether only the old version of a program reads arguments of the command line."""
     old, new = versions.old.text(old_path), versions.new.text(new_path)
-    return _READING.search(old) is not None and _ANY_READING.search(new) is None
+    return _POSITIONAL_READING.search(old) is not None and _ANY_READING.search(new) is None
 
 
-def _shell_changes(
-    versions: Versions, path: str, text: str, changed: Sequence[str], ignoring: set[str]
+def _compare_shell_script(
+    versions: Versions, path: str, text: str, changed: Sequence[str], ignoring_programs: set[str]
 ) -> Iterator[tuple[str, Change]]:
+    """Yield the lines of a shell script that pass unknown arguments, each as a change."""
     for number, line in enumerate(text.splitlines(), 1):
-        called = _called(versions.new, line, changed)
+        called = _parse_call(versions.new, line, changed)
         if called is None:
             continue
         program, words = called
         location = Location(path, number, 1)
-        if program in ignoring and any(not word.startswith("-") for word in words):
-            yield path, _ignored(program, location)
+        if program in ignoring_programs and any(not word.startswith("-") for word in words):
+            yield path, _make_ignored_change(program, location)
             continue
-        old, new = (accepted_options(version.file(program)) for version in (versions.old, versions.new))
+        old, new = (read_accepted_options(version.file(program)) for version in (versions.old, versions.new))
         for word in words if old is not None and new is not None else ():
             option = word.partition("=")[0]
-            if _OPTION.fullmatch(option) and accepts(old or (), option) and not accepts(new or (), option):
+            if (
+                _OPTION.fullmatch(option)
+                and accepts_option(old or (), option)
+                and not accepts_option(new or (), option)
+            ):
                 name = PurePosixPath(program).name
-                text_of_change = phrase("'{option}' is passed to '{program}'", option=option, program=name)
+                change_text = phrase("'{option}' is passed to '{program}'", option=option, program=name)
                 reason = phrase("'{program}' does not accept '{option}'", option=option, program=name)
-                yield path, Change(text_of_change, Effect.BREAKING, reason, location)
+                yield path, Change(change_text, Effect.BREAKING, reason, location)
 
 
-def _called(version: Version, line: str, changed: Sequence[str]) -> tuple[str, list[str]] | None:
-    """Return the changed program that a line of a shell script starts, and its arguments, or None."""
+def _parse_call(version: Version, line: str, changed: Sequence[str]) -> tuple[str, list[str]] | None:
+    """Return the changed program that a line starts, and its arguments, or None."""
     if line.lstrip().startswith("#"):
         return None
-    run = _RUN.search(line)
+    run = _RUN_COMMAND.search(line)
     if run is not None:
-        script = script_of(version.root, f"{run['package']}/{run['program']}")
+        script = find_script(version.root, f"{run['package']}/{run['program']}")
         path = None if script is None else version.relative(str(script))
-        return None if path not in changed or path is None else (path, _words(run["rest"]))
-    match = _PATH.search(line)
+        return None if path not in changed or path is None else (path, _split_arguments(run["arguments"]))
+    match = _SCRIPT_PATH.search(line)
     if match is None:
         return None
-    ends = [path for path in changed if f"/{path}".endswith(f"/{match['path'].lstrip('./')}")]
-    return (ends[0], _words(match["rest"])) if len(ends) == 1 else None
+    matching_paths = [path for path in changed if f"/{path}".endswith(f"/{match['path'].lstrip('./')}")]
+    return (matching_paths[0], _split_arguments(match["arguments"])) if len(matching_paths) == 1 else None
 
 
-def _words(text: str) -> list[str]:
-    """Return the arguments in the rest of a command, without ROS arguments."""
-    text = _END.sub("", f" {text}")
+def _split_arguments(text: str) -> list[str]:
+    """Return the arguments after the program in a command, without ROS arguments."""
+    text = _END_OF_ARGUMENTS.sub("", f" {text}")
     try:
         words = shlex.split(text)
     except ValueError:
@@ -112,22 +121,27 @@ def _words(text: str) -> list[str]:
     return [word for word in words if not _REMAPPING.fullmatch(word)]
 
 
-def _launch_changes(version: Version, path: str, ignoring: set[str]) -> Iterator[tuple[str, Change]]:
+def _compare_launch_file(version: Version, path: str, ignoring_programs: set[str]) -> Iterator[tuple[str, Change]]:
+    """Yield the nodes of a launch file that pass arguments to programs that ignore them."""
     try:
         outline = read_outline(version.file(path), version.root)
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
         return
     for entry in outline.entries:
-        script: Path | None = script_of(version.root, entry.name) if entry.kind == "node" else None
+        script: Path | None = find_script(version.root, entry.name) if entry.kind == "node" else None
         program = None if script is None else version.relative(str(script))
         text = entry.settings.get("arguments", "")
         words = list_items(text) if text.startswith("[") else text.split()
         words = words[: words.index("--ros-args")] if "--ros-args" in words else words
-        if program in ignoring and program is not None and any(not _REMAPPING.fullmatch(word) for word in words):
-            yield path, _ignored(program, Location(path, entry.span.line, entry.span.column))
+        if (
+            program in ignoring_programs
+            and program is not None
+            and any(not _REMAPPING.fullmatch(word) for word in words)
+        ):
+            yield path, _make_ignored_change(program, Location(path, entry.span.line, entry.span.column))
 
 
-def _ignored(program: str, location: Location) -> Change:
+def _make_ignored_change(program: str, location: Location) -> Change:
     name = PurePosixPath(program).name
     text = phrase("arguments are passed to '{program}', which does not read them any more", program=name)
     return Change(text, Effect.BREAKING, phrase("the program starts without the values"), location)

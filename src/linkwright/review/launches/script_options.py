@@ -1,4 +1,4 @@
-"""Find options that scripts refuse although launch files pass them, and missing required options."""
+"""Find options that launch files pass and scripts refuse, and missing options."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.launches.default_names import script_of
+from linkwright.review.launches.default_names import find_script
 from linkwright.review.launches.formats import is_launch_file
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
@@ -25,10 +25,10 @@ from linkwright.review.versions import Version, Versions
 LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
 """The ends of the names of launch files."""
 _OPTION = re.compile(r"--[A-Za-z][\w-]*")
-_END = "--ros-args"
-_HELP = "--help"
-_ADDITION = "add_argument"
-_PARSER = "ArgumentParser"
+_END_OF_OPTIONS = "--ros-args"
+_HELP_OPTION = "--help"
+_ADD_METHOD = "add_argument"
+_PARSER_CLASS = "ArgumentParser"
 _OPEN_PARSERS = ("parse_known_args", "parse_known_intermixed_args", "add_subparsers")
 """The calls after which a script can have other options, or accepts any."""
 
@@ -74,9 +74,12 @@ class _Fault:
 
 
 def find_refused_options(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the launch files with options that scripts of the new version do not accept, each with a change."""
+    """Yield the launch files with options that scripts no longer accept.
+
+    Each comes with a change.
+    """
     old_paths = {file.new_path: file.old_path for file in changed_files if file.new_path}
-    for path in _launch_files(versions, changed_files):
+    for path in _find_launch_files(versions, changed_files):
         new = _find_faults(versions.new, path)
         old_path = old_paths.get(path, path)
         old = _find_faults(versions.old, old_path) if new and old_path else {}
@@ -86,13 +89,13 @@ def find_refused_options(versions: Versions, changed_files: Sequence[ChangedFile
                 yield path, Change(fault.text, Effect.BREAKING, fault.reason, location)
 
 
-def _launch_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[str]:
-    """Yield the launch files of the new version that changed, or that name a changed script with options."""
+def _find_launch_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[str]:
+    """Yield the changed launch files, and those that name a changed script with options."""
     changed = {file.new_path for file in changed_files if file.new_path}
     scripts = {
         PurePosixPath(path).stem
         for path in changed
-        if PurePosixPath(path).suffix in (".py", "") and _PARSER in versions.new.text(path)
+        if PurePosixPath(path).suffix in (".py", "") and _PARSER_CLASS in versions.new.text(path)
     }
     for path in versions.new.paths(LAUNCH_SUFFIXES) if scripts else sorted(changed):
         if path.endswith(LAUNCH_SUFFIXES) and is_launch_file(path):
@@ -102,52 +105,58 @@ def _launch_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> I
 
 
 def _find_faults(version: Version, path: str) -> dict[_Fault, Entry]:
-    """Return the options of a launch file that prevent scripts from starting, each with the node."""
+    """Return the options that prevent scripts from starting, each with the node."""
     try:
         outline = read_outline(version.file(path), version.root)
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
         return {}
     faults: dict[_Fault, Entry] = {}
     for entry in outline.entries:
-        script = script_of(version.root, entry.name) if entry.kind == "node" else None
+        script = find_script(version.root, entry.name) if entry.kind == "node" else None
         options = None if script is None else _read_options(script)
         if script is None or options is None:
             continue
-        passed, are_known = _passed_options(entry, outline)
-        refused = [name for name in passed if not accepts(options.names, name)]
-        missing = options.required - set(passed) if are_known else frozenset()
+        passed, is_complete = _parse_passed_options(entry, outline)
+        refused = [name for name in passed if not accepts_option(options.names, name)]
+        missing = options.required - set(passed) if is_complete else frozenset()
         faults |= {_Fault(script.name, name, is_missing=False): entry for name in refused}
         faults |= {_Fault(script.name, name, is_missing=True): entry for name in sorted(missing)}
     return faults
 
 
-def accepted_options(script: Path) -> frozenset[str] | None:
+def read_accepted_options(script: Path) -> frozenset[str] | None:
     """Return the options that a script accepts, or None if they are not known or it has none."""
     options = _read_options(script)
     return None if options is None else options.names
 
 
-def accepts(options: Collection[str], name: str) -> bool:
-    """Return whether a script accepts an option. argparse also accepts the beginning of an option."""
-    return name == _HELP or any(option.startswith(name) for option in options)
+def accepts_option(options: Collection[str], name: str) -> bool:
+    """Return whether a script accepts an option.
+
+    argparse also accepts the beginning of an option.
+    """
+    return name == _HELP_OPTION or any(option.startswith(name) for option in options)
 
 
-def _passed_options(entry: Entry, outline: LaunchOutline) -> tuple[list[str], bool]:
-    """Return the options that an action passes to its program, and whether the list is complete."""
+def _parse_passed_options(entry: Entry, outline: LaunchOutline) -> tuple[list[str], bool]:
+    """Return the options that a node passes to its program, and whether all are known."""
     text = entry.settings.get("arguments", "")
     words = list_items(text) if text.startswith("[") else text.split()
     words = [part for word in words for part in outline.resolve(word).split()]
-    are_known = not any("$(" in word or "(" in word for word in words) and not text.startswith("[[")
-    if _END in words:
-        words = words[: words.index(_END)]
+    is_complete = not any("$(" in word or "(" in word for word in words) and not text.startswith("[[")
+    if _END_OF_OPTIONS in words:
+        words = words[: words.index(_END_OF_OPTIONS)]
     names = [word.partition("=")[0] for word in words]
-    return [name for name in names if _OPTION.fullmatch(name)], are_known
+    return [name for name in names if _OPTION.fullmatch(name)], is_complete
 
 
 def _read_options(script: Path) -> _Options | None:
-    """Return the options of a script, or None if it has no option parser or accepts unknown options."""
+    """Return the options of a script, or None if they are unknown.
+
+    They are unknown without an option parser, or if it accepts any option.
+    """
     source = try_read_source(script)
-    if source is None or _PARSER not in source.text or any(name in source.text for name in _OPEN_PARSERS):
+    if source is None or _PARSER_CLASS not in source.text or any(name in source.text for name in _OPEN_PARSERS):
         return None
     try:
         python = _parse(source)
@@ -157,11 +166,11 @@ def _read_options(script: Path) -> _Options | None:
     required: set[str] = set()
     for call in (node for node in ast.walk(python.tree) if isinstance(node, ast.Call)):
         function = called_name(call).rpartition(".")[2]
-        if function == _PARSER and argument_of(call, "parents") is not None:
+        if function == _PARSER_CLASS and argument_of(call, "parents") is not None:
             return None
         if _is_passed_on(python, call):
             return None
-        if function != _ADDITION:
+        if function != _ADD_METHOD:
             continue
         texts = [python.text(argument) for argument in call.args]
         if not texts or None in texts:
@@ -178,7 +187,7 @@ def _is_passed_on(python: PythonFile, call: ast.Call) -> bool:
     """Return whether a call passes a parser to a function, which may add other options."""
     values = [*call.args, *(keyword.value for keyword in call.keywords)]
     values = [python.resolved(value) for value in values if isinstance(value, ast.Name)]
-    return any(isinstance(value, ast.Call) and called_name(value).endswith(_PARSER) for value in values)
+    return any(isinstance(value, ast.Call) and called_name(value).endswith(_PARSER_CLASS) for value in values)
 
 
 def _parse(source: SourceText) -> PythonFile:

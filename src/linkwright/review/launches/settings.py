@@ -1,4 +1,4 @@
-"""Report the changed settings of launch actions, each change once."""
+"""Report the changed settings of launch actions."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.conditional_settings import changed_settings
-from linkwright.review.launches.default_names import default_name
-from linkwright.review.launches.effects import argument_removal_reason, setting_reason
+from linkwright.review.launches.conditional_settings import find_changed_settings
+from linkwright.review.launches.default_names import find_default_name
+from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
 from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.outlines import (
     CONDITION,
@@ -24,14 +24,14 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
 )
 from linkwright.review.launches.renames import rename_in_text
-from linkwright.review.launches.titles import distinct_title, join_texts, join_titles, title
+from linkwright.review.launches.titles import format_distinct_title, format_title, join_phrases, join_titles
 from linkwright.review.list_changes import change_text, shorten
 from linkwright.review.merging import name_edit
 
-_MIN_GROUP = 3
+_MIN_GROUP_SIZE = 3
 """The minimum number of added or removed parameters or remappings of a node that are reported as one change."""
-_MAX_VALUE = 60
-_PASSED = "passed"
+_MAX_VALUE_CHARACTERS = 60
+_PASSED_ARGUMENTS = "passed"
 """The group of arguments that an action passes to an included file."""
 
 
@@ -53,11 +53,14 @@ class _Setting:
 
     @property
     def edit(self) -> Hashable | None:
-        """The replaced part of the target of a remapping and its replacement; None for other settings."""
+        """The replaced part of a remapping's target and the new part.
+
+        None for other settings.
+        """
         if not self.name.startswith(REMAPPING) or not self.old or not self.new:
             return None
-        has_common = self.old[0] == self.new[0] or self.old[-1] == self.new[-1]
-        return name_edit(self.old, self.new) if has_common else None
+        has_common_end = self.old[0] == self.new[0] or self.old[-1] == self.new[-1]
+        return name_edit(self.old, self.new) if has_common_end else None
 
     @property
     def text(self) -> Phrase:
@@ -71,7 +74,9 @@ class _Setting:
 
 
 class SettingChanges:
-    """The changed settings of actions. The same change of several actions is reported once.
+    """The changed settings of actions.
+
+    The same change to several actions is reported once.
 
     Args:
         pair: both versions of the file.
@@ -98,30 +103,32 @@ class SettingChanges:
         self._remappings: dict[Hashable, list[tuple[Entry, Location | None, _Setting]]] = {}
         self._groups: dict[tuple[str, str], list[tuple[Entry, Location | None, Phrase, Phrase | None]]] = {}
 
-    def add_renamed(self) -> None:
+    def report_renamed(self) -> None:
         """Report the arguments and variables with new names."""
         for old_name, new_name in self._renamed.items():
             entry = next(entry for entry in self._new.entries if entry.name == new_name and entry.has_value)
             is_argument = entry.kind == "argument" and "value" not in entry.settings
-            text = phrase("{entry} renamed to '{name}'", entry=title(replace(entry, name=old_name)), name=new_name)
+            text = phrase(
+                "{entry} renamed to '{name}'", entry=format_title(replace(entry, name=old_name)), name=new_name
+            )
             self._pair.add(
                 text,
                 self._pair.location(entry.span),
-                argument_removal_reason(old_name, is_ros1=self._old.is_ros1) if is_argument else None,
+                explain_argument_removal(old_name, is_ros1=self._old.is_ros1) if is_argument else None,
             )
 
     def compare(self, old: Entry, new: Entry) -> None:
         """Collect the changed settings of an action."""
         if old.kind == "process" and old.name != new.name:
             program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
-            self._add(program, change_text("command", rename_in_text(old.name, self._old_names), new.name), None)
+            self._collect(program, change_text("command", rename_in_text(old.name, self._old_names), new.name), None)
         settings = []
-        for pair in changed_settings(old, new, self._old, self._new):
-            if self._is_same_name(new, pair.name, pair.old, pair.new):
+        for pair in find_changed_settings(old, new, self._old, self._new):
+            if self._sets_default_name(new, pair.name, pair.old, pair.new):
                 continue
             defaults = pair.old_default, pair.new_default
-            is_other = pair.has_defaults and defaults[0] != defaults[1]
-            reason = self._reason(new, pair.name, *defaults) if is_other else None
+            has_different_default = pair.has_defaults and defaults[0] != defaults[1]
+            reason = self._find_reason(new, pair.name, *defaults) if has_different_default else None
             if new.kind == READING and reason is None:
                 continue
             old_text = None if pair.old is None else rename_in_text(pair.old, self._old_names)
@@ -129,83 +136,94 @@ class SettingChanges:
             if setting.edit is None:
                 settings.append(setting)
             else:
-                place = new, self._pair.location(new.span), setting
-                self._remappings.setdefault((setting.edit, reason is None), []).append(place)
+                occurrence = new, self._pair.location(new.span), setting
+                self._remappings.setdefault((setting.edit, reason is None), []).append(occurrence)
         for text, reason, name in _group_settings(settings, is_include=new.kind == "include"):
             # A group may give a condition to actions that other programs need and to those of a user interface.
-            self._add(new, text, reason, is_apart=name != CONDITION)
+            self._collect(new, text, reason, separates_reasons=name != CONDITION)
 
-    def _reason(self, entry: Entry, setting: str, old: str | None, new: str | None) -> Phrase | None:
-        """Return the reason why a changed setting is breaking: shared names, or nodes that it stops."""
-        reason = setting_reason(entry, setting, old, new, self._old, self._new)
+    def _find_reason(self, entry: Entry, setting: str, old: str | None, new: str | None) -> Phrase | None:
+        """Return the reason why a changed setting is breaking, or None if it is not.
+
+        It may change shared names or stop nodes.
+        """
+        reason = find_setting_reason(entry, setting, old, new, self._old, self._new)
         if entry.kind == "include":
             if setting == CONDITION:
-                return reason if self._included.started_programs(entry) else None
-            return reason or self._reason_of_passed(entry, setting, old)
+                return reason if self._included.count_started_programs(entry) else None
+            return reason or self._find_passed_value_reason(entry, setting, old)
         if entry.kind == "argument" and setting == "default" and reason is None and old is not None:
-            lost = self._included.all_started_programs({entry.name: old}) - self._included.all_started_programs()
-            return _stopped_reason(lost) if lost else None
+            stopped = (
+                self._included.count_all_started_programs({entry.name: old})
+                - self._included.count_all_started_programs()
+            )
+            return _explain_stopped_programs(stopped) if stopped else None
         return reason
 
-    def _reason_of_passed(self, include: Entry, setting: str, old: str | None) -> Phrase | None:
-        """Return the reason why another value for an argument of an included file is breaking, or None if it is not."""
-        others = {name: value for name, value in include.settings.items() if name != setting}
-        before = replace(include, settings=others if old is None else {**others, setting: old})
-        lost = self._included.started_programs(before) - self._included.started_programs(include)
-        return _stopped_reason(lost) if lost else None
+    def _find_passed_value_reason(self, include: Entry, setting: str, old: str | None) -> Phrase | None:
+        """Return the reason why a different value for an included file is breaking, or None."""
+        other_settings = {name: value for name, value in include.settings.items() if name != setting}
+        old_include = replace(include, settings=other_settings if old is None else {**other_settings, setting: old})
+        stopped = self._included.count_started_programs(old_include) - self._included.count_started_programs(include)
+        return _explain_stopped_programs(stopped) if stopped else None
 
-    def _is_same_name(self, entry: Entry, setting: str, old: str | None, new: str | None) -> bool:
+    def _sets_default_name(self, entry: Entry, setting: str, old: str | None, new: str | None) -> bool:
         """Return whether a setting sets the default name of a node or topic."""
         if entry.kind == "node" and setting == "name" and None in (old, new):
-            return default_name(self._pair.versions.new.root, entry.name) == (old or new)
-        return entry.is_same_name(setting, old, new)
+            return find_default_name(self._pair.versions.new.root, entry.name) == (old or new)
+        return entry.is_identity_remapping(setting, old, new)
 
-    def _add(self, entry: Entry, text: Phrase, reason: Phrase | None, *, is_apart: bool = True) -> None:
-        place = entry, self._pair.location(entry.span), text, reason
-        self._groups.setdefault((str(text), str(reason) if is_apart else ""), []).append(place)
+    def _collect(self, entry: Entry, text: Phrase, reason: Phrase | None, *, separates_reasons: bool = True) -> None:
+        occurrence = entry, self._pair.location(entry.span), text, reason
+        self._groups.setdefault((str(text), str(reason) if separates_reasons else ""), []).append(occurrence)
 
-    def _add_remappings(self) -> None:
+    def _collect_remappings(self) -> None:
         """Collect the changed remappings. Equal edits of several targets are one change."""
-        for places in self._remappings.values():
-            edits = {(setting.name, setting.old, setting.new) for _, _, setting in places}
-            if len(places) < _MIN_GROUP or len(edits) == 1:
-                for entry, _, setting in places:
-                    self._add(entry, setting.text, setting.reason)
+        for occurrences in self._remappings.values():
+            edits = {(setting.name, setting.old, setting.new) for _, _, setting in occurrences}
+            if len(occurrences) < _MIN_GROUP_SIZE or len(edits) == 1:
+                for entry, _, setting in occurrences:
+                    self._collect(entry, setting.text, setting.reason)
                 continue
-            entries = [entry for entry, _, _ in places]
-            names = list(dict.fromkeys(f"{setting.old} -> {setting.new}" for _, _, setting in places))
+            entries = [entry for entry, _, _ in occurrences]
+            names = list(dict.fromkeys(f"{setting.old} -> {setting.new}" for _, _, setting in occurrences))
             text = phrase("remappings {items}", items=joined_first(names, MAX_NAMES))
             text = phrase("{entry}: {change}", entry=join_titles(entries), change=text)
-            self._pair.add(text, places[0][1], _group_reason([setting for _, _, setting in places]))
+            self._pair.add(text, occurrences[0][1], _join_reasons([setting for _, _, setting in occurrences]))
 
-    def add_groups(self) -> None:
+    def report_groups(self) -> None:
         """Report the collected changes for the file."""
-        self._add_remappings()
-        for places in self._groups.values():
-            _, location, change, _ = places[0]
-            reason = next((reason for _, _, _, reason in places if reason is not None), None)
-            entries = [entry for entry, _, _, _ in places]
-            titles = [self._title(entry, entries, str(change)) for entry in entries]
-            text = phrase("{entry}: {change}", entry=join_texts(titles), change=change)
+        self._collect_remappings()
+        for occurrences in self._groups.values():
+            _, location, change, _ = occurrences[0]
+            reason = next((reason for _, _, _, reason in occurrences if reason is not None), None)
+            entries = [entry for entry, _, _, _ in occurrences]
+            titles = [self._format_title(entry, entries, str(change)) for entry in entries]
+            text = phrase("{entry}: {change}", entry=join_phrases(titles), change=change)
             self._pair.add(text, location, reason)
             if len(set(titles)) == 1:  # a report counts equal changes
-                for _, other_location, _, _ in places[1:]:
+                for _, other_location, _, _ in occurrences[1:]:
                     self._pair.add(text, other_location, reason)
 
-    def _title(self, entry: Entry, changed: Sequence[Entry], change: str) -> Phrase:
-        """Return the title of an action, with the name of the node if an unchanged action has the same title.
+    def _format_title(self, entry: Entry, changed: Sequence[Entry], change: str) -> Phrase:
+        """Return the title of an action, with the node name if the title is ambiguous.
 
-        A change of the name itself already shows it.
+        The name is added if an unchanged action has the same title, and the change does not already show the name.
         """
-        alike = [other for other in self._new.entries if other.kind == "node" and title(other) == title(entry)]
-        if entry.kind != "node" or all(any(other is changed_entry for changed_entry in changed) for other in alike):
-            return distinct_title(entry, self._new.entries)
+        nodes_with_title = [
+            other for other in self._new.entries if other.kind == "node" and format_title(other) == format_title(entry)
+        ]
+        if entry.kind != "node" or all(
+            any(other is changed_entry for changed_entry in changed) for other in nodes_with_title
+        ):
+            return format_distinct_title(entry, self._new.entries)
         name = "/".join(filter(None, (entry.settings.get(NAMESPACE), entry.settings.get("name"))))
         is_shown = not name or f" {name}" in change
-        return title(entry) if is_shown else phrase("{entry} ({items})", entry=title(entry), items=name)
+        return format_title(entry) if is_shown else phrase("{entry} ({items})", entry=format_title(entry), items=name)
 
 
-def _stopped_reason(programs: Collection[Program]) -> Phrase:
+def _explain_stopped_programs(programs: Collection[Program]) -> Phrase:
+    """Return the reason why it is breaking that programs do not start by default."""
     names = [quoted_names([name]) for name in sorted({name for _, name in programs})]
     if len(names) == 1:
         return phrase("by default, {entry} does not start any more", entry=names[0])
@@ -223,20 +241,21 @@ def _group_settings(
     for setting in settings:
         prefix = next((word for word in (PARAMETER, REMAPPING) if setting.name.startswith(word)), "")
         if is_include and setting.name not in (CONDITION, NAMESPACE_OF_INCLUDED):
-            prefix = _PASSED
-        is_lone = not prefix or (setting.old is not None and setting.new is not None)
-        key = setting.name if is_lone else (prefix, setting.new is None, setting.reason is None)
+            prefix = _PASSED_ARGUMENTS
+        is_single = not prefix or (setting.old is not None and setting.new is not None)
+        key = setting.name if is_single else (prefix, setting.new is None, setting.reason is None)
         groups.setdefault(key, []).append(setting)
     for group in groups.values():
-        if len(group) < _MIN_GROUP:
+        if len(group) < _MIN_GROUP_SIZE:
             yield from ((setting.text, setting.reason, setting.name) for setting in group)
         else:
-            yield _group_text(group, is_include=is_include), _group_reason(group), group[0].name
+            yield _format_group(group, is_include=is_include), _join_reasons(group), group[0].name
 
 
-def _group_text(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
+def _format_group(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
+    """Return several added or removed settings of an action as one change."""
     is_remapping, is_added = group[0].name.startswith(REMAPPING), group[0].new is not None
-    items = joined_first([_setting_text(setting) for setting in group], MAX_NAMES)
+    items = joined_first([_format_setting(setting) for setting in group], MAX_NAMES)
     if is_include:
         added, removed = (
             phrase("arguments added: {items}", items=items),
@@ -256,14 +275,15 @@ def _group_text(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
     )
 
 
-def _setting_text(setting: _Setting) -> str:
-    value = shorten(setting.new or setting.old or "''", _MAX_VALUE)
+def _format_setting(setting: _Setting) -> str:
+    value = shorten(setting.new or setting.old or "''", _MAX_VALUE_CHARACTERS)
     if setting.name.startswith(REMAPPING):
         return f"{setting.name.removeprefix(REMAPPING)} -> {value}"
     return f"{setting.name.removeprefix(PARAMETER)} {value}"
 
 
-def _group_reason(group: Sequence[_Setting]) -> Phrase | None:
+def _join_reasons(group: Sequence[_Setting]) -> Phrase | None:
+    """Return one reason for a group of settings, with all names that it breaks."""
     reasons = [setting.reason for setting in group if setting.reason is not None]
     if len(reasons) < 2 or any(reason.arguments.keys() != {"name"} for reason in reasons):
         return reasons[0] if reasons else None

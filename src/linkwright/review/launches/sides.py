@@ -7,23 +7,23 @@ from enum import Enum
 from functools import lru_cache
 from pathlib import Path
 
-from linkwright.review.launches.default_names import package_folders
+from linkwright.review.launches.default_names import find_package_folders
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind
 from linkwright.review.sources.reading import read_source_names
 
-_SUBSCRIBERS = re.compile(
+_SUBSCRIBING_PROGRAM = re.compile(
     r"slam_toolbox/|nav2_\w+/|robot_localization/|cartographer_ros/|rtabmap_\w+/|octomap_server2?/|"
     r"robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/"
 )
-_INPUTS = re.compile(
+_INPUT_TOPIC = re.compile(
     r"(.*/)?(scan|scan_in|cloud|cloud_in|points|odom|odometry/\w+|imu(/\w+)?|gps/fix|joint_states|depth|"
     r"depth_camera_info|(rgb|depth|image)(/\w+)*|camera_info)"
 )
 """The topics to which these programs subscribe. They publish their other topics."""
 _NAMED_INPUT = re.compile(r"(.*[/_])?(in|input)([/_].*)?")
 _NAMED_OUTPUT = re.compile(r"(.*[/_])?(out|output)([/_].*)?")
-_OFFERING = frozenset({NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION})
-_USING = frozenset({NameKind.SUBSCRIPTION, NameKind.CLIENT, NameKind.ACTION_CLIENT})
+_OFFERING_KINDS = frozenset({NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION})
+_USING_KINDS = frozenset({NameKind.SUBSCRIPTION, NameKind.CLIENT, NameKind.ACTION_CLIENT})
 _MAX_SOURCES = 80
 
 
@@ -35,27 +35,31 @@ class Side(Enum):
     UNKNOWN = "unknown"
 
 
-def side_of(program: str, name: str, root: Path | None) -> Side:
-    """Return whether a node offers a topic or service or uses it, judging by its sources or the name.
+def find_side(program: str, name: str, root: Path | None) -> Side:
+    """Return whether a node offers a topic or service, or uses it.
+
+    The sources of the node or the name decide.
 
     Args:
         program: the package and the executable of the node.
         name: the name that the node itself gives to the topic or service.
         root: the folder of the repository, which may have the sources; None if it is unknown.
     """
-    plain = name.lstrip("~/")
-    if _SUBSCRIBERS.match(program) and _INPUTS.fullmatch(plain):
+    relative_name = name.lstrip("~/")
+    if _SUBSCRIBING_PROGRAM.match(program) and _INPUT_TOPIC.fullmatch(relative_name):
         return Side.USES
-    kinds = set() if root is None else _kinds_by_name(root, program.partition("/")[0]).get(plain, set())
-    if kinds and kinds <= _USING:
+    kinds = set() if root is None else _read_kinds_by_name(root, program.partition("/")[0]).get(relative_name, set())
+    if kinds and kinds <= _USING_KINDS:
         return Side.USES
-    if kinds & _OFFERING or _NAMED_OUTPUT.fullmatch(plain):
+    if kinds & _OFFERING_KINDS or _NAMED_OUTPUT.fullmatch(relative_name):
         return Side.OFFERS
-    return Side.USES if _NAMED_INPUT.fullmatch(plain) else Side.UNKNOWN
+    return Side.USES if _NAMED_INPUT.fullmatch(relative_name) else Side.UNKNOWN
 
 
 def is_new_name(program: str, name: str, old_root: Path | None, new_root: Path | None) -> bool:
-    """Return whether only the new sources of a package have a topic or service; no other program can use it yet.
+    """Return whether only the new sources of a package have a topic or service.
+
+    No other program can use such a name yet.
 
     Args:
         program: the package and the executable of the node.
@@ -63,23 +67,25 @@ def is_new_name(program: str, name: str, old_root: Path | None, new_root: Path |
         old_root: the folder of the old repository; None if it is unknown.
         new_root: the folder of the new repository; None if it is unknown.
     """
-    package, plain = program.partition("/")[0], name.lstrip("~/")
-    if old_root is None or new_root is None or package not in package_folders(old_root):
+    package, relative_name = program.partition("/")[0], name.lstrip("~/")
+    if old_root is None or new_root is None or package not in find_package_folders(old_root):
         return False
-    return plain in _kinds_by_name(new_root, package) and plain not in _kinds_by_name(old_root, package)
+    return relative_name in _read_kinds_by_name(new_root, package) and relative_name not in _read_kinds_by_name(
+        old_root, package
+    )
 
 
 @lru_cache(maxsize=64)
-def _kinds_by_name(root: Path, package: str) -> dict[str, set[NameKind]]:
-    """Return the kinds of the names of topics, services and actions in the sources of a package."""
+def _read_kinds_by_name(root: Path, package: str) -> dict[str, set[NameKind]]:
+    """Return the kinds of topics, services and actions in a package's sources, by name."""
     kinds: dict[str, set[NameKind]] = {}
-    folder = package_folders(root).get(package)
+    folder = find_package_folders(root).get(package)
     if folder is None:
         return kinds
     suffixes = (*CPP_SUFFIXES, PYTHON_SUFFIX)
     files = [file for file in sorted(folder.rglob("*")) if file.suffix in suffixes and file.is_file()]
     for file in files[:_MAX_SOURCES]:
         for item in read_source_names(file).names:
-            if item.kind in _OFFERING | _USING:
+            if item.kind in _OFFERING_KINDS | _USING_KINDS:
                 kinds.setdefault(item.name.strip("\"'").lstrip("~/"), set()).add(item.kind)
     return kinds

@@ -1,4 +1,4 @@
-"""Write expressions of Python launch files as text, where possible in the notation of XML launch files."""
+"""Format expressions of Python launch files, if possible like in XML launch files."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from dataclasses import dataclass
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 
 _MAX_DEPTH = 30
-_MAX_LENGTH = 10_000
+_MAX_CHARACTERS = 10_000
 """The maximum number of characters kept of an expression. If names refer to names, the text can grow exponentially."""
-_Part = Callable[[ast.expr | None], str]
-_COMPARISONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
-_COMPARING = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
-_TEXT_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
-_PROGRAM = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
+_Formatter = Callable[[ast.expr | None], str]
+_COMPARISON_CONDITIONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
+_COMPARISON_SUBSTITUTIONS = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
+_STRING_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
+_PROGRAM_SEARCH = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """A command with an explicit search for the program. The text omits the search, which is the default."""
-_QUOTED = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
+_QUOTED_STRING = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
 """An expression that is only a quoted text."""
-_OTHER_TYPES = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
+_NON_STRING = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?|true|false|yes|no|on|off|\[.*\]|", re.IGNORECASE)
 """Texts that are only strings if they are quoted. Otherwise, they are numbers, booleans, lists, or empty."""
 _ARGUMENT_CONDITIONS = {"IfCondition": "if", "UnlessCondition": "unless"}
 
@@ -61,68 +61,68 @@ class ExpressionTexts:
         """The texts by the identity of the expression, which exists as long as its text."""
 
     def with_item(self, target: ast.expr, item: BoundExpression) -> ExpressionTexts | None:
-        """Return the texts with an item for the variables of a loop, or None if they do not fit."""
+        """Return the texts of a loop pass, or None if the item does not fit the variables."""
         if isinstance(target, ast.Name):
             names, values = [target], [item]
         elif isinstance(target, ast.Tuple) and isinstance(item.node, (ast.Tuple, ast.List)):
             names = [name for name in target.elts if isinstance(name, ast.Name)]
-            values = [item.texts.value(value) for value in item.node.elts]
+            values = [item.texts.resolve(value) for value in item.node.elts]
             if not len(names) == len(target.elts) == len(values):
                 return None
         else:
             return None
-        found = {name.id: value for name, value in zip(names, values, strict=True)}
-        bindings = {name: value.texts.text(value.node) for name, value in found.items()}
-        return ExpressionTexts(self._python, {**self._bindings, **bindings}, {**self._values, **found})
+        items_by_name = {name.id: value for name, value in zip(names, values, strict=True)}
+        bindings = {name: value.texts.text(value.node) for name, value in items_by_name.items()}
+        return ExpressionTexts(self._python, {**self._bindings, **bindings}, {**self._values, **items_by_name})
 
-    def value(self, node: ast.expr) -> BoundExpression:
-        """Return the expression that is assigned or passed to a name, and any other expression unchanged."""
+    def resolve(self, node: ast.expr) -> BoundExpression:
+        """Return the value of a name, or any other expression unchanged."""
         node = self._python.resolved(node)
         bound = self._values.get(node.id) if isinstance(node, ast.Name) else None
         return bound or BoundExpression(self, node)
 
-    def items(self, node: ast.expr) -> list[BoundExpression] | None:
-        """Return the items of a list or dictionary, or None if the file does not contain it literally."""
-        value = self.value(node)
-        items = value.texts.dictionary_items(value.node)
+    def find_items(self, node: ast.expr) -> list[BoundExpression] | None:
+        """Return the items of a literal list or dictionary, or None for other expressions."""
+        value = self.resolve(node)
+        items = value.texts.find_dictionary_items(value.node)
         if items is not None:
             return items
         if not isinstance(value.node, (ast.List, ast.Tuple)):
             return None
-        return [value.texts.value(item) for item in value.node.elts]
+        return [value.texts.resolve(item) for item in value.node.elts]
 
-    def dictionary_items(self, node: ast.expr) -> list[BoundExpression] | None:
-        """Return the items of a loop over a dictionary, its items, keys or values; None for other expressions."""
+    def find_dictionary_items(self, node: ast.expr) -> list[BoundExpression] | None:
+        """Return what a loop over a dictionary or a view of it yields, or None."""
         view = "keys"
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and not node.args:
             method = node.func
             node, view = method.value, method.attr
-        owner = self.value(node)
-        if not isinstance(owner.node, ast.Dict) or view not in ("items", "keys", "values"):
+        dictionary = self.resolve(node)
+        if not isinstance(dictionary.node, ast.Dict) or view not in ("items", "keys", "values"):
             return None
         items: list[BoundExpression] = []
-        for key, value in zip(owner.node.keys, owner.node.values, strict=True):
+        for key, value in zip(dictionary.node.keys, dictionary.node.values, strict=True):
             if key is None:
                 return None
             pair = ast.Tuple([key, value], ast.Load())
             item = {"items": pair, "keys": key, "values": value}[view]
-            items.append(owner.texts.value(item))
+            items.append(dictionary.texts.resolve(item))
         return items
 
-    def list_parts(self, node: ast.expr) -> list[BoundExpression]:
+    def find_list_parts(self, node: ast.expr) -> list[BoundExpression]:
         """Return the items of a list, including sums of lists and unpacked lists (``*items``).
 
-        A part whose items are not written in the file counts as one item.
+        A part whose items are unknown counts as one item.
         """
-        value = self.value(node)
+        value = self.resolve(node)
         node, texts = value.node, value.texts
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            return [*texts.list_parts(node.left), *texts.list_parts(node.right)]
+            return [*texts.find_list_parts(node.left), *texts.find_list_parts(node.right)]
         if not isinstance(node, (ast.List, ast.Tuple)):
             return [value]
         parts: list[BoundExpression] = []
         for item in node.elts:
-            parts += texts.list_parts(item.value) if isinstance(item, ast.Starred) else [texts.value(item)]
+            parts += texts.find_list_parts(item.value) if isinstance(item, ast.Starred) else [texts.resolve(item)]
         return parts
 
     def text(self, node: ast.expr | None, depth: int = 0) -> str:
@@ -133,14 +133,14 @@ class ExpressionTexts:
             return shorten_text(" ".join(ast.unparse(node).split()))
         known = self._texts.get(id(node))
         if known is None:
-            known = self._texts[id(node)] = node, shorten_text(self._text(node, depth))
+            known = self._texts[id(node)] = node, shorten_text(self._format(node, depth))
         return known[1]
 
-    def joined_text(self, node: ast.expr) -> str:
+    def format_joined(self, node: ast.expr) -> str:
         """Return an expression as text. A list of substitutions is joined."""
-        return "".join(map(self.text, self._pieces(node)))
+        return "".join(map(self.text, self._split_pieces(node)))
 
-    def condition(self, node: ast.expr | None) -> str:
+    def format_condition(self, node: ast.expr | None) -> str:
         """Return a condition as text, such as ``unless $(var headless)``; empty if there is none."""
         if node is None:
             return ""
@@ -150,67 +150,74 @@ class ExpressionTexts:
         if isinstance(node, ast.Constant) and node.value is None:
             return ""
         if isinstance(node, ast.Call):
-            function, arguments = called_name(node).rpartition(".")[2], _call_arguments(node)
+            function, arguments = called_name(node).rpartition(".")[2], _get_call_arguments(node)
             if function in _ARGUMENT_CONDITIONS and arguments:
                 return f"{_ARGUMENT_CONDITIONS[function]} {self.text(arguments[0])}"
-            if function in _COMPARISONS and len(arguments) > 1:
-                return f"if $(var {self.text(arguments[0])}) {_COMPARISONS[function]} {self.text(arguments[1])}"
+            if function in _COMPARISON_CONDITIONS and len(arguments) > 1:
+                return (
+                    f"if $(var {self.text(arguments[0])}) {_COMPARISON_CONDITIONS[function]} {self.text(arguments[1])}"
+                )
         return f"if {self.text(node)}"
 
-    def parameter_text(self, node: ast.expr) -> str:
-        """Return the value of a parameter as text. A string that looks like a value of another type is in quotes."""
+    def format_parameter(self, node: ast.expr) -> str:
+        """Return the value of a parameter as text.
+
+        A string that looks like a value of a different type is in quotes.
+        """
         node, text = self._python.resolved(node), self.text(node)
         is_string = isinstance(node, ast.Constant) and isinstance(node.value, str)
-        return f"'{text}'" if is_string and _OTHER_TYPES.fullmatch(text) else text
+        return f"'{text}'" if is_string and _NON_STRING.fullmatch(text) else text
 
-    def pairs(self, node: ast.expr, *, are_parameters: bool = False) -> list[tuple[str, str]] | None:
-        """Return the keys and values of a dictionary, of its ``items()``, or of a list of pairs; None for others.
+    def find_pairs(self, node: ast.expr, *, are_parameters: bool = False) -> list[tuple[str, str]] | None:
+        """Return the pairs of a dictionary, of its ``items()`` or of a list of pairs, or None.
 
         Args:
             node: the syntax tree of the expression.
-            are_parameters: whether the values are parameters, so that the text shows their types; see `parameter_text`.
+            are_parameters: whether the values are parameters, whose texts show their types; see `format_parameter`.
         """
-        value_text = self.parameter_text if are_parameters else self.joined_text
+        format_value = self.format_parameter if are_parameters else self.format_joined
         node = self._python.resolved(node)
         if isinstance(node, ast.Call) and called_name(node) == "list" and len(node.args) == 1:
             node = self._python.resolved(node.args[0])
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
             node = self._python.resolved(node.func.value)
-        bound = self.value(node)
+        bound = self.resolve(node)
         if bound.texts is not self:
-            return bound.texts.pairs(bound.node, are_parameters=are_parameters)
+            return bound.texts.find_pairs(bound.node, are_parameters=are_parameters)
         if isinstance(node, ast.Call) and called_name(node) == "dict" and not node.args:
-            return [(keyword.arg or "", value_text(keyword.value)) for keyword in node.keywords]
+            return [(keyword.arg or "", format_value(keyword.value)) for keyword in node.keywords]
         if isinstance(node, ast.Dict):
-            return list(self._items(node, "", value_text))
+            return list(self._flatten_items(node, "", format_value))
         if not isinstance(node, (ast.List, ast.Tuple, ast.Set)):
             return None
-        pairs = [self._pair(item, value_text) for item in node.elts]
+        pairs = [self._format_pair(item, format_value) for item in node.elts]
         known = [pair for pair in pairs if pair is not None]
         return known if len(known) == len(pairs) else None
 
-    def pair(self, node: ast.expr) -> tuple[str, str] | None:
+    def find_pair(self, node: ast.expr) -> tuple[str, str] | None:
         """Return the texts of a pair, or None for other expressions."""
-        return self._pair(node, self.joined_text)
+        return self._format_pair(node, self.format_joined)
 
-    def _pair(self, node: ast.expr, value_text: Callable[[ast.expr], str]) -> tuple[str, str] | None:
+    def _format_pair(self, node: ast.expr, format_value: Callable[[ast.expr], str]) -> tuple[str, str] | None:
         node = self._python.resolved(node)
         if not isinstance(node, (ast.Tuple, ast.List)) or len(node.elts) != 2:
             return None
-        return self.joined_text(node.elts[0]), value_text(node.elts[1])
+        return self.format_joined(node.elts[0]), format_value(node.elts[1])
 
-    def _items(self, node: ast.Dict, path: str, value_text: Callable[[ast.expr], str]) -> Iterator[tuple[str, str]]:
+    def _flatten_items(
+        self, node: ast.Dict, path: str, format_value: Callable[[ast.expr], str]
+    ) -> Iterator[tuple[str, str]]:
         for key, value in zip(node.keys, node.values, strict=True):
             if key is None:
                 yield f"{path}**", self.text(value)
                 continue
             name, resolved = f"{path}{self.text(key)}", self._python.resolved(value)
             if isinstance(resolved, ast.Dict) and resolved.keys:
-                yield from self._items(resolved, f"{name}.", value_text)
+                yield from self._flatten_items(resolved, f"{name}.", format_value)
             else:
-                yield name, value_text(resolved)
+                yield name, format_value(resolved)
 
-    def _text(self, node: ast.expr, depth: int) -> str:
+    def _format(self, node: ast.expr, depth: int) -> str:
         def part(item: ast.expr | None) -> str:
             return self.text(item, depth + 1)
 
@@ -228,8 +235,8 @@ class ExpressionTexts:
             pairs = zip(node.keys, node.values, strict=True)
             return f"{{{', '.join(f'{part(key)}: {part(value)}' for key, value in pairs)}}}"
         if isinstance(node, ast.Call):
-            substitution = self._substitution(node, part)
-            return _call_text(node, part) if substitution is None else substitution
+            substitution = self._format_substitution(node, part)
+            return _format_call(node, part) if substitution is None else substitution
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
             return f"{part(node.left)}{'' if self._is_string(node) else ' + '}{part(node.right)}"
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
@@ -237,21 +244,23 @@ class ExpressionTexts:
         if isinstance(node, ast.JoinedStr):
             return "".join(part(item.value if isinstance(item, ast.FormattedValue) else item) for item in node.values)
         if isinstance(node, ast.Subscript):
-            owner = self.value(node.value)
+            owner = self.resolve(node.value)
             if isinstance(owner.node, ast.Dict):
                 pairs = zip(owner.node.keys, owner.node.values, strict=True)
-                found = [value for key, value in pairs if key is not None and ast.dump(key) == ast.dump(node.slice)]
-                if found:
-                    return owner.texts.text(found[-1], depth + 1)
+                matching_values = [
+                    value for key, value in pairs if key is not None and ast.dump(key) == ast.dump(node.slice)
+                ]
+                if matching_values:
+                    return owner.texts.text(matching_values[-1], depth + 1)
             return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
             return f"{part(node.value)}.{node.attr}"
         return " ".join(ast.unparse(node).split())
 
-    def _substitution(self, node: ast.Call, part: _Part) -> str | None:
+    def _format_substitution(self, node: ast.Call, part: _Formatter) -> str | None:
         """Return a substitution in the notation of XML launch files, or None for any other call."""
         function = called_name(node).rpartition(".")[2]
-        arguments = _call_arguments(node)
+        arguments = _get_call_arguments(node)
         first = arguments[0] if arguments else None
         if function == "LaunchConfiguration":
             default = argument_of(node, "default")
@@ -266,26 +275,26 @@ class ExpressionTexts:
             return part(owner) if is_share else None
         if first is None:
             return None
-        if function in _COMPARING and len(arguments) > 1:
-            return f"{part(first)} {_COMPARING[function]} {part(arguments[1])}"
+        if function in _COMPARISON_SUBSTITUTIONS and len(arguments) > 1:
+            return f"{part(first)} {_COMPARISON_SUBSTITUTIONS[function]} {part(arguments[1])}"
         if function == "FindExecutable":
             return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):
             if function != "join" and isinstance(self._python.resolved(first), ast.Call):
                 return None  # it fails: only a list can be joined
-            pieces = arguments if function == "join" else self._pieces(first)
-            return _join_path(["".join(map(part, self._pieces(piece))) for piece in pieces])
+            pieces = arguments if function == "join" else self._split_pieces(first)
+            return _join_path(["".join(map(part, self._split_pieces(piece))) for piece in pieces])
         if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path", "PathSubstitution"):
             return part(first)
         if function == "EnvironmentVariable":
             return f"$(env {' '.join(part(argument) or repr('') for argument in arguments)})"
         if function == "PythonExpression":
-            return _expression_text("".join(map(part, self._pieces(first))))
+            return _format_expression("".join(map(part, self._split_pieces(first))))
         if function == "Command":
-            command = _PROGRAM.sub(r"\1", "".join(map(part, self._pieces(first))))
+            command = _PROGRAM_SEARCH.sub(r"\1", "".join(map(part, self._split_pieces(first))))
             return f"$(command {command})"
         if function.endswith("LaunchDescriptionSource"):
-            return "".join(map(part, self._pieces(first)))
+            return "".join(map(part, self._split_pieces(first)))
         return None
 
     def _is_string(self, node: ast.expr) -> bool:
@@ -294,31 +303,35 @@ class ExpressionTexts:
             node = self._python.resolved(node)
             if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add):
                 break
-            if self._is_text(self._python.resolved(node.right)):
+            if self._is_string_term(self._python.resolved(node.right)):
                 return True
             node = node.left
-        return self._is_text(node)
+        return self._is_string_term(node)
 
-    def _is_text(self, node: ast.expr) -> bool:
+    def _is_string_term(self, node: ast.expr) -> bool:
+        """Return whether an expression other than a sum is a string, such as the path of a package."""
         if isinstance(node, ast.Call):
-            return called_name(node).rpartition(".")[2] in _TEXT_FUNCTIONS
+            return called_name(node).rpartition(".")[2] in _STRING_FUNCTIONS
         return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
 
-    def _pieces(self, node: ast.expr) -> list[ast.expr]:
+    def _split_pieces(self, node: ast.expr) -> list[ast.expr]:
         node = self._python.resolved(node)
         return node.elts if isinstance(node, (ast.List, ast.Tuple)) else [node]
 
 
 def shorten_text(text: str) -> str:
     """Return a text, shortened if it is long, with a hash of the whole text."""
-    if len(text) <= _MAX_LENGTH:
+    if len(text) <= _MAX_CHARACTERS:
         return text
-    return f"{text[:_MAX_LENGTH]}... ({hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:12]})"
+    return f"{text[:_MAX_CHARACTERS]}... ({hashlib.sha256(text.encode('utf-8', 'replace')).hexdigest()[:12]})"
 
 
-def _expression_text(expression: str) -> str:
-    """Return a Python expression as text. A quoted text loses its quotes, even if it contains substitutions."""
-    quoted = _QUOTED.fullmatch(expression)
+def _format_expression(expression: str) -> str:
+    """Return a Python expression as text.
+
+    A quoted text loses its quotes, even if it contains substitutions.
+    """
+    quoted = _QUOTED_STRING.fullmatch(expression)
     return f"$(eval {expression})" if quoted is None else quoted["text"]
 
 
@@ -331,11 +344,11 @@ def _join_path(parts: Sequence[str]) -> str:
     return path
 
 
-def _call_arguments(node: ast.Call) -> list[ast.expr]:
+def _get_call_arguments(node: ast.Call) -> list[ast.expr]:
     return [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg is not None)]
 
 
-def _call_text(node: ast.Call, part: _Part) -> str:
+def _format_call(node: ast.Call, part: _Formatter) -> str:
     """Return any other call as text: the function unchanged, its arguments with their values."""
     words = [part(argument) for argument in node.args]
     words += [

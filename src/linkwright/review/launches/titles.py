@@ -1,4 +1,4 @@
-"""Name launch actions in sentences."""
+"""Format the titles and settings of launch actions."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from linkwright.review.launches.outlines import (
 )
 from linkwright.review.list_changes import EMPTY, list_items, shorten
 
-_ORDER = (CONDITION, "name", NAMESPACE, "default", "value", "arguments", REMAPPING, ENVIRONMENT, "parameter")
+_SETTING_ORDER = (CONDITION, "name", NAMESPACE, "default", "value", "arguments", REMAPPING, ENVIRONMENT, "parameter")
 """The beginnings of the names of settings in the order in which they are shown."""
 _MAX_SETTINGS = 16
 """The maximum number of settings in the line about an added or removed action."""
-_VALUES = ("to", "value", "appended value")
+_VALUE_SETTINGS = ("to", "value", "appended value")
 """The settings that are the only value of an action."""
-_MAX_SETTING = 120
-_MAX_NAME = 160
+_MAX_SETTING_CHARACTERS = 120
+_MAX_NAME_CHARACTERS = 160
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
-_CHILD = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
-_TRANSFORM_WORDS = (8, 9)
+_CHILD_FRAME = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
+_TRANSFORM_WORD_COUNTS = (8, 9)
 """The numbers of words of a transform: six or seven numbers and two frames."""
-_FLAGS = frozenset(
+_SPAWNER_FLAGS = frozenset(
     {"--load-only", "--stopped", "--inactive", "--unload-on-kill", "-u", "--activate-as-group", "--switch-asap", "-h"}
 )
 """The options of a spawner without a value."""
@@ -40,15 +40,15 @@ _END_OF_OPTIONS = ("--ros-args",)
 _SPAWNER = re.compile(r"controller_manager/(spawner|spawner\.py|unspawner|unspawner\.py)")
 
 
-def title(entry: Entry) -> Phrase:
+def format_title(entry: Entry) -> Phrase:
     """Return the kind and name of an action."""
-    name = shorten(entry.name, _MAX_NAME)
+    name = shorten(entry.name, _MAX_NAME_CHARACTERS)
     if entry.kind == "argument":
         return phrase("argument '{name}'", name=name)
     if entry.kind == "variable":
         return phrase("variable '{name}'", name=name)
     if entry.kind == "node":
-        return _node_title(entry, name)
+        return _format_node_title(entry, name)
     if entry.kind == "process":
         return phrase("process '{command}'", command=name)
     if entry.kind == "include":
@@ -62,7 +62,7 @@ def title(entry: Entry) -> Phrase:
     if entry.kind == "parameters":
         return phrase("parameters of '{file}'", file=name)
     if entry.kind == DELETION:
-        return _deletion_title(name)
+        return _format_deletion_title(name)
     if entry.kind == "handler":
         return phrase("event handler {name}", name=name)
     if entry.kind == READING:
@@ -72,39 +72,42 @@ def title(entry: Entry) -> Phrase:
     return phrase("action '{name}'", name=name)
 
 
-def _deletion_title(name: str) -> Phrase:
+def _format_deletion_title(name: str) -> Phrase:
     if not name:
         return phrase("deletion of all parameters in the namespace")
     return phrase("deletion of the parameters '{name}'", name=name)
 
 
-def _node_title(entry: Entry, name: str) -> Phrase:
+def _format_node_title(entry: Entry, name: str) -> Phrase:
     """Return the title of a node with the controllers or the frame that it serves."""
-    names = served_names(entry)
+    names = find_served_names(entry)
     if not names:
         return phrase("node '{name}'", name=name)
     return phrase("node '{name}' of {controllers}", name=name, controllers=quoted_names(names))
 
 
-def served_names(entry: Entry) -> list[str]:
-    """Return the controllers of a spawner, or the child frame of a static transform; empty if unknown."""
+def find_served_names(entry: Entry) -> list[str]:
+    """Return the controllers of a spawner or the child frame of a static transform.
+
+    The list is empty if they are unknown.
+    """
     text = entry.settings.get("arguments", "")
     words = list_items(text) if text.startswith("[") else text.split()
     if words == [text] and text.startswith("["):
         return []  # an expression that is not known
     if _SPAWNER.fullmatch(entry.name):
-        return list(_spawned_controllers(words))
+        return list(_find_spawned_controllers(words))
     if not entry.name.startswith(TRANSFORM_PUBLISHERS):
         return []
-    child = _CHILD.search(text)
+    child = _CHILD_FRAME.search(text)
     if child is not None:
         return [child[1]]
     parts = {"tf2_ros": len(words), "tf": len(words) - 1}  # the publisher of ROS 1 has a period at the end
     count = parts[entry.name.partition("/")[0]]
-    return [words[count - 1]] if count in _TRANSFORM_WORDS else []
+    return [words[count - 1]] if count in _TRANSFORM_WORD_COUNTS else []
 
 
-def _spawned_controllers(words: Sequence[str]) -> Iterator[str]:
+def _find_spawned_controllers(words: Sequence[str]) -> Iterator[str]:
     """Yield the words of a spawner's command line that are neither options nor their values."""
     is_value = False
     for word in words:
@@ -112,69 +115,74 @@ def _spawned_controllers(words: Sequence[str]) -> Iterator[str]:
             return
         if not word.startswith("-") and not is_value:
             yield word
-        is_value = word.startswith("-") and word not in _FLAGS
+        is_value = word.startswith("-") and word not in _SPAWNER_FLAGS
 
 
-def distinct_title(entry: Entry, others: Sequence[Entry]) -> Phrase:
+def format_distinct_title(entry: Entry, others: Sequence[Entry]) -> Phrase:
     """Return the title of an action, with its condition if another action sets the same name."""
     condition = entry.settings.get(CONDITION)
     count = sum((other.kind, other.name) == (entry.kind, entry.name) for other in others)
     if entry.kind in ("node", "include", "process") or condition is None or count < 2:
-        return title(entry)
-    return phrase("{entry} ({items})", entry=title(entry), items=condition)
+        return format_title(entry)
+    return phrase("{entry} ({items})", entry=format_title(entry), items=condition)
 
 
 def join_titles(entries: Sequence[Entry]) -> Phrase:
-    """Return the titles of actions as a list, or the first titles and the number of the remaining ones."""
-    return join_texts(list(map(title, entries)))
+    """Return the first titles of actions, and the number of the remaining ones."""
+    return join_phrases(list(map(format_title, entries)))
 
 
-def join_texts(titles: Sequence[Phrase]) -> Phrase:
-    """Return distinct titles as a list, or the first titles and the number of the remaining ones."""
+def join_phrases(titles: Sequence[Phrase]) -> Phrase:
+    """Return the first distinct titles, and the number of the remaining ones."""
     return joined_first(list(dict.fromkeys(titles)), MAX_NAMES)
 
 
-def added_entry_text(entry: Entry) -> Phrase:
-    """Return the text that an action was added, with its only value or its settings."""
-    items = _value_or_settings(entry)
+def format_added_entry(entry: Entry) -> Phrase:
+    """Return the message that an action was added, with its only value or its settings."""
+    items = _format_value_or_settings(entry)
     if items is None:
-        return phrase("{entry} added", entry=title(entry))
-    return phrase("{entry} added: {items}", entry=title(entry), items=items)
+        return phrase("{entry} added", entry=format_title(entry))
+    return phrase("{entry} added: {items}", entry=format_title(entry), items=items)
 
 
-def removed_entry_text(entry: Entry) -> Phrase:
-    """Return the text that an action was removed, with its only value or its settings."""
-    items = _value_or_settings(entry)
+def format_removed_entry(entry: Entry) -> Phrase:
+    """Return the message that an action was removed, with its only value or its settings."""
+    items = _format_value_or_settings(entry)
     if items is None:
-        return phrase("{entry} removed", entry=title(entry))
-    return phrase("{entry} removed: {items}", entry=title(entry), items=items)
+        return phrase("{entry} removed", entry=format_title(entry))
+    return phrase("{entry} removed: {items}", entry=format_title(entry), items=items)
 
 
-def _value_or_settings(entry: Entry) -> Phrase | None:
+def _format_value_or_settings(entry: Entry) -> Phrase | None:
     """Return the value of an action if it has only one, or its settings; None if it has none."""
     if entry.kind == READING:
         return None
     names = [name for name in entry.settings if name != "description"]
-    if len(names) == 1 and names[0] in _VALUES:
-        return as_phrase(shorten(entry.settings[names[0]], _MAX_NAME) or EMPTY)
-    return settings_text(entry)
+    if len(names) == 1 and names[0] in _VALUE_SETTINGS:
+        return as_phrase(shorten(entry.settings[names[0]], _MAX_NAME_CHARACTERS) or EMPTY)
+    return format_settings(entry)
 
 
-def settings_text(entry: Entry, limit: int = _MAX_SETTINGS) -> Phrase | None:
+def format_settings(entry: Entry, limit: int = _MAX_SETTINGS) -> Phrase | None:
     """Return the settings of an action, its condition first, or None if it has none."""
-    names = sorted((name for name in entry.settings if name != "description"), key=_setting_rank)
+    names = sorted((name for name in entry.settings if name != "description"), key=_find_setting_rank)
     if not names:
         return None
-    return joined_first([_setting_text(name, entry.settings[name]) for name in names], limit)
+    return joined_first([_format_setting(name, entry.settings[name]) for name in names], limit)
 
 
-def _setting_rank(setting: str) -> int:
-    """Return the rank of a setting in a list: shared names and settings that differ in each node come first."""
-    return next((number for number, start in enumerate(_ORDER) if setting.startswith(start)), len(_ORDER))
+def _find_setting_rank(setting: str) -> int:
+    """Return the rank of a setting in a list.
+
+    Shared names, and settings that differ in each node, come first.
+    """
+    return next(
+        (number for number, start in enumerate(_SETTING_ORDER) if setting.startswith(start)), len(_SETTING_ORDER)
+    )
 
 
-def _setting_text(name: str, value: str) -> str:
+def _format_setting(name: str, value: str) -> str:
     if name == CONDITION:
-        return shorten(value, _MAX_SETTING)
+        return shorten(value, _MAX_SETTING_CHARACTERS)
     separator = " -> " if name.startswith(REMAPPING) else " "
-    return shorten(f"{name}{separator}{value or EMPTY}", _MAX_SETTING)
+    return shorten(f"{name}{separator}{value or EMPTY}", _MAX_SETTING_CHARACTERS)

@@ -8,19 +8,19 @@ from linkwright.review.launches.outlines import PARAMETER, Entry, LaunchOutline
 from linkwright.review.list_changes import list_items
 
 _PACKAGE = "topic_tools/"
-_RATES = {"messages": 1, "bytes": 2}
+_THROTTLE_NUMBER_COUNTS = {"messages": 1, "bytes": 2}
 """The numbers that follow the input of ``throttle``."""
-_NUMBERS = {"relay": 0, "delay": 1, "drop": 2, "relay_field": None, "transform": None}
+_NUMBER_COUNTS = {"relay": 0, "delay": 1, "drop": 2, "relay_field": None, "transform": None}
 """The numbers between the input and the output of other programs; None if there is always an output after the input."""
-_INPUT = f"{PARAMETER}input_topic"
+_INPUT_PARAMETER = f"{PARAMETER}input_topic"
 _Topics = tuple[list[str], list[str]]
 """The inputs and the outputs."""
 
 
-def forwarding_reason(
+def find_forwarding_reason(
     entry: Entry, setting: str, old: str | None, new: str | None, outlines: tuple[LaunchOutline, LaunchOutline]
 ) -> Phrase | None:
-    """Return the reason why a changed setting of a topic_tools program is breaking, or None if it is not.
+    """Return the reason why a changed topic_tools setting is breaking, or None.
 
     Args:
         entry: the new action.
@@ -32,21 +32,24 @@ def forwarding_reason(
     if not entry.name.startswith(_PACKAGE) or old is None or new is None:
         return None
     old_text, new_text = outlines[0].resolve(old), outlines[1].resolve(new)
-    if setting == _INPUT:
-        return None if _may_be_among(old_text, [new_text]) else _input_reason(old_text)
+    if setting == _INPUT_PARAMETER:
+        return None if _may_be_among(old_text, [new_text]) else _explain_lost_input(old_text)
     if setting != "arguments":
         return None
     (old_inputs, old_outputs), (new_inputs, new_outputs) = (_read_topics(entry, text) for text in (old_text, new_text))
     if not old_inputs or not new_inputs:
         return None
-    kept = [*new_outputs, *(name for other in outlines[1].entries for name in _output_topics(other, outlines[1]))]
+    remaining_outputs = [
+        *new_outputs,
+        *(name for other in outlines[1].entries for name in _find_output_topics(other, outlines[1])),
+    ]
     for name in old_outputs:
-        if not _may_be_among(name, kept):
+        if not _may_be_among(name, remaining_outputs):
             return name_reason(name)
-    return next((_input_reason(name) for name in old_inputs if not _may_be_among(name, new_inputs)), None)
+    return next((_explain_lost_input(name) for name in old_inputs if not _may_be_among(name, new_inputs)), None)
 
 
-def _input_reason(name: str) -> Phrase:
+def _explain_lost_input(name: str) -> Phrase:
     return phrase("the messages of '{name}' are not forwarded any more", name=name)
 
 
@@ -55,7 +58,7 @@ def _may_be_among(name: str, names: list[str]) -> bool:
     return any("$(" in other or other.strip("/") == name.strip("/") for other in names)
 
 
-def _output_topics(entry: Entry, outline: LaunchOutline) -> list[str]:
+def _find_output_topics(entry: Entry, outline: LaunchOutline) -> list[str]:
     return _read_topics(entry, outline.resolve(entry.settings.get("arguments", "")))[1]
 
 
@@ -70,17 +73,17 @@ def _read_topics(entry: Entry, arguments: str) -> _Topics:
         return words[1:], words[:1]
     if program == "demux":
         return words[:1], words[1:]
-    numbers: int | None = 0
+    number_count: int | None = 0
     if program == "throttle":
         kind, *words = words
-        if kind not in _RATES or not words:
+        if kind not in _THROTTLE_NUMBER_COUNTS or not words:
             return [], []
-        numbers = _RATES[kind]
-    elif program in _NUMBERS:
-        numbers = _NUMBERS[program]
+        number_count = _THROTTLE_NUMBER_COUNTS[kind]
+    elif program in _NUMBER_COUNTS:
+        number_count = _NUMBER_COUNTS[program]
     else:
         return [], []
-    if numbers is None:
+    if number_count is None:
         return words[:1], words[1:2]
-    output = words[numbers + 1 : numbers + 2]
+    output = words[number_count + 1 : number_count + 2]
     return words[:1], output or [f"{words[0].rstrip('/')}_{program}"]

@@ -1,4 +1,4 @@
-"""Report the arguments of launch files that the new version no longer uses, declared or not."""
+"""Report the arguments of launch files that the new version no longer uses."""
 
 from __future__ import annotations
 
@@ -8,30 +8,32 @@ from pathlib import Path
 
 from linkwright.diagnostics import phrase
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.effects import argument_removal_reason
+from linkwright.review.launches.effects import explain_argument_removal
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 
-_WITH_DEFAULT = re.compile(r"\$\(var ([\w.-]+) ")
+_ARGUMENT_WITH_DEFAULT = re.compile(r"\$\(var ([\w.-]+) ")
 _USED_ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w./-]+)")
 _COMMENT = re.compile(r"<!--.*?-->|^\s*#[^\n]*", re.DOTALL | re.MULTILINE)
-_PASSES_ALL = "pass_all_args"
+_PASSING_ATTRIBUTE = "pass_all_args"
 """The attribute with which an include of ROS 1 passes all arguments."""
 
 
-def report_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline, kept: Sequence[Entry]) -> None:
+def report_unused_arguments(
+    pair: FilePair, old: LaunchOutline, new: LaunchOutline, paired_old: Sequence[Entry]
+) -> None:
     """Report the arguments that only the old version uses.
 
     Args:
         pair: both versions of the launch file.
         old: the old outline, with the new names of arguments.
         new: the outline of the new file.
-        kept: the old actions that the new version has, too. Arguments of removed actions are not reported.
+        paired_old: the old actions that the new version also has. Arguments of removed actions are not reported.
     """
     _report_undeclared(pair, old, new)
     content = _COMMENT.sub("", _read_text(pair.new_file))
-    if _PASSES_ALL in content or (not new.is_ros1 and any(entry.kind == "include" for entry in new.entries)):
+    if _PASSING_ATTRIBUTE in content or (not new.is_ros1 and any(entry.kind == "include" for entry in new.entries)):
         return  # an included file may use any argument
-    old_names = {entry.name for entry in old.entries if _is_argument(entry) and _is_used(entry.name, kept)}
+    old_names = {entry.name for entry in old.entries if _is_argument(entry) and _is_used(entry.name, paired_old)}
     for entry in new.entries:
         if not _is_argument(entry) or entry.name not in old_names or _is_used(entry.name, new.entries):
             continue
@@ -42,7 +44,7 @@ def report_unused_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutli
 
 
 def _may_use(text: str, name: str) -> bool:
-    """Return whether a file may use an argument in an expression, or in code beside its declaration."""
+    """Return whether a file may use an argument outside of its declaration."""
     pattern = re.escape(name)
     is_in_expression = re.search(rf"\$\([^<>]*?(?<![\w.-]){pattern}(?![\w.-])", text)
     return is_in_expression is not None or len(re.findall(rf"[\"']{pattern}[\"']", text)) > 1
@@ -50,7 +52,7 @@ def _may_use(text: str, name: str) -> bool:
 
 def _report_undeclared(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
     """Report the undeclared arguments that only the old version names."""
-    used = {name: entry for entry in old.entries for name in _names_with_default(entry)}
+    used = {name: entry for entry in old.entries for name in _find_names_with_default(entry)}
     declared = {entry.name for outline in (old, new) for entry in outline.entries if entry.has_value}
     text = _read_text(pair.new_file) if used.keys() - declared else ""
     for name, entry in used.items():
@@ -59,7 +61,7 @@ def _report_undeclared(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -
             pair.add(
                 phrase("argument '{name}' removed", name=name),
                 location,
-                argument_removal_reason(name, is_ros1=old.is_ros1),
+                explain_argument_removal(name, is_ros1=old.is_ros1),
             )
 
 
@@ -67,8 +69,8 @@ def _read_text(file: Path) -> str:
     return file.read_text("utf-8", errors="replace")
 
 
-def _names_with_default(entry: Entry) -> list[str]:
-    return [name for text in (entry.name, *entry.settings.values()) for name in _WITH_DEFAULT.findall(text)]
+def _find_names_with_default(entry: Entry) -> list[str]:
+    return [name for text in (entry.name, *entry.settings.values()) for name in _ARGUMENT_WITH_DEFAULT.findall(text)]
 
 
 def _is_argument(entry: Entry) -> bool:

@@ -1,4 +1,4 @@
-"""Normalize the code of a Python launch file besides its actions, so that it can be compared."""
+"""Normalize the code of a Python launch file besides its actions, to compare it."""
 
 from __future__ import annotations
 
@@ -10,46 +10,51 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.outlines import CodePart
 from linkwright.review.launches.text import shorten_text
 
-_TRANSPARENT = frozenset(
+_COMBINING_CALLS = frozenset(
     {"add_action", "add_entity", "GroupAction", "LaunchDescription", "LoadComposableNodes", "TimerAction"}
 )
 """The calls that only combine actions."""
-_ADDITIONS = ("append", "extend")
+_LIST_METHODS = ("append", "extend")
 """The methods that add actions to lists."""
-_CONTENTS = ("actions", "composable_node_descriptions", None)
+_ACTION_ARGUMENTS = ("actions", "composable_node_descriptions", None)
 """The arguments of these calls that contain actions."""
-_EXITS = ("sys.exit", "exit", "quit", "os._exit")
+_EXIT_FUNCTIONS = ("sys.exit", "exit", "quit", "os._exit")
 """The calls that end the process."""
-_BODIES = ("body", "orelse", "finalbody", "handlers", "cases")
+_BODY_FIELDS = ("body", "orelse", "finalbody", "handlers", "cases")
 """The fields of statements that contain nested statements."""
 _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
 
 
-def definitions_of(python: PythonFile) -> list[CodePart]:
+def find_definitions(python: PythonFile) -> list[CodePart]:
     """Return the statements that assign a name for the only time."""
-    rest = _CodeNormalizer(python, ())
+    normalizer = _CodeNormalizer(python, ())
     return [
         CodePart("", _unparse(node), python.span(node))
-        for node in _all_statements(python.tree)
-        if isinstance(node, (ast.Assign, ast.AnnAssign)) and rest.is_definition(node)
+        for node in _find_statements(python.tree)
+        if isinstance(node, (ast.Assign, ast.AnnAssign)) and normalizer.is_definition(node)
     ]
 
 
-def code_besides_actions(
-    python: PythonFile, covered: Collection[int], branches: Collection[int] = ()
-) -> list[CodePart]:
-    """Return the statements besides the actions, without names of variables, imports, comments and layout.
+def read_other_code(python: PythonFile, covered: Collection[int], branches: Collection[int] = ()) -> list[CodePart]:
+    """Return the statements besides the actions in comparable form.
+
+    The form lacks names of variables, imports, comments and layout.
 
     Args:
         python: the parsed file.
         covered: the identities of the calls that make actions.
         branches: the identities of the ``if`` statements whose conditions actions have.
     """
-    rest = _CodeNormalizer(python, covered, branches)
-    conditions = _failing_conditions(python.tree)
+    normalizer = _CodeNormalizer(python, covered, branches)
+    conditions = _find_failing_conditions(python.tree)
     parts = (
-        CodePart(rest.statement_text(node), _unparse(_header_of(node)), python.span(node), conditions.get(id(node), ""))
-        for node in sorted(_all_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
+        CodePart(
+            normalizer.format_statement(node),
+            _unparse(_copy_header(node)),
+            python.span(node),
+            conditions.get(id(node), ""),
+        )
+        for node in sorted(_find_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
     )
     return [part for part in parts if part.text]
 
@@ -58,8 +63,8 @@ def _unparse(node: ast.AST) -> str:
     return " ".join(ast.unparse(node).split())
 
 
-def _failing_conditions(tree: ast.AST) -> dict[int, str]:
-    """Return the conditions of the ``if`` statements that end the launch, by the identity of the statement."""
+def _find_failing_conditions(tree: ast.AST) -> dict[int, str]:
+    """Return the conditions under which the launch ends, by the identity of the statement."""
     return {
         id(statement): _unparse(branch.test)
         for branch in ast.walk(tree)
@@ -74,32 +79,40 @@ def _ends_launch(statement: ast.stmt) -> bool:
     if isinstance(statement, ast.Raise):
         return True
     value = statement.value if isinstance(statement, ast.Expr) else None
-    return isinstance(value, ast.Call) and called_name(value) in _EXITS
+    return isinstance(value, ast.Call) and called_name(value) in _EXIT_FUNCTIONS
 
 
-def _all_statements(tree: ast.AST) -> list[ast.stmt]:
+def _find_statements(tree: ast.AST) -> list[ast.stmt]:
     return [node for node in ast.walk(tree) if isinstance(node, ast.stmt)]
 
 
-def _header_of(node: ast.stmt) -> ast.stmt:
+def _copy_header(node: ast.stmt) -> ast.stmt:
     """Return a copy of a statement with ``...`` in place of its body."""
-    if not any(getattr(node, name, None) for name in _BODIES):
+    if not any(getattr(node, name, None) for name in _BODY_FIELDS):
         return node
     header = copy(node)
-    for name in _BODIES:
+    for name in _BODY_FIELDS:
         if getattr(node, name, None):
             setattr(header, name, [ast.Expr(ast.Constant(...))] if name == "body" else [])
     return header
 
 
 class _CodeNormalizer:
+    """A formatter of code in comparable form.
+
+    Args:
+        python: the parsed file.
+        covered: the identities of the calls that make actions.
+        branches: the identities of the ``if`` statements whose conditions actions have.
+    """
+
     def __init__(self, python: PythonFile, covered: Collection[int], branches: Collection[int] = ()) -> None:
         self._python = python
         self._branches = branches
         self._covered = covered
         self._texts: dict[int, str] = {}
 
-    def text(self, node: ast.AST) -> str:
+    def format_node(self, node: ast.AST) -> str:
         """Return a part of the code in comparable form; empty if it only makes actions."""
         known = self._texts.get(id(node))
         if known is None:
@@ -107,70 +120,73 @@ class _CodeNormalizer:
             known = self._texts[id(node)] = shorten_text(self._normalize(node))
         return known
 
-    def statement_text(self, node: ast.stmt) -> str:
+    def format_statement(self, node: ast.stmt) -> str:
         """Return a statement without its body in comparable form; empty if it only makes actions."""
-        if not any(hasattr(node, name) for name in _BODIES):
-            return self.text(node)
-        return "" if id(node) in self._branches else self._fields_text(node)
+        if not any(hasattr(node, name) for name in _BODY_FIELDS):
+            return self.format_node(node)
+        return "" if id(node) in self._branches else self._format_fields(node)
 
     def _normalize(self, node: ast.AST) -> str:
         if isinstance(node, (ast.Import, ast.ImportFrom, ast.Pass)) or id(node) in self._covered:
             return ""
         if isinstance(node, ast.Expr):
-            return "" if isinstance(node.value, ast.Constant) else self.text(node.value)
+            return "" if isinstance(node.value, ast.Constant) else self.format_node(node.value)
         if isinstance(node, ast.Name):
             assigned = self._python.assigned_expression(node.id)
-            return f"name {node.id}" if assigned is None else self.text(assigned)
+            return f"name {node.id}" if assigned is None else self.format_node(assigned)
         if isinstance(node, (ast.Assign, ast.AnnAssign)) and self.is_definition(node):
             return ""
-        if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _TRANSPARENT:
-            return self._group_text(node)
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _ADDITIONS:
-            return self._fields_text(node) if self._items_text(node.args) else ""
-        if isinstance(node, ast.AugAssign) and not self.text(node.value):
+        if isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _COMBINING_CALLS:
+            return self._format_group(node)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _LIST_METHODS:
+            return self._format_fields(node) if self._format_items(node.args) else ""
+        if isinstance(node, ast.AugAssign) and not self.format_node(node.value):
             return ""
         if isinstance(node, (ast.List, ast.Tuple)):
-            return self._items_text(node.elts)
+            return self._format_items(node.elts)
         if isinstance(node, ast.Starred):
-            return self.text(node.value)
-        if isinstance(node, ast.BinOp) and not self.text(node.left) and not self.text(node.right):
+            return self.format_node(node.value)
+        if isinstance(node, ast.BinOp) and not self.format_node(node.left) and not self.format_node(node.right):
             return ""  # a sum of lists of actions
         if isinstance(node, ast.Return):
-            value = "" if node.value is None else self.text(node.value)
+            value = "" if node.value is None else self.format_node(node.value)
             return f"return {value}" if value else ""
-        return self._fields_text(node)
+        return self._format_fields(node)
 
     def is_definition(self, node: ast.Assign | ast.AnnAssign) -> bool:
-        """Return whether a statement assigns a name that is assigned only once. The uses of the name show the value."""
+        """Return whether a statement assigns a name that is assigned only once.
+
+        The value is compared where the name is used.
+        """
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
         return all(
             isinstance(target, ast.Name) and self._python.assigned_expression(target.id) is node.value
             for target in targets
         )
 
-    def _group_text(self, node: ast.Call) -> str:
+    def _format_group(self, node: ast.Call) -> str:
         """Return the contents of a group or launch description besides actions."""
-        arguments = [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg in _CONTENTS)]
+        arguments = [*node.args, *(keyword.value for keyword in node.keywords if keyword.arg in _ACTION_ARGUMENTS)]
         settings = [
-            f"{keyword.arg}={self.text(keyword.value)}"
+            f"{keyword.arg}={self.format_node(keyword.value)}"
             for keyword in node.keywords
-            if keyword.arg not in (*_CONTENTS, "condition", "initial_entities", "period")
+            if keyword.arg not in (*_ACTION_ARGUMENTS, "condition", "initial_entities", "period")
         ]
-        return self._items_text(arguments) + "".join(settings)
+        return self._format_items(arguments) + "".join(settings)
 
-    def _items_text(self, nodes: list[ast.expr]) -> str:
-        texts = dict.fromkeys(text for text in map(self.text, nodes) if text)
+    def _format_items(self, nodes: list[ast.expr]) -> str:
+        texts = dict.fromkeys(text for text in map(self.format_node, nodes) if text)
         return f"[{', '.join(texts)}]" if texts else ""
 
-    def _fields_text(self, node: ast.AST) -> str:
+    def _format_fields(self, node: ast.AST) -> str:
         words = []
         for name, value in ast.iter_fields(node):
-            if name in _UNCOMPARED_FIELDS or name in _BODIES:
+            if name in _UNCOMPARED_FIELDS or name in _BODY_FIELDS:
                 continue
             if isinstance(value, ast.AST):
-                text = self.text(value)
+                text = self.format_node(value)
             elif isinstance(value, list):
-                parts = (self.text(item) if isinstance(item, ast.AST) else repr(item) for item in value)
+                parts = (self.format_node(item) if isinstance(item, ast.AST) else repr(item) for item in value)
                 text = ", ".join(part for part in parts if part)
             else:
                 text = repr(value)

@@ -1,0 +1,38 @@
+"""Find the files that read an environment variable."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import lru_cache
+
+from linkwright.review.versions import Version
+
+_SEARCHED_SUFFIXES = (".launch", ".xml", ".py", ".yaml", ".yml", ".xacro", ".urdf", ".cpp", ".hpp", ".h", ".c")
+_READING = re.compile(r"(?:env|environ|getenv|environ\.get|EnvironmentVariable)\W{1,8}(?P<name>[A-Za-z_]\w*)")
+
+
+def find_reader(version: Version, name: str, excluded: str) -> str | None:
+    """Return a file that reads an environment variable, or None if there is none.
+
+    The path is relative to the root.
+
+    Args:
+        version: the version of the repository.
+        name: the name of the variable.
+        excluded: the path of a file that is not searched, relative to the root.
+    """
+    return next((path for path in _find_readers_by_variable(version).get(name, ()) if path != excluded), None)
+
+
+@lru_cache(maxsize=2)
+def _find_readers_by_variable(version: Version) -> Mapping[str, list[str]]:
+    """Return the files that read environment variables, by the name of the variable.
+
+    The paths are relative to the root.
+    """
+    readers: dict[str, list[str]] = {}
+    for path in version.paths(_SEARCHED_SUFFIXES):
+        for variable in {match["name"] for match in _READING.finditer(version.text(path))}:
+            readers.setdefault(variable, []).append(path)
+    return readers
