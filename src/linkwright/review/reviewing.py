@@ -29,7 +29,7 @@ from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
 from linkwright.review.files.cmake_files import CMAKE_FILE
-from linkwright.review.files.maps import is_map, map_of_image
+from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
 from linkwright.review.files.plugin_files import plugin_subjects
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, rosbuild_subjects
@@ -443,7 +443,7 @@ def _find_maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> It
     """Yield the paths of the changed map images, each with the path of the YAML file that describes the map."""
     for file in files:
         for version, path in ((versions.new, file.new_path), (versions.old, file.old_path)):
-            map_path = None if path is None else map_of_image(version, path)
+            map_path = None if path is None else find_map_of_image(version, path)
             if map_path is not None:
                 yield file.path, map_path
                 break

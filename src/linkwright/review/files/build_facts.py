@@ -15,20 +15,20 @@ from linkwright.review.list_changes import EMPTY, change_text, shorten
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
-_MAX_RESTS = 6
+_MAX_OTHER_COMMANDS = 6
 """The maximum number of other commands whose text is shown."""
-_MAX_TEXT = 200
-_MIN_FOLDER = 3
+_MAX_TEXT_CHARACTERS = 200
+_MIN_FOLDER_PARTS = 3
 """The minimum number of path parts of a folder that replaces its files in a report."""
-_LONG_LIST = 5
+_MIN_LONG_LIST_WORDS = 5
 """The minimum number of words of a command of which only the differing words are shown."""
-_DOWNLOADS = ("externalproject_add", "fetchcontent_declare")
+_DOWNLOAD_COMMANDS = ("externalproject_add", "fetchcontent_declare")
 """The commands that download other projects, with an address and a version after keywords."""
 _KEYWORD = re.compile(r"[A-Z][A-Z_]{2,}")
 
 _PATH_FOLDER = "bin"
 """The folder below the prefix whose programs commands find by their names."""
-_LIBRARIES = "lib/"
+_PROGRAM_FOLDER_PREFIX = "lib/"
 """The beginning of the folders in which launch files find programs."""
 
 
@@ -92,7 +92,7 @@ INSTALLED_KINDS = (FactKind.EXECUTABLE, FactKind.LIBRARY)
 """The kinds of targets that are installed."""
 BUILT_KINDS = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT_TARGET)
 """The kinds of built targets that are reported even if they are not installed."""
-_CONDITIONAL = (*INSTALLED_KINDS, *BUILT_KINDS, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
+_CONDITIONAL_KINDS = (*INSTALLED_KINDS, *BUILT_KINDS, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
 """The kinds whose conditions are shown when they are added or removed."""
 ANY_VERSION = "any version"
 """The value for a package without a required version."""
@@ -119,7 +119,7 @@ class Fact:
     condition: str = ""
 
 
-_KNOWN_VARIABLES = frozenset(
+_STANDARD_VARIABLES = frozenset(
     {"HOME", "PATH", "PWD", "USER", "CC", "CXX", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH"}
 )
 
@@ -134,7 +134,7 @@ class EnvironmentVariables:
     def __init__(self, variables: Iterable[tuple[str, Span | None]]) -> None:
         self._spans: dict[str, Span | None] = {}
         for name, span in variables:
-            if not name.startswith("ROS_") and name not in _KNOWN_VARIABLES:
+            if not name.startswith("ROS_") and name not in _STANDARD_VARIABLES:
                 self._spans.setdefault(name, span)
 
     def compare(self, pair: FilePair, new: EnvironmentVariables) -> None:
@@ -239,7 +239,11 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                     "{kind}: '{name}': {old} -> {new}", kind=kind.title, name=name, old=before.value, new=fact.value
                 )
                 reason = kind.reason if fact.is_value_used else None
-                if kind is FactKind.EXECUTABLE and before.value == _PATH_FOLDER and fact.value.startswith(_LIBRARIES):
+                if (
+                    kind is FactKind.EXECUTABLE
+                    and before.value == _PATH_FOLDER
+                    and fact.value.startswith(_PROGRAM_FOLDER_PREFIX)
+                ):
                     reason = phrase("commands that find it through PATH fail; launch files find it only now")
                 pair.add(text, pair.location(fact.span), reason)
         for name, fact in new_facts.items():
@@ -250,20 +254,20 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         if kind in BUILT_KINDS:
             installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
             added, removed = ([fact for fact in facts if fact.name not in installed] for facts in (added, removed))
-        _report_renamed(pair, kind, removed, added, _renamed_targets(pair, old, new))
+        _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new))
         if kind is FactKind.STOP:
-            _report_reworded(pair, removed, added)
+            _report_reworded_errors(pair, removed, added)
         if added:
             reason = None
             if kind is FactKind.STOP:
                 reason = phrase("the build fails under a condition under which it did not fail before")
-            pair.add(_facts_sentence(kind, added, is_added=True), pair.location(added[0].span), reason)
+            pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
         if removed:
             location = pair.location(removed[0].span, is_old=True)
-            pair.add(_facts_sentence(kind, removed, is_added=False), location, kind.reason)
+            pair.add(_format_facts(kind, removed, is_added=False), location, kind.reason)
     _report_conditions(pair, conditions)
     _compare_files(pair, old, new)
-    _compare_rest(pair, old, new)
+    _compare_other_commands(pair, old, new)
     old.environment.compare(pair, new.environment)
 
 
@@ -291,7 +295,7 @@ def _report_renamed(
             pair.add(text, pair.location(new.span), kind.reason)
 
 
-def _report_reworded(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:
+def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:
     """Report the errors that have another text under the same condition, and remove them from both lists."""
     for old in list(removed):
         new = next((fact for fact in added if fact.condition == old.condition), None)
@@ -302,7 +306,7 @@ def _report_reworded(pair: FilePair, removed: list[Fact], added: list[Fact]) -> 
             pair.add(text, pair.location(new.span))
 
 
-def _renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
+def _find_renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
     """Return the new names of renamed targets by old name. A renamed target keeps its first source."""
     sources = {
         next(iter(parts.sources)): name
@@ -311,13 +315,13 @@ def _renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[s
     }
     renamed = {}
     for name, parts in old.targets.items():
-        source = next((new_source(pair, old, new, item) for item in parts.sources), None)
+        source = next((find_new_source(pair, old, new, item) for item in parts.sources), None)
         if source in sources and not new.targets.get(name, TargetParts()).sources:
             renamed[name] = sources[source]
     return renamed
 
 
-def new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str:
+def find_new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str:
     """Return the path of a source in the new version.
 
     Args:
@@ -335,17 +339,17 @@ def new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) ->
     return PurePosixPath(new_path).relative_to(new.package).as_posix() if new_path and is_inside else source
 
 
-def _facts_sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
-    texts = [_fact_text(fact) for fact in facts]
-    return _list_sentence(kind.title, texts, is_added=is_added)
+def _format_facts(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
+    texts = [_format_fact(fact) for fact in facts]
+    return _format_list(kind.title, texts, is_added=is_added)
 
 
-def _fact_text(fact: Fact) -> str:
+def _format_fact(fact: Fact) -> str:
     """Return the name of a fact, with its value or condition if a reader needs it."""
     if fact.kind is FactKind.SETTING or (fact.kind is FactKind.PACKAGE and fact.value not in ("", ANY_VERSION)):
         return f"{fact.name} {fact.value}"
-    is_plain = not fact.condition or fact.kind not in _CONDITIONAL
-    return fact.name if is_plain else f"{fact.name} (if {fact.condition})"
+    is_unconditional = not fact.condition or fact.kind not in _CONDITIONAL_KINDS
+    return fact.name if is_unconditional else f"{fact.name} (if {fact.condition})"
 
 
 def _report_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequence[Fact]]) -> None:
@@ -361,17 +365,17 @@ def _report_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequ
         text = phrase(
             "{subjects}: {old} -> {new}",
             subjects=joined(groups, "; "),
-            old=_condition_text(old_condition),
-            new=_condition_text(new_condition),
+            old=_format_condition(old_condition),
+            new=_format_condition(new_condition),
         )
         pair.add(text, pair.location(facts[0].span))
 
 
-def _condition_text(condition: str) -> Phrase:
+def _format_condition(condition: str) -> Phrase:
     return phrase("if {condition}", condition=condition) if condition else phrase("always")
 
 
-def _list_sentence(title: Phrase, names: Sequence[str], *, is_added: bool) -> Phrase:
+def _format_list(title: Phrase, names: Sequence[str], *, is_added: bool) -> Phrase:
     names_text = list_names(names)
     if is_added:
         return phrase("{kind} added: {names}", kind=title, names=names_text)
@@ -400,22 +404,22 @@ def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
 def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Report files that both versions have but only one installs, and files with another destination."""
     old_sources, new_sources = ({source: target for target, source in facts.files.items()} for facts in (old, new))
-    kept = {source: _new_source(pair, old, new, source) for source in old_sources}
+    new_sources_by_old = {source: _find_installed_source(pair, old, new, source) for source in old_sources}
     moved: dict[tuple[str, str], list[str]] = {}
     removed: list[str] = []
     for source, target in old_sources.items():
-        new_source = kept[source]
-        new_target = None if new_source is None else new_sources.get(new_source)
-        if new_source is None or target in new.files:
+        installed_source = new_sources_by_old[source]
+        new_target = None if installed_source is None else new_sources.get(installed_source)
+        if installed_source is None or target in new.files:
             continue
         if new_target is None:
             if new.unknown <= old.unknown:
                 removed.append(target)
-        elif new_source == source and old.place(target) != new.place(new_target):
-            places = _folder_name(target), _folder_name(new_target)
-            is_renamed = places[0] == places[1]
-            moved.setdefault(places, []).append(
-                f"{_file_name(target)} -> {_file_name(new_target)}" if is_renamed else _file_name(target)
+        elif installed_source == source and old.place(target) != new.place(new_target):
+            folders_of_file = _get_folder(target), _get_folder(new_target)
+            is_renamed = folders_of_file[0] == folders_of_file[1]
+            moved.setdefault(folders_of_file, []).append(
+                f"{_get_file_name(target)} -> {_get_file_name(new_target)}" if is_renamed else _get_file_name(target)
             )
     added = [target for source, target in new_sources.items() if target not in old.files and source not in old_sources]
     for (old_folder, new_folder), names in moved.items():
@@ -429,17 +433,17 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         pair.add(text, None, phrase("programs that look for the files do not find them"))
     if added and old.unknown <= new.unknown:
         known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
-        folders = [name for name in files_and_folders(added, old.files) if name.endswith("/")]
-        names = list(dict.fromkeys([*folders, *files_and_folders(known, old.files)]))
+        folders = [name for name in summarize_files(added, old.files) if name.endswith("/")]
+        names = list(dict.fromkeys([*folders, *summarize_files(known, old.files)]))
         if names:
             pair.add(phrase("installed now: {names}", names=list_names(names)), None)
     if removed:
-        names = files_and_folders(removed, new.files)
+        names = summarize_files(removed, new.files)
         text = phrase("not installed any more: {names}", names=list_names(names))
         pair.add(text, None, phrase("programs that look for the files do not find them"))
 
 
-def _new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str | None:
+def _find_installed_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str | None:
     """Return the path of an installed file in the new version, or None if the new version lacks it."""
     path = (PurePosixPath(old.package) / source).as_posix()
     new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), path)
@@ -453,53 +457,53 @@ def _is_in_old_version(pair: FilePair, old: BuildFacts, source: str) -> bool:
     return pair.versions.old.file((PurePosixPath(old.package) / source).as_posix()).is_file()
 
 
-def files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
+def summarize_files(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
     """Return installed files, or their folders where the other version installs nothing in the folder."""
     other_folders = {parent.as_posix() for target in others for parent in PurePosixPath(target).parents}
     names: dict[str, None] = {}
     for target in targets:
-        parents = (parent for parent in PurePosixPath(target).parents if len(parent.parts) >= _MIN_FOLDER)
+        parents = (parent for parent in PurePosixPath(target).parents if len(parent.parts) >= _MIN_FOLDER_PARTS)
         folders = [parent.as_posix() for parent in parents]
         outermost = next((folder for folder in reversed(folders) if folder not in other_folders), None)
         names[target if outermost is None else f"{outermost}/"] = None
     return list(names)
 
 
-def _folder_name(path: str) -> str:
+def _get_folder(path: str) -> str:
     return PurePosixPath(path).parent.as_posix()
 
 
-def _file_name(path: str) -> str:
+def _get_file_name(path: str) -> str:
     return PurePosixPath(path).name
 
 
 # --- other commands ---------------------------------------------------------------------------------------------------
 
 
-def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+def _compare_other_commands(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Report the other commands that differ: a few as text, more of them by name."""
-    removed, added = _lone_items(old.rest, new.rest), _lone_items(new.rest, old.rest)
+    removed, added = _find_unpaired_items(old.rest, new.rest), _find_unpaired_items(new.rest, old.rest)
     names = list(dict.fromkeys(name for name, _ in (*added, *removed)))
-    if len(names) > _MAX_RESTS:
+    if len(names) > _MAX_OTHER_COMMANDS:
         pair.add(phrase("other build settings changed: {names}", names=list_names(names)), None)
         return
     for name in names:
         old_texts, new_texts = ([text for other, text in items if other == name] for items in (removed, added))
         old_text, new_text = ("; ".join(filter(None, texts)) for texts in (old_texts, new_texts))
-        if name in _DOWNLOADS and len(old_texts) == len(new_texts) == 1:
-            for text in _keyword_changes(name, old_text.split(), new_text.split()):
+        if name in _DOWNLOAD_COMMANDS and len(old_texts) == len(new_texts) == 1:
+            for text in _compare_keywords(name, old_text.split(), new_text.split()):
                 pair.add(text, None)
         elif old_texts and new_texts:
-            pair.add(_word_changes_text(name, old_text, new_text), None)
+            pair.add(_format_word_changes(name, old_text, new_text), None)
         elif new_texts:
-            text = phrase("{parameter} added: {items}", parameter=name, items=shorten(new_text, _MAX_TEXT))
+            text = phrase("{parameter} added: {items}", parameter=name, items=shorten(new_text, _MAX_TEXT_CHARACTERS))
             pair.add(text if new_text else phrase("{parameter} added", parameter=name), None)
         else:
-            text = phrase("{parameter} removed: {items}", parameter=name, items=shorten(old_text, _MAX_TEXT))
+            text = phrase("{parameter} removed: {items}", parameter=name, items=shorten(old_text, _MAX_TEXT_CHARACTERS))
             pair.add(text if old_text else phrase("{parameter} removed", parameter=name), None)
 
 
-def _keyword_changes(name: str, old_words: Sequence[str], new_words: Sequence[str]) -> Iterator[Phrase]:
+def _compare_keywords(name: str, old_words: Sequence[str], new_words: Sequence[str]) -> Iterator[Phrase]:
     """Yield the changes of the arguments of a command after each keyword, such as ``GIT_TAG``."""
     old, new = _group_by_keyword(old_words), _group_by_keyword(new_words)
     for keyword in dict.fromkeys([*old, *new]):
@@ -521,22 +525,22 @@ def _group_by_keyword(words: Sequence[str]) -> dict[str, str]:
     return {key: " ".join(items) for key, items in values.items()}
 
 
-def _word_changes_text(name: str, old: str, new: str) -> Phrase:
+def _format_word_changes(name: str, old: str, new: str) -> Phrase:
     """Return the change of the arguments of a command. For long lists, only added and removed words are shown."""
     old_words, new_words = old.split(), new.split()
     added = [word for word in new_words if word not in old_words]
     removed = [word for word in old_words if word not in new_words]
-    if min(len(old_words), len(new_words)) < _LONG_LIST or not (added or removed):
+    if min(len(old_words), len(new_words)) < _MIN_LONG_LIST_WORDS or not (added or removed):
         return change_text(name, old, new)
     return change_text(name, f"[{', '.join(dict.fromkeys(old_words))}]", f"[{', '.join(dict.fromkeys(new_words))}]")
 
 
-def _lone_items(items: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    rest = list(others)
-    lone = []
+def _find_unpaired_items(items: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    unpaired_others = list(others)
+    unpaired = []
     for item in items:
-        if item in rest:
-            rest.remove(item)
+        if item in unpaired_others:
+            unpaired_others.remove(item)
         else:
-            lone.append(item)
-    return lone
+            unpaired.append(item)
+    return unpaired

@@ -39,9 +39,9 @@ class PartPair:
     def add(self, sentence: Phrase, old: Element | None, new: Element | None, reason: Phrase | None = None) -> None:
         """Report a change at the location of the new or else the old element. A change with a reason is breaking."""
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
-        self.changes.append(Change(sentence, effect, reason, self._location(old, new)))
+        self.changes.append(Change(sentence, effect, reason, self._find_location(old, new)))
 
-    def _location(self, old: Element | None, new: Element | None) -> Location | None:
+    def _find_location(self, old: Element | None, new: Element | None) -> Location | None:
         element, is_old = (old, True) if new is None else (new, False)
         version = self.versions.old if is_old else self.versions.new
         span = None if element is None else element.span()
