@@ -49,7 +49,7 @@ class Bridge:
 
 
 def read_bridges(text: str) -> list[Bridge] | None:
-    """Return the bridges that a YAML document configures, or None if it does not configure bridges.
+    """Return the bridges that a YAML document configures; None for any other document.
 
     Raises:
         UnreadableFileError: the text is not YAML.
@@ -142,5 +142,5 @@ def _find_setting_reason(topic: str, name: str, old: str | None, new: str | None
 
 
 def _normalize_type(name: str) -> str:
-    """Return the name of a type in the long form: ``sensor_msgs/Imu`` becomes ``sensor_msgs/msg/Imu``."""
+    """Return a comparable type name: both forms become ``sensor_msgs/Imu``."""
     return name.replace("/msg/", "/")

@@ -15,7 +15,7 @@ _SHOWN_KINDS = (
 
 
 def build_contents(facts: BuildFacts) -> Phrase | None:
-    """Return the installed targets and files and the tests of a build file, or None if there are none."""
+    """Return the installed targets, files and tests of a build file; None if there are none."""
     parts = list(_list_content_parts(facts))
     return joined(parts, "; ") if parts else None
 

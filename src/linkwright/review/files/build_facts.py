@@ -23,17 +23,17 @@ _MIN_FOLDER_PARTS = 3
 _MIN_LONG_LIST_WORDS = 5
 """The minimum number of words of a command of which only the differing words are shown."""
 _DOWNLOAD_COMMANDS = ("externalproject_add", "fetchcontent_declare")
-"""The commands that download other projects, with an address and a version after keywords."""
+"""The commands that download other projects, with a URL and a version after keywords."""
 _KEYWORD = re.compile(r"[A-Z][A-Z_]{2,}")
 
 _PATH_FOLDER = "bin"
-"""The folder below the prefix whose programs commands find by their names."""
+"""The folder below the prefix that is in ``PATH``."""
 _PROGRAM_FOLDER_PREFIX = "lib/"
-"""The beginning of the folders in which launch files find programs."""
+"""The start of the folders in which launch files find programs."""
 
 
 class FactKind(Enum):
-    """The kind of a fact: its title in a report, and the reason why removing such a fact is breaking."""
+    """The kind of a fact: its title, and the reason why removing such a fact is breaking."""
 
     EXECUTABLE = (
         phrase("installed executables"),
@@ -103,11 +103,11 @@ class Fact:
     """A fact of a build file.
 
     Attributes:
-        kind: the kind of the fact.
+        kind: what the fact is about.
         name: the name of the target, package or other subject.
         value: a property that may change, such as the function of an executable; empty if there is none.
         span: the location in the file.
-        is_value_used: whether other packages use the value, so that another value is breaking.
+        is_value_used: whether other packages use the value, so that a different value is breaking.
         condition: the condition under which the fact holds, as written in the file; empty for always.
     """
 
@@ -170,7 +170,7 @@ class BuildFacts:
     """The facts of a build file.
 
     Attributes:
-        facts: the facts that are known.
+        facts: the known facts.
         files: the sources of the installed files relative to the package, by destination relative to the prefix.
         unknown: the reasons why more files may be installed than `files` contains.
         rest: the other commands or settings, each with its name and its text.
@@ -195,7 +195,10 @@ class BuildFacts:
         return not self.unknown
 
     def place(self, path: str) -> str:
-        """Return an installed path without the name of the package. The manifest reports a new name."""
+        """Return an installed path without the name of the package.
+
+        The manifest reports a new package name.
+        """
         parts = PurePosixPath(path).parts
         is_own = len(parts) > 1 and parts[1] == self.project
         return PurePosixPath(parts[0], *parts[2:]).as_posix() if is_own else path
@@ -278,7 +281,7 @@ def _report_renamed(
 
     Args:
         pair: both versions of the build file.
-        kind: the kind of the facts.
+        kind: the common kind of all facts.
         removed: the facts of the old version.
         added: the facts of the new version.
         targets: the new names of targets that have the same sources, by old name.
@@ -296,7 +299,10 @@ def _report_renamed(
 
 
 def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:
-    """Report the errors that have another text under the same condition, and remove them from both lists."""
+    """Report errors with a different text under the same condition.
+
+    They are removed from both lists.
+    """
     for old in list(removed):
         new = next((fact for fact in added if fact.condition == old.condition), None)
         if new is not None:
@@ -307,7 +313,10 @@ def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fac
 
 
 def _find_renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
-    """Return the new names of renamed targets by old name. A renamed target keeps its first source."""
+    """Return the new names of renamed targets by old name.
+
+    A renamed target keeps its first source.
+    """
     sources = {
         next(iter(parts.sources)): name
         for name, parts in new.targets.items()
@@ -353,7 +362,7 @@ def _format_fact(fact: Fact) -> str:
 
 
 def _report_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequence[Fact]]) -> None:
-    """Report facts whose condition changed, with the same change of several facts in one line."""
+    """Report facts whose condition changed. Facts with the same change share a line."""
     for (old_condition, new_condition), facts in conditions.items():
         kinds = dict.fromkeys(fact.kind for fact in facts)
         groups = (
@@ -391,7 +400,10 @@ def list_names(names: Sequence[str]) -> Phrase:
 
 
 def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
-    """Return whether both or neither version has the interface file, so that the file itself is not reported."""
+    """Return whether a difference in a fact is reported here.
+
+    An interface file that only one version has is reported as a file instead.
+    """
     if fact.kind is not FactKind.INTERFACE:
         return True
     path = (PurePosixPath(facts.package) / fact.name).as_posix()
@@ -402,7 +414,7 @@ def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
 
 
 def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
-    """Report files that both versions have but only one installs, and files with another destination."""
+    """Report files of both versions that only one installs, or whose destination differs."""
     old_sources, new_sources = ({source: target for target, source in facts.files.items()} for facts in (old, new))
     new_sources_by_old = {source: _find_installed_source(pair, old, new, source) for source in old_sources}
     moved: dict[tuple[str, str], list[str]] = {}
@@ -444,7 +456,7 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
 
 
 def _find_installed_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str | None:
-    """Return the path of an installed file in the new version, or None if the new version lacks it."""
+    """Return the path of an installed file in the new version; None if it is absent there."""
     path = (PurePosixPath(old.package) / source).as_posix()
     new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), path)
     if new_path is None or not pair.versions.new.file(new_path).is_file():
@@ -458,7 +470,10 @@ def _is_in_old_version(pair: FilePair, old: BuildFacts, source: str) -> bool:
 
 
 def summarize_files(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
-    """Return installed files, or their folders where the other version installs nothing in the folder."""
+    """Return installed files, or their folders.
+
+    A folder replaces its files if the other version installs nothing in it.
+    """
     other_folders = {parent.as_posix() for target in others for parent in PurePosixPath(target).parents}
     names: dict[str, None] = {}
     for target in targets:
@@ -504,7 +519,7 @@ def _compare_other_commands(pair: FilePair, old: BuildFacts, new: BuildFacts) ->
 
 
 def _compare_keywords(name: str, old_words: Sequence[str], new_words: Sequence[str]) -> Iterator[Phrase]:
-    """Yield the changes of the arguments of a command after each keyword, such as ``GIT_TAG``."""
+    """Yield the changes to the arguments of a command after each keyword, such as ``GIT_TAG``."""
     old, new = _group_by_keyword(old_words), _group_by_keyword(new_words)
     for keyword in dict.fromkeys([*old, *new]):
         before, after = old.get(keyword), new.get(keyword)
@@ -513,7 +528,7 @@ def _compare_keywords(name: str, old_words: Sequence[str], new_words: Sequence[s
 
 
 def _group_by_keyword(words: Sequence[str]) -> dict[str, str]:
-    """Return the arguments by the keyword before them. The first arguments have an empty keyword."""
+    """Return the arguments by the keyword before them; an empty keyword for the first ones."""
     values: dict[str, list[str]] = {}
     keyword = ""
     for word in words:
@@ -526,7 +541,10 @@ def _group_by_keyword(words: Sequence[str]) -> dict[str, str]:
 
 
 def _format_word_changes(name: str, old: str, new: str) -> Phrase:
-    """Return the change of the arguments of a command. For long lists, only added and removed words are shown."""
+    """Return the change to the arguments of a command.
+
+    For long lists, only added and removed words are shown.
+    """
     old_words, new_words = old.split(), new.split()
     added = [word for word in new_words if word not in old_words]
     removed = [word for word in old_words if word not in new_words]

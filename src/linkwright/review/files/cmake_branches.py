@@ -16,7 +16,10 @@ from linkwright.packages.readers.cmake_syntax import (
 
 
 def find_conditions(source: SourceText) -> dict[int, str]:
-    """Return the condition of each argument in a file, by offset. Unconditional arguments are absent."""
+    """Return the condition of each argument in a file, by offset.
+
+    Unconditional arguments are absent.
+    """
     conditions: dict[int, str] = {}
     for statement, condition in iterate_conditional_commands(source):
         if condition:
@@ -25,7 +28,7 @@ def find_conditions(source: SourceText) -> dict[int, str]:
 
 
 def iterate_conditional_commands(source: SourceText) -> Iterator[tuple[Statement, str]]:
-    """Yield the commands of a file with the condition around each, which is empty if there is none."""
+    """Yield the commands of a file with their conditions; empty for unconditional commands."""
     yield from _walk_block(list(parse_statements(source)), ())
 
 

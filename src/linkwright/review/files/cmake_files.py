@@ -1,4 +1,4 @@
-"""Compare ``CMakeLists.txt`` files: the executables, libraries, interfaces and files that a package installs."""
+"""Compare what ``CMakeLists.txt`` files install: targets, interfaces and files."""
 
 from __future__ import annotations
 
@@ -70,7 +70,10 @@ _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
 
 
 def compare_cmake_files(pair: FilePair) -> None:
-    """Compare two versions of a ``CMakeLists.txt``, with its subdirectories, without running CMake."""
+    """Compare two versions of a ``CMakeLists.txt`` without running CMake.
+
+    Its subdirectories are included.
+    """
     compare_build_files(pair, read_cmake_facts, compare_targets)
 
 
@@ -124,7 +127,10 @@ def _normalize_arguments(command: Command, project: str) -> str:
 
 
 def _sets_local_variable(command: Command) -> bool:
-    """Return whether a command sets a variable of the file. The uses of the variable are compared instead."""
+    """Return whether a command sets a variable of the file.
+
+    The uses of the variable are compared instead.
+    """
     if command.name != "set":
         return False
     name = "".join(command.words[:1])
@@ -155,7 +161,10 @@ def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
 
 
 def _drop_missing_sources(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
-    """Remove sources that the repository lacks from the copy rules, and add missing folders as facts."""
+    """Remove sources that the repository lacks from the copy rules.
+
+    Missing folders are added as facts.
+    """
     for index, rule in enumerate(cmake.copies):
         missing = [item for item in rule.items if not _exists(package, item.text)]
         if rule.kind == "DIRECTORY":
@@ -207,7 +216,10 @@ def _read_installed_targets(commands: Sequence[Command]) -> Iterator[Fact]:
 
 
 class _BuiltTargetNames:
-    """The possible names of built targets. CMake fails at an installed target that nothing builds."""
+    """The possible names of built targets.
+
+    CMake fails if a target is installed that nothing builds.
+    """
 
     def __init__(self, commands: Sequence[Command]) -> None:
         target_commands = [
@@ -240,7 +252,7 @@ def _read_built_targets(commands: Sequence[Command]) -> Iterator[Fact]:
 def _read_skipped_targets(
     source: SourceText, commands: Sequence[Command], variables: Mapping[str, str]
 ) -> Iterator[Fact]:
-    """Yield the targets of unfulfilled conditions, such as a condition for another version of ROS."""
+    """Yield the targets of unfulfilled conditions, such as a different version of ROS."""
 
     def substitute_variables(text: str) -> str:
         return _VARIABLE.sub(lambda match: variables.get(match[1], match[0]), text)
@@ -260,7 +272,10 @@ def _read_skipped_targets(
 
 
 def _find_built_kind(command: str, commands: Sequence[Command]) -> FactKind:
-    """Return the kind of the targets of a command. In ROS 1, targets can be used without being installed."""
+    """Return the kind of the targets of a command.
+
+    In ROS 1, targets can be used without being installed.
+    """
     if not any(command.name in ("catkin_package", "rosbuild_init") for command in commands):
         return FactKind.BUILT_TARGET
     return FactKind.BUILT_EXECUTABLE if command in _EXECUTABLE_COMMANDS else FactKind.BUILT_LIBRARY
@@ -308,7 +323,10 @@ def _read_interfaces(commands: Sequence[Command]) -> Iterator[Fact]:
 
 
 def _read_ros1_interfaces(commands: Sequence[Command], package: Path) -> Iterator[Fact]:
-    """Yield the interfaces that ROS 1 commands build. A command without a list builds all interfaces of a folder."""
+    """Yield the interfaces that ROS 1 commands build.
+
+    A command without a list builds all interfaces of a folder.
+    """
     for command in commands:
         if command.name not in _ROS1_INTERFACE_COMMANDS:
             continue
@@ -367,7 +385,7 @@ def _read_packages(commands: Sequence[Command]) -> Iterator[Fact]:
             yield _make_fact(FactKind.PACKAGE, package, value)
             start = command.words.index("COMPONENTS") if "COMPONENTS" in command.words else len(options)
             if package.text == "catkin":
-                start = 0  # the keyword can be left out
+                start = 0  # the keyword is optional
             for component in options[start:]:
                 if not component.text.isupper():  # a keyword, such as REQUIRED
                     name = component.text if package.text == "catkin" else f"{package.text} {component.text}"

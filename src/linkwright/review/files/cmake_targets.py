@@ -31,7 +31,10 @@ _VARIABLE = re.compile(r"\$\{(\w+?)_(LIBRARIES|LIBRARY|TARGETS|LIBS)\}", re.IGNO
 
 
 def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
-    """Return the parts of targets, by target. Packages and their targets count as the same library."""
+    """Return the parts of targets, by target.
+
+    Packages and their targets count as the same library.
+    """
     targets: dict[str, TargetParts] = {}
     for command in commands:
         if command.name not in _SOURCE_COMMANDS | _TEST_COMMANDS | _LINK_COMMANDS or not command.arguments:
@@ -66,7 +69,10 @@ def _get_span(argument: Argument) -> Span:
 
 
 def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
-    """Report the changed libraries and sources of targets. Equal changes of several targets are one line."""
+    """Report the changed libraries and sources of targets.
+
+    Equal changes to several targets share a line.
+    """
     changes: dict[_TargetChange, list[tuple[str, Span]]] = {}
     for name, parts in new.targets.items():
         before = old.targets.get(name)

@@ -31,7 +31,7 @@ _Elements = Mapping[_Dependency, list[Element]]
 
 
 class _DependencyChange(NamedTuple):
-    """A change of dependencies: their tags in both versions, and whether the change is breaking."""
+    """A change to dependencies: the tags in both versions, and whether it is breaking."""
 
     old_tags: str
     new_tags: str
@@ -39,7 +39,7 @@ class _DependencyChange(NamedTuple):
 
 
 def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    """Report changed dependencies and conditions, with the same change of several packages in one line."""
+    """Report changed dependencies and conditions. Packages with the same change share a line."""
     names = PackageNames(find_renamed_packages(pair.versions))
     new_elements = _group_elements(new)
     old_elements = {
@@ -70,14 +70,14 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
 
 
 def _make_sort_key(change: _DependencyChange) -> int:
-    """Return a sort key: added dependencies come first, dependencies with other tags last."""
+    """Return a sort key: additions come first, then removals, then changed tags."""
     return 2 if change.old_tags and change.new_tags else 1 if change.old_tags else 0
 
 
 def _report_change(
     pair: FilePair, change: _DependencyChange, keys: list[_Dependency], elements: _Elements, reason: Phrase
 ) -> None:
-    """Report a change of dependencies with their conditions."""
+    """Report a change to dependencies, with their conditions."""
     old_tags, new_tags, is_breaking = change
     packages = ", ".join(_append_conditions(key.package, elements[key]) for key in keys)
     if not old_tags:
@@ -118,7 +118,10 @@ def _is_metapackage(manifest: Manifest) -> bool:
 
 
 def _make_lost_reason(manifest: Manifest) -> Phrase:
-    """Return the reason why it is breaking that dependents no longer get a package through this one."""
+    """Return the reason why losing a package for dependents is breaking.
+
+    Dependents no longer get the package through this one.
+    """
     if _is_metapackage(manifest):
         return phrase("installing the package does not install them any more")
     return phrase("packages that have them only through this package do not build")
@@ -150,7 +153,7 @@ def _compare_conditions(pair: FilePair, key: _Dependency, old: list[Element], ne
 
 
 def _format_conditions(elements: list[Element]) -> str:
-    """Return the conditions and versions under which a package is a dependency; empty for always."""
+    """Return the conditions and versions for which a dependency holds; empty for always."""
     texts = [" ".join(_list_condition_parts(element)) for element in elements]
     return "; ".join(texts) if all(texts) else ""
 

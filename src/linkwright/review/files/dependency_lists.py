@@ -32,7 +32,7 @@ class Entry:
 
     Attributes:
         line: the line, starting at 1.
-        settings: the address, version and other settings by name.
+        settings: the URL, version and other settings by name.
     """
 
     line: int
@@ -129,7 +129,9 @@ def _read_mapping(node: yaml.Node | None) -> dict[str, yaml.Node]:
 
 
 def read_requirements(file: Path) -> dict[str, Entry]:
-    """Return the Python packages in a requirements file by name, with their versions; other lines by their text.
+    """Return the versions in a requirements file by Python package.
+
+    Lines that name no package, such as options, are keys without a version.
 
     Raises:
         UnreadableFileError: the text is too long.

@@ -22,8 +22,7 @@ from linkwright.xacro.cache import read_document
 _SEPARATOR = "---"
 _IDL = ".idl"
 _MIN_RENUMBERED = 3
-"""The minimum number of constants with other values that are summarized in one line. An inserted value renumbers those
-below."""
+"""The minimum number of changed constants that share a line. An inserted constant can renumber those below it."""
 _PART_PREFIXES = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
 """The prefixes of field names: the structures of a message, a service and an action."""
 
@@ -31,7 +30,7 @@ _PART_PREFIXES = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result "
 def compare_interfaces(pair: FilePair) -> None:
     """Compare two versions of the definition of a message, service or action.
 
-    A change of a field is breaking: the type gets another hash (REP 2016), and nodes that were built with different
+    A change to a field is breaking: the hash of the type changes (REP 2016), and nodes that were built with different
     versions do not exchange messages. In ROS 1, constants are a part of the MD5 sum of a type.
     """
     definitions = pair.read(_read)
@@ -39,7 +38,7 @@ def compare_interfaces(pair: FilePair) -> None:
         return
     old, new = definitions
     if old.keys() != new.keys() and pair.new_file.suffix != _IDL:
-        return  # a message that is a service now, for example, whose file has another name
+        return  # such as a message that became a service, with a different file name
     renamed = _find_renamed_structures(old, new)
     is_ros1 = _is_ros1(pair.new_file)
     for index, (name, new_part) in enumerate(new.items()):
@@ -69,7 +68,7 @@ def compare_interfaces(pair: FilePair) -> None:
 
 
 def interface_contents(version: Version, path: str) -> Phrase | None:
-    """Return the fields of an interface with types and the constants with values, or None if there are none."""
+    """Return the typed fields and the constants of an interface; None if there are none."""
     parts = _read(version.file(path))
     names = [
         f"{field.type.to_msg_text()} {part}{field.name}"
@@ -83,13 +82,13 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
 
 
 def _read(file: Path) -> Mapping[str, Structure]:
-    """Return the structures of a file by the text in front of the names of their fields."""
+    """Return the structures of a file by the prefix of their field names."""
     kind = file.parent.name if file.suffix == _IDL else file.suffix.removeprefix(".")
-    if kind not in SECTIONS:  # a file of another program than ROS, which can have any number of structures
+    if kind not in SECTIONS:  # not a ROS file, so it can have any number of structures
         try:
             return {f"{structure.type_name}.": structure for structure in parse_idl_structures(read_source(file))}
         except LinkwrightError as error:
-            raise LimitError(error.diagnostics[0].message) from None  # ROS reads less of IDL than other programs
+            raise LimitError(error.diagnostics[0].message) from None  # ROS supports less of IDL than other programs
     package = enclosing_package(file.parent)
     name = package[0] if package else file.parent.name
     if package is None and (file.parent.parent / ROSBUILD_MANIFEST).is_file():
@@ -100,7 +99,7 @@ def _read(file: Path) -> Mapping[str, Structure]:
 
 
 def _find_renamed_structures(old: Mapping[str, Structure], new: Mapping[str, Structure]) -> dict[str, str]:
-    """Return the old names of structures that only have another name, by their new names."""
+    """Return the old names of renamed structures by new name. Their contents are equal."""
     renamed: dict[str, str] = {}
     removed = [name for name in old if name not in new and (old[name].fields or _is_enumeration(old[name]))]
     for name in [name for name in new if name not in old]:
@@ -162,7 +161,10 @@ class _Locations:
 
 
 def _read_numbered_lines(file: Path, index: int, name: str) -> list[tuple[int, str]]:
-    """Return the numbered lines of a structure, or those from its start to the end of the file if it is in IDL."""
+    """Return the numbered lines of a structure.
+
+    For IDL, these are all lines from the start of the structure to the end of the file.
+    """
     lines = list(enumerate(read_source(file).text.splitlines(), 1))
     if file.suffix == _IDL:
         head = re.compile(rf"\s*(?:struct|enum|union)\s+{re.split('/|::', name)[-1]}\b")

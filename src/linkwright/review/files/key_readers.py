@@ -34,7 +34,7 @@ class KeyReaders:
     path: str
 
     def find_key_reason(self, keys: Iterable[str]) -> Phrase | None:
-        """Return the reason why removing keys is breaking, or None if no unchanged program reads them from the file.
+        """Return the reason why removing keys is breaking; None if no unchanged program needs them.
 
         Only a read without a default certainly fails, such as ``settings["rate"]``.
         """
@@ -46,7 +46,9 @@ class KeyReaders:
         return None
 
     def find_name_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
-        """Return the reason why removing names from a list is breaking, or None if no unchanged source contains one.
+        """Return the reason why removing names from a list is breaking; None if it is not.
+
+        It is breaking if an unchanged source contains one of the names.
 
         Args:
             parameter: the path of the list.

@@ -44,7 +44,10 @@ def compare_manifests(pair: FilePair) -> None:
 
 
 def manifest_contents(version: Version, path: str) -> Phrase:
-    """Return the name, version, build type and dependencies, and the folder of a package with the same name."""
+    """Return the name, version, build type and dependencies of a package.
+
+    A folder with a package of the same name is added.
+    """
     manifest = _read(version.file(path))
     export = manifest.root.first("export")
     is_metapackage = export is not None and export.first("metapackage") is not None
@@ -83,7 +86,7 @@ def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
 
 
 def _compare_descriptions(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    """Report the changed description as text, or the change of its markup."""
+    """Report a changed text of the description, or else changed markup."""
     elements = [manifest.root.first("description") for manifest in (old, new)]
     old_text, new_text = ("" if element is None else _read_plain_text(element) for element in elements)
     location = pair.location((elements[1] or new.root).span())
@@ -127,7 +130,7 @@ def _join_addresses(manifest: Manifest, tag: str) -> str:
 
 
 def _compare_exports(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    """Report added, removed and changed ``<export>`` elements, such as the paths of plugin descriptions."""
+    """Report added, removed and changed ``<export>`` elements."""
     old_exports, new_exports = (
         {_format_export(element): element for element in _read_exports(manifest)} for manifest in (old, new)
     )

@@ -37,7 +37,7 @@ def is_map(file: Path) -> bool:
 
 
 def find_map_of_image(version: Version, path: str) -> str | None:
-    """Return the path of the map YAML file for an image in the same folder, or None if there is none."""
+    """Return the path of the map for an image in the same folder; None if there is none."""
     file = version.file(path)
     if PurePosixPath(path).suffix.lower() not in IMAGE_SUFFIXES:
         return None
@@ -129,7 +129,7 @@ def compare_maps(pair: FilePair) -> None:
 
 
 def _compare_cells(pair: FilePair, old: NDArray[np.float64], new: NDArray[np.float64]) -> bool:
-    """Report the share and place of the cells that differ, and return whether there are any."""
+    """Report how many cells differ and where, and return whether there are any."""
     rows, columns = np.nonzero(old != new)
     if not len(rows):
         return False
@@ -146,7 +146,10 @@ def _compare_cells(pair: FilePair, old: NDArray[np.float64], new: NDArray[np.flo
 
 
 def _try_read_cells(file: Path) -> NDArray[np.float64] | None:
-    """Return the brightness of the cells, or None if the image cannot be read, such as a Git LFS pointer."""
+    """Return the brightness of the cells; None for an unreadable image.
+
+    An example is a Git LFS pointer.
+    """
     try:
         return _read_cells(file)
     except (LinkwrightError, OSError):

@@ -1,4 +1,4 @@
-"""Merge equal changes of several elements whose paths differ in one word."""
+"""Merge equal changes to several elements whose paths differ in one word."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _MAX_WORDS = 3
 
 
 class MergedPaths:
-    """Paths of equal changes, such as of the same limit of several joints."""
+    """Paths of equal changes, such as changes to the same limit of several joints."""
 
     def __init__(self) -> None:
         self._words: list[list[str]] = []
@@ -44,7 +44,7 @@ class MergedPaths:
 
     @property
     def paths(self) -> Sequence[str]:
-        """The first path of each group, with the differing words of the other paths at the same place."""
+        """The first path of each group, with the differing words of the other paths."""
         return [
             self._format_path(*parts) for parts in zip(self._words, self._positions, self._other_words, strict=True)
         ]
@@ -68,7 +68,7 @@ _NAMED_TAGS = frozenset(
 def to_path_pattern(path: str) -> tuple[str, ...]:
     """Return the words of a path, with empty strings for the names of elements.
 
-    Equal changes with equal patterns belong together, such as of the visuals of all links.
+    Equal changes with equal patterns belong together, such as those of the visuals of all links.
     """
     pattern: list[str] = []
     is_name = False

@@ -11,7 +11,10 @@ from linkwright.review.changes import MAX_NAMES, Change, Subject, SubjectKind
 
 
 def group_meshes(subjects: Sequence[Subject]) -> list[Subject]:
-    """Return the subjects, with meshes of a folder that are added, removed or renamed together as one subject."""
+    """Return the subjects, with related meshes of a folder as one subject.
+
+    Meshes are related if they are added, removed or renamed together.
+    """
     groups: dict[Hashable, list[Subject]] = {}
     for number, subject in enumerate(subjects):
         groups.setdefault(_make_group_key(subject) or number, []).append(subject)
@@ -19,7 +22,7 @@ def group_meshes(subjects: Sequence[Subject]) -> list[Subject]:
 
 
 def _make_group_key(subject: Subject) -> Hashable | None:
-    """Return the key by which subjects are grouped, or None for a subject that stays alone."""
+    """Return the key by which subjects are grouped, or None for a subject that is not grouped."""
     if subject.kind is not SubjectKind.MESH or len(subject.changes) != 1 or subject.figures or subject.problems:
         return None
     paths = subject.old_path, subject.new_path

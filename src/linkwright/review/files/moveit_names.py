@@ -1,4 +1,4 @@
-"""Check shared names in parameter files of MoveIt: controllers, planners and joints with limits."""
+"""Check shared names in MoveIt parameter files: controllers, planners and limited joints."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class MoveItRules:
     """Decides which changes of a MoveIt parameter file are breaking.
 
     Args:
-        old: the old values by path, without the new names of renamed parts.
+        old: the old values by their original paths.
         new: the new values by path.
     """
 
@@ -46,7 +46,7 @@ class MoveItRules:
     def find_change_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
         """Return the reason why a changed value is breaking, or None if it is not.
 
-        A planner that lost its settings, too, is reported with the settings.
+        A planner whose settings were also removed is reported with the settings.
         """
         action = _ACTION_NAMESPACE.fullmatch(parameter)
         if action is not None and old.text and not can_evaluate_to(new.text, old.text):
@@ -71,7 +71,7 @@ class MoveItRules:
         return None
 
     def find_renaming_reason(self, part: str) -> Phrase | None:
-        """Return the reason why renaming or moving a part of the old file is breaking, or None if it is not."""
+        """Return the reason why renaming or moving a part is breaking; None if it is not."""
         joint = _LIMITED_JOINT.fullmatch(part)
         if joint is None:
             return self.find_removal_reason(part)

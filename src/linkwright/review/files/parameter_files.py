@@ -1,4 +1,4 @@
-"""Compare YAML files: parameters of nodes and controllers, and settings that launch files read."""
+"""Compare YAML files: parameters of nodes and controllers, and settings of launch files."""
 
 from __future__ import annotations
 
@@ -58,7 +58,10 @@ def compare_parameter_files(pair: FilePair) -> None:
 
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
-    """Return the parameters of nodes, or the top-level keys of other files, with values; None if there are none."""
+    """Return the node parameters in a file, or else its top-level keys, with values.
+
+    Returns None if there are none.
+    """
     text = read_yaml_text(version.file(path))
     bridges = read_bridges(text)
     if bridges:
@@ -165,7 +168,10 @@ def _is_label(name: str, value: YamlValue) -> bool:
 
 
 def _is_new_label(name: str, old: YamlValue, new: YamlValue) -> bool:
-    """Return whether a changed value is the name of a list item, so that the path of the item changes with it."""
+    """Return whether a changed value is the name of a list item.
+
+    The path of the item changes with the name.
+    """
     return old.text != new.text and _is_label(name, new)
 
 
@@ -184,7 +190,7 @@ def _find_unpaired_parts(
 
 
 def _find_lost_keys(name: str, new_keys: Collection[str]) -> list[str]:
-    """Return the keys in the path of a value that the new version lacks; empty for a node parameter."""
+    """Return the keys in a path that the new version lacks; empty for a node parameter."""
     if is_parameter(name):
         return []  # nodes declare their parameters with defaults
     return [key for key in map(_get_last_key, list_part_paths(name)) if key not in new_keys and "[" not in key]

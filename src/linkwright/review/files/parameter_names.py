@@ -1,4 +1,7 @@
-"""Check shared names in parameter files: controllers, joints and frames, and the types of parameters."""
+"""Check shared names and the types of parameters in parameter files.
+
+The names are those of controllers, joints and frames.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +16,11 @@ from linkwright.review.list_changes import EMPTY, list_items
 _FRAME_PARAMETER = re.compile(r"(^|[._])frame_id$")
 """The parameters that name a frame which the node publishes."""
 _USED_FRAME_PARAMETER = re.compile(r"(^|[._])(base|odom|map|global|world|target|reference)_frame_id$")
-"""The parameters that name a frame which localization and navigation only use. Controllers publish it."""
+"""The parameters that name a frame which localization and navigation use but do not publish."""
 _TRANSFORM_SWITCH = re.compile(
     r"(^|[._])(publish_tf|tf[._]send|enable_odom_tf|broadcast_tf|publish_odom_tf|pub_tf|tf_broadcast)$"
 )
-"""The parameters that switch a transform of a node on and off."""
+"""The parameters that enable and disable a transform of a node."""
 _JOINT_PARAMETER = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
 """The parameters that name joints of a controller. Other nodes only use the joints."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
@@ -110,7 +113,10 @@ class NameRules:
         return None if ros1_controller is None else make_controller_reason(_separate_by_slashes(ros1_controller))
 
     def _is_in_lost_group(self, parameter: str, root: str) -> bool:
-        """Return whether the group of a parameter was removed. A single removed value gets the default of the node."""
+        """Return whether the group of a parameter was removed.
+
+        The node uses its default for a single removed value.
+        """
         group = list_part_paths(parameter)[-2]
         return root in self._new_parts and group not in self._new_parts
 
@@ -137,7 +143,7 @@ def is_parameter(name: str) -> bool:
 
 
 def find_node_name(name: str) -> str | None:
-    """Return the name of the node in the path of a parameter, or None for another path."""
+    """Return the name of the node in the path of a parameter, or None for other paths."""
     match = _NODE.match(name)
     return None if match is None else match["node"]
 
@@ -150,7 +156,7 @@ def has_different_type(old: YamlValue, new: YamlValue) -> bool:
 
 
 def find_type_reason(old: YamlValue, new: YamlValue) -> Phrase | None:
-    """Return the reason why another type of a parameter is breaking, or None if the type is the same."""
+    """Return the reason why a different type is breaking; None if the type is the same."""
     if not has_different_type(old, new):
         return None
     return phrase(
@@ -164,7 +170,7 @@ def make_controller_reason(name: str) -> Phrase:
 
 
 def _find_ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
-    """Yield the paths of ROS 1 controllers among values: parts with a type outside of node parameters."""
+    """Yield the paths of ROS 1 controllers: parts with a type outside of node parameters."""
     for name, text in values.items():
         part, _, key = name.rpartition(".")
         is_controller = "controller" in f"{part} {text}".lower() and "[" not in part
@@ -173,7 +179,7 @@ def _find_ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
 
 
 def _find_typed_controller(parameter: str, old: str, new: str) -> str | None:
-    """Return the name of the controller whose type a parameter sets, or None for another parameter."""
+    """Return the controller whose type a parameter sets; None for other parameters."""
     match = _CONTROLLER_TYPE.fullmatch(parameter) or _OWN_TYPE.fullmatch(parameter)
     if match is not None:
         is_class = match.re is _CONTROLLER_TYPE or (_ROS1_CLASS.fullmatch(old) and _ROS1_CLASS.fullmatch(new))
@@ -210,7 +216,7 @@ def _find_name_items(text: str) -> set[str]:
 
 
 def find_part_renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
-    """Return the reason why renaming or moving a part of the old file is breaking, or None if it is not.
+    """Return the reason why renaming or moving a part is breaking; None if it is not.
 
     Args:
         part: the old path: a node, parameters of a node, or a controller of ROS 1.
@@ -234,9 +240,9 @@ def find_part_renaming_reason(part: str, new_part: str, values: Mapping[str, Yam
 
 
 def _find_node_renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
-    """Return the reason why renaming or moving node parameters is breaking, or None if it is not.
+    """Return the reason why renaming or moving node parameters is breaking.
 
-    It is not breaking if the new name matches the old node, too, or if the old name matches any node.
+    Returns None if the new name also matches the old node, or if the old name matches any node.
     """
     parameter = next((name for name in values if _NODE.match(name) and name.startswith(f"{part}.")), None)
     match = None if parameter is None else _NODE.match(parameter)
@@ -249,7 +255,10 @@ def _find_node_renaming_reason(part: str, new_part: str, values: Mapping[str, Ya
 
 
 def matches_node(name: str, node: str) -> bool:
-    """Return whether a name in a parameter file, such as ``/**/amcl``, matches a node by the rules of rcl."""
+    """Return whether a name in a parameter file, such as ``/**/amcl``, matches a node.
+
+    The rules are those of rcl.
+    """
     words = [word for word in re.split(r"[./]", name) if word]
     pattern = "".join(
         r"(?:/[^/]+)*" if word == "**" else r"/[^/]+" if word == "*" else f"/{re.escape(word)}" for word in words
@@ -258,11 +267,14 @@ def matches_node(name: str, node: str) -> bool:
 
 
 def can_evaluate_to(text: str, name: str) -> bool:
-    """Return whether a text with substitutions, such as ``$(arg arm)_joint1``, can evaluate to a name."""
+    """Return whether a text such as ``$(arg arm)_joint1`` can evaluate to a name."""
     pattern, count = _SUBSTITUTION.subn(".*", re.escape(text))
     return count > 0 and re.fullmatch(pattern, name) is not None
 
 
 def list_part_paths(name: str) -> list[str]:
-    """Return the paths of the mappings and items around a value, the outermost first, then its own path."""
+    """Return the paths of the mappings and items around a value, and its own path.
+
+    The outermost comes first.
+    """
     return [*(name[: match.start()] for match in _SEPARATOR.finditer(name)), name]

@@ -90,7 +90,10 @@ def _read_classes(file: Path, path: str, *, is_old: bool) -> Iterator[tuple[str,
 
 
 def _is_exported(version: Version, path: str) -> bool:
-    """Return whether a package may export a plugin description. Programs do not find it without an export."""
+    """Return whether a package may export a plugin description.
+
+    Programs do not find a plugin description without an export.
+    """
     folders = (version.file(parent.as_posix()) for parent in PurePosixPath(path).parents)
     package = next((folder for folder in folders if (folder / MANIFEST).is_file()), None)
     if package is None:
@@ -139,5 +142,8 @@ def _compare_class(name: str, old: _PluginClass | None, new: _PluginClass, names
 
 
 def _get_library_name(path: str) -> str:
-    """Return the name of a library without folder, prefix and suffix. pluginlib adds these itself."""
+    """Return the name of a library without folder, prefix and suffix.
+
+    pluginlib adds these itself.
+    """
     return PurePosixPath(path).name.removeprefix("lib").removesuffix(".so")

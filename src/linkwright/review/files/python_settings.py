@@ -1,4 +1,4 @@
-"""Compare ``setup.cfg`` and ``pyproject.toml``: executables, other entry points and installed files."""
+"""Compare the entry points and installed files in ``setup.cfg`` and ``pyproject.toml``."""
 
 from __future__ import annotations
 

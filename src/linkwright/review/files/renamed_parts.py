@@ -64,7 +64,7 @@ def _rename_part(name: str, renamed: Mapping[str, str]) -> str:
 
 
 def find_edit(old: str, new: str) -> Hashable:
-    """Return the edit between the last names of two sibling paths; for other paths, both parents."""
+    """Return the edit between the last names of sibling paths; both parents for other paths."""
     parent, new_parent = get_parent(old), get_parent(new)
     if parent != new_parent:
         return parent, new_parent
@@ -83,7 +83,7 @@ def _find_equal_renames(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) ->
     """Yield sibling parts that are renamed in the same way.
 
     An example is a new prefix of all joints of a controller. The edit of the most names comes first.
-    Unless the edit covers all old or all new parts and their keys are equal, their values must be similar, too.
+    Unless the edit covers all old or all new parts and their keys are equal, their values must also be similar.
     """
     old_groups, new_groups = _group_siblings(old), _group_siblings(new)
     for parent, removed in old_groups.items():
@@ -102,7 +102,7 @@ def _find_equal_renames(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) ->
 
 
 def _group_pairs_by_edit(removed: Sequence[str], added: Sequence[str]) -> list[list[tuple[str, str]]]:
-    """Return the pairs of old and new names that differ in the same way, the largest groups first."""
+    """Return the pairs of names that differ in the same way, the largest groups first."""
     groups: dict[Hashable, list[tuple[str, str]]] = {}
     pairs = product(removed, added) if len(removed) * len(added) <= _MAX_PAIRS else zip(removed, added, strict=False)
     for pair in pairs:
@@ -166,7 +166,9 @@ def _group_siblings(parts: Mapping[str, _Facts]) -> dict[str, list[str]]:
 
 
 def _find_moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
-    """Yield the old and new paths of parts that keep their last name and move into another part.
+    """Yield the old and new paths of parts that move into a different part.
+
+    Moved parts keep their last name.
 
     A small part counts as moved if it has the same sibling in both versions.
     """
@@ -197,7 +199,10 @@ def _find_moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterato
 
 
 def _find_moved_together(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
-    """Yield parts that move together from one part to another and keep their names, such as all poses."""
+    """Yield parts that move together to a different part, such as all poses.
+
+    They keep their names.
+    """
     groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
     names_in_new = _group_by_last_name(new)
     for last_name, old_names in _group_by_last_name(old).items():
@@ -252,7 +257,7 @@ def _compute_similarity(first: _Facts, second: _Facts) -> float:
 
 
 def _find_unpaired_parts(values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]) -> dict[str, _Facts]:
-    """Return the largest parts that the other values lack: their names and values, alone and together."""
+    """Return the largest parts that the other values lack, with names and values as facts."""
     other_parts = {part for name in others for part in list_part_paths(name)}
     parts: dict[str, _Facts] = {}
     for name, value in values.items():

@@ -1,4 +1,4 @@
-"""Compare ``manifest.xml`` and ``stack.xml``, the manifests of rosbuild, the predecessor of catkin."""
+"""Compare the manifests of rosbuild, the predecessor of catkin."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def rosbuild_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) 
 
 
 def _read(version: Version, path: str | None) -> Element | None:
-    """Return the root of a manifest, or None if the version lacks the file or it is not a manifest."""
+    """Return the root of a manifest; None if the file is absent or not a manifest."""
     if path is None or not version.file(path).is_file():
         return None
     try:
@@ -57,7 +57,7 @@ def _find_changes(versions: Versions, file: ChangedFile, old: Element | None, ne
 
 
 def _describe_removal(versions: Versions, path: str, old: Element) -> Iterator[Change]:
-    """Yield the removal of a manifest, or the differences from the catkin manifest that replaces it."""
+    """Yield the removal of a manifest, or its differences from the catkin manifest."""
     manifest = versions.new.file((PurePosixPath(path).parent / MANIFEST).as_posix())
     if old.tag == "stack":
         yield Change(phrase("stack removed"))

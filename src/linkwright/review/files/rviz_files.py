@@ -1,4 +1,4 @@
-"""Compare RViz configurations: displays with their topics, frames, tools, panels and the view."""
+"""Compare RViz configurations: displays, frames, tools, panels and the view."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class _Item:
     """A display, tool or panel.
 
     Attributes:
-        name: its name, with the names of the groups around it.
-        class_name: its class.
-        properties: its properties by name.
-        line: its line, starting at 1.
-        column: its column, starting at 1.
+        name: the displayed name, after the names of the enclosing groups.
+        class_name: the plugin class, such as ``rviz_default_plugins/TF``.
+        properties: the compared properties by name.
+        line: the line in the file, starting at 1.
+        column: the column in the file, starting at 1.
     """
 
     name: str
@@ -119,7 +119,10 @@ def _read_items(node: yaml.Node | None, group: str) -> Iterator[_Item]:
 
 
 def _read_properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
-    """Yield the properties of an item. A topic is a text in old files and a group of properties in new ones."""
+    """Yield the properties of an item.
+
+    A topic is a text in old files and a group of properties in new ones.
+    """
     for key, value in node.value:
         name = str(key.value)
         if name in _COMPUTED_PROPERTIES or (not path and name in _IGNORED_PROPERTIES):

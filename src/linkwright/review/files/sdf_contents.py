@@ -18,7 +18,7 @@ _INCLUDE = "include"
 
 
 def summarize_element(element: Element) -> Iterator[Phrase]:
-    """Yield the models of a world, or the links and joints of a model, and all plugins and sensors."""
+    """Yield the models of a world or the links and joints of a model, plugins and sensors."""
     names = {
         tag: [_get_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")
     }
@@ -61,7 +61,7 @@ def summarize_shapes_and_mass(model: Element) -> Iterator[Phrase]:
 
 
 def _get_name(element: Element) -> str:
-    """Return the name of an element, or the last part of the URI of an included model without a name."""
+    """Return the name of an element; the last part of the URI for an unnamed include."""
     texts = (element.first(tag) for tag in ("name", "uri"))
     included = next((text.text().strip().rstrip("/") for text in texts if text is not None), "")
     return element.attributes.get("name") or included.rpartition("/")[2]
@@ -88,7 +88,10 @@ def format_added_element(path: str, element: Element) -> Phrase:
 
 
 def _find_only_descendant(element: Element, path: str) -> tuple[Element, str]:
-    """Return an element, or for a nameless one the first descendant with a value or several children, with its path."""
+    """Return the element that has the content of an element, with its path.
+
+    For a nameless element without values, this is the first descendant with a value or several children.
+    """
     children = list(element.elements())
     while len(children) == 1 and not (element.attributes or element.text().strip() or element.tag == _INCLUDE):
         element = children[0]

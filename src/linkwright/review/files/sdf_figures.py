@@ -86,7 +86,7 @@ def _get_center_of_mass(measures: _Measures) -> Array | None:
 
 
 def _measure_scene(scene: Scene) -> Array | None:
-    """Return the lengths of the box around all visuals in m, shape (3,); None if some cannot be drawn."""
+    """Return the size of all visuals in m, shape (3,); None if some cannot be drawn."""
     if scene.problems or not len(scene.mesh.points):
         return None
     size: Array = np.ptp(scene.mesh.points, axis=0)

@@ -1,4 +1,4 @@
-"""Filter and join changed SDF values: values that are equal but written differently, and inertials."""
+"""Drop changed SDF values that are equal but written differently, and join inertials."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _MAX_RATIO_DIFFERENCE = 1e-2
 """The maximum relative difference of the ratios of the moments of inertia of a scaled tensor."""
 _MIN_DIGITS, _MAX_DIGITS = 4, 17
 _POSE_LENGTH = 6
-"""The number of numbers of a pose."""
+"""The number of values in a pose."""
 _POSE_PARTS = slice(0, 3), slice(3, _POSE_LENGTH)
 """The position and the rotation in a pose."""
 _MAX_SHOWN_ENTRIES = 2
@@ -35,7 +35,9 @@ _MAX_SHOWN_ENTRIES = 2
 
 @dataclass(frozen=True, slots=True)
 class InertialDifference(Difference):
-    """The differences of several values of the inertial of a link. The location is that of the first difference.
+    """The differences between several values of the inertial of a link.
+
+    The location is that of the first difference.
 
     Attributes:
         values: the differences by the name of the value, such as ``mass``, ``pose`` or ``ixx``.
@@ -61,7 +63,10 @@ def drop_rounding(differences: Iterable[Difference]) -> Iterator[Difference]:
 
 
 def drop_equal_values(differences: Iterable[Difference]) -> Iterator[Difference]:
-    """Yield the differences except equal values, such as ``1`` and ``true``, or an empty and a missing frame."""
+    """Yield the differences between values with different meanings.
+
+    ``1`` and ``true`` are equal, and so are an empty and a missing frame.
+    """
     return (
         difference for difference in differences if not (_is_equal_boolean(difference) or _is_empty_frame(difference))
     )
@@ -88,7 +93,7 @@ def join_inertials(differences: Iterable[Difference]) -> Iterator[Difference]:
 
 
 def _find_inertial(difference: Difference) -> str:
-    """Return the path of the inertial that contains a changed value; empty for other differences."""
+    """Return the path of the inertial of a changed value; empty for other differences."""
     match = _INERTIAL.fullmatch(f"{difference.name} {difference.property}".strip())
     count = len(_parse_numbers(difference.old))
     is_readable = count in (1, _POSE_LENGTH) and count == len(_parse_numbers(difference.new))
@@ -100,7 +105,7 @@ def _get_value_name(difference: Difference) -> str:
 
 
 def _parse_numbers(text: str | None) -> list[float]:
-    """Return the numbers of a text, or none if it contains other words."""
+    """Return the numbers in a text; an empty list if it contains other words."""
     try:
         numbers = [float(word) for word in (text or "").split()]
     except ValueError:
@@ -114,13 +119,16 @@ def _is_rounding(difference: Difference) -> bool:
     if difference.kind != "changed" or not old or len(old) != len(new):
         return False
     if not {".", "e", "E"} & set(f"{difference.old}{difference.new}"):
-        return False  # numbers of a counter, such as a seed
+        return False  # integers, such as a seed
     limit = max(_MAX_ABSOLUTE_DIFFERENCE, _MAX_RELATIVE_DIFFERENCE * max(map(abs, (*old, *new))))
     return all(abs(first - second) <= limit for first, second in zip(old, new, strict=True))
 
 
 def _is_equal_boolean(difference: Difference) -> bool:
-    """Return whether the values are equal booleans. A parameter of a plugin is not one, because it can be a text."""
+    """Return whether the values are equal booleans.
+
+    A plugin parameter is not a boolean, because it can be a text.
+    """
     values = {difference.old, difference.new}
     is_of_plugin = _PLUGIN.search(f"{difference.name} {difference.property}") is not None
     return difference.kind == "changed" and values in _EQUAL_BOOLEANS and not is_of_plugin
@@ -132,7 +140,10 @@ def _is_empty_frame(difference: Difference) -> bool:
 
 
 def _drop_tiny_products(values: dict[str, Difference]) -> dict[str, Difference]:
-    """Return the values without products of inertia that change little compared with the moments."""
+    """Return the values without products of inertia that hardly change.
+
+    Changes are compared with the moments of inertia.
+    """
     moments = [abs(number) for name in _MOMENTS & values.keys() for number in _parse_numbers(values[name].old)]
     limit = _MAX_RELATIVE_DIFFERENCE * max(moments, default=0.0)
     return {

@@ -1,4 +1,4 @@
-"""Compare semantic descriptions (SRDF): groups, states, end effectors and disabled collisions."""
+"""Compare semantic descriptions (SRDF): groups, states, end effectors and collisions."""
 
 from __future__ import annotations
 
@@ -75,13 +75,13 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
 
 
 def semantic_contents(version: Version, path: str) -> Phrase | None:
-    """Return the groups, states and other named elements of a semantic description, or None if there are none."""
+    """Return the named elements of a semantic description; None if there are none."""
     titles = [_format_title(entry) for entry in _read_entries(read_lenient_root(version.file(path)))]
     return joined_first(titles, MAX_NAMES) if titles else None
 
 
 def find_disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
-    """Return the pairs of links whose collisions the semantic descriptions below a folder disable.
+    """Return the pairs of links whose collisions the files below a folder disable.
 
     Xacro expressions in the names of links, such as prefixes, count as empty.
     """
@@ -97,7 +97,7 @@ def find_disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
 
 
 def removal_reason(tag: str, name: str) -> Phrase | None:
-    """Return the reason why removing an element of a semantic description is breaking, or None if it is not."""
+    """Return the reason why removing an element is breaking; None if it is not."""
     if tag == "group":
         return phrase("programs that plan for the group '{name}' do not find it", name=name)
     if tag == "group_state":
@@ -171,7 +171,7 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive_joints: C
 def _find_lost_joints_reason(
     version: Version, old: _Entry, new: _Entry, passive_joints: Collection[str]
 ) -> Phrase | None:
-    """Return the reason why other joints in a group are breaking, or None if they are not.
+    """Return the reason why lost joints of a group are breaking; None if they are not.
 
     A group defined by a chain, links or other groups can still contain the joints. Programs do not
     move fixed and passive joints.
@@ -198,7 +198,7 @@ def _is_literal_joint(member: str) -> bool:
 
 
 def _find_fixed_joints(version: Version) -> set[str]:
-    """Return the names, as written in the file, of the fixed joints in the descriptions of a version."""
+    """Return the fixed joints in the descriptions of a version, as written in the files."""
     texts = (version.text(path) for path in version.paths((".urdf", ".xacro")))
     tags = (match[0] for text in texts for match in _JOINT_TAG.finditer(text))
     return {name[1] for tag in tags if _FIXED.search(tag) and (name := _NAME.search(tag))}

@@ -1,4 +1,4 @@
-"""Compare ``setup.py`` files: executables, other entry points, and the files that a package installs."""
+"""Compare the entry points and the installed files in ``setup.py`` files."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def _find_other_packages(python: PythonFile, folder: Path) -> Iterator[Fact]:
 
 
 def _find_packages_below(folder: Path, prefix: str) -> Iterator[str]:
-    """Yield the names of the Python packages in a folder, also of those in other packages, except tests."""
+    """Yield the names of the Python packages in a folder, including nested ones, except tests."""
     for file in sorted(folder.glob("*/__init__.py")):
         name = f"{prefix}{file.parent.name}"
         if not name.startswith("test"):

@@ -50,7 +50,7 @@ def read_template(file: str) -> list[Element]:
 
 
 def may_be_equal(old: str | None, new: str | None) -> bool:
-    """Return whether a text and an expression, one replacing the other, can have the same value."""
+    """Return whether an expression that replaces a text, or vice versa, can equal it."""
     return old is not None and new is not None and old.count("{{") != new.count("{{")
 
 
@@ -59,9 +59,9 @@ def _unwrap_root(element: Element) -> Iterator[Element]:
 
 
 def _replace_statements(text: str) -> str:
-    """Return a template with elements in place of macros and set variables, without the other statements.
+    """Return a template with elements instead of macros and set variables.
 
-    Statements in tags and comments are left out.
+    Other statements are blanked out, and so are statements in tags and comments.
     """
     markup = _EXPRESSION.sub(_blank_out, _STATEMENT.sub(_blank_out, text))
     open_macros: list[bool] = []

@@ -1,4 +1,4 @@
-"""Merge changed values: equal changes into one line, and many changes of a list into a summary."""
+"""Merge equal changed values, and summarize many changes in a list."""
 
 from __future__ import annotations
 
@@ -67,7 +67,10 @@ class ValueChange:
 
     @property
     def sibling_key(self) -> Hashable | None:
-        """A key that is equal for values with the same name which sibling parts add or remove; None for others."""
+        """A key that is equal for values of one name that sibling parts add or remove.
+
+        None for other values.
+        """
         parent, *inner_names = self.name.rsplit(".", 2)
         if self.kind == "changed" or len(inner_names) < 2:
             return None
@@ -84,7 +87,10 @@ class ValueChange:
 
 
 def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
-    """Yield the changes of a file. Breaking changes stay separate; equal changes and long lists are merged."""
+    """Yield the changes in a file, with equal changes and long lists merged.
+
+    Breaking changes are not merged into summaries of lists.
+    """
     lists: dict[str, list[ValueChange]] = {}
     groups: dict[Hashable, list[ValueChange]] = {}
     for change in changes:

@@ -49,7 +49,7 @@ _INVISIBLE_TAGS = frozenset(
 )
 """The tags of elements that images do not show, with their contents."""
 _MIN_EQUAL_CHANGES = 3
-"""The minimum number of equal changes of elements at different places that are summarized in one line."""
+"""The minimum number of equal changes to different elements that are summarized in one line."""
 
 
 def compare_worlds(pair: FilePair) -> None:
@@ -118,7 +118,10 @@ def _may_be_visible(difference: Difference) -> bool:
 
 
 def world_contents(version: Version, path: str) -> Phrase | None:
-    """Return the models of a world, or the links and joints of a model, with plugins and sensors; None if empty."""
+    """Return the models of a world or the links and joints of a model; None if empty.
+
+    Plugins and sensors are also listed.
+    """
     elements = _read_elements(version.file(path))
     parts = [part for element in elements for part in summarize_element(element)]
     if _is_model(elements):
@@ -127,7 +130,7 @@ def world_contents(version: Version, path: str) -> Phrase | None:
 
 
 def is_model(version: Version, path: str) -> bool:
-    """Return whether an SDF file has models and no world. Returns False if the file cannot be read."""
+    """Return whether an SDF file has models and no world; False if it cannot be read."""
     try:
         return _is_model(_read_elements(version.file(path)))
     except (LinkwrightError, OSError, ValueError, RecursionError):
@@ -163,7 +166,7 @@ class _WorldChange:
 
     @property
     def is_renamed(self) -> bool:
-        """Whether the change is a change of a name."""
+        """Whether the change is a new name."""
         return path_of_renamed(self.difference, self.path) is not None
 
     def location(self, pair: FilePair) -> Location | None:
@@ -229,7 +232,7 @@ def _describe_difference(difference: Difference, name: str) -> Phrase:
 
 
 def _find_breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
-    """Return the reason why a difference breaks programs that use the world, or None if it does not."""
+    """Return the reason why a difference breaks users of the world; None if it does not."""
     path = f"{difference.name} {difference.property}".strip()
     is_macro = difference.element is not None and difference.element.tag == "macro"
     if is_macro or _SET_VARIABLE.fullmatch(path) or may_be_equal(difference.old, difference.new):

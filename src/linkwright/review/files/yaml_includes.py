@@ -1,4 +1,4 @@
-"""Resolve includes of YAML files: as items of lists, as keys of mappings, or by the tag ``!include``."""
+"""Resolve includes of YAML files: list items, mapping keys, or the tag ``!include``."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ _MAX_BYTES = 1 << 20
 
 
 def resolve_includes(pair: FilePair, old: yaml.Node, new: yaml.Node) -> tuple[yaml.Node, yaml.Node]:
-    """Report files that only one of two documents includes, and return both documents with their contents.
+    """Return two documents with the included files that differ, which are reported.
 
-    A value that moves into an included file is then unchanged. Documents with too many values stay as they are.
+    A value that moves into an included file is then unchanged. Files that both documents include are not resolved.
+    Documents with too many values are returned unchanged.
     """
     readers = _Includes(pair.old_file, pair.versions.old.root), _Includes(pair.new_file, pair.versions.new.root)
     positions = [dict(reader.names(root)) for reader, root in zip(readers, (old, new), strict=True)]
@@ -52,8 +53,8 @@ class _Includes:
     """The files that a YAML file of a version includes.
 
     Attributes:
-        file: the file.
-        root: the root of the version.
+        file: the YAML file with the includes.
+        root: the root folder of the version.
         counter: counts the includes that were read.
     """
 
@@ -108,7 +109,7 @@ class _Includes:
         return node
 
     def _find_included_name(self, node: yaml.Node) -> str | None:
-        """Return the name of the file that a node includes as a whole, or None for another node."""
+        """Return the name of the file that a node includes as a whole, or None for other nodes."""
         if isinstance(node, yaml.ScalarNode):
             return self._find_existing_file(str(node.value)) if node.tag == _TAG else None
         if isinstance(node, yaml.MappingNode) and len(node.value) == 1:
@@ -127,7 +128,7 @@ class _Includes:
         return name if is_inside and file.stat().st_size <= _MAX_BYTES else None
 
     def _read_content(self, name: str, include: yaml.Node, depth: int) -> yaml.Node | None:
-        """Return the content of an included file at the place of its include.
+        """Return the content of an included file, with the location of the include.
 
         Returns None if the file cannot be read, or if too many were read.
         """

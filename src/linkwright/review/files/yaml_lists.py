@@ -1,4 +1,7 @@
-"""Match list items of two YAML documents, so that an inserted item does not shift the following items."""
+"""Match the list items of two YAML documents.
+
+An inserted item does not shift the following items.
+"""
 
 from __future__ import annotations
 
@@ -81,8 +84,8 @@ def _align(old: Sequence[yaml.Node], new: Sequence[yaml.Node], texts: dict[int, 
 def _match_similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> list[tuple[int, int]]:
     """Return the indexes of matched items in the order of both lists.
 
-    Many items match by their order. Others match if they have something in common, or if equally many items were
-    removed and added.
+    Long lists match by order. Other items match if they have common values, or if the same number of
+    items was removed and added.
     """
     in_order = [(number, number) for number in range(min(len(old), len(new)))]
     if len(old) * len(new) > _MAX_SIMILARITIES:

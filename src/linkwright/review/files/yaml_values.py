@@ -71,7 +71,9 @@ class YamlValue:
 
 
 def read_yaml_values(text: str, labels: Mapping[int, str] | None = None) -> dict[str, YamlValue]:
-    """Return the values of a YAML document by their paths, such as ``controller_manager.ros__parameters.update_rate``.
+    """Return the values of a YAML document by their paths.
+
+    A path is ``controller_manager.ros__parameters.update_rate``, for example.
 
     Raises:
         UnreadableFileError: the text is not YAML, or it has more values than a parameter file.

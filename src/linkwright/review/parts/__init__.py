@@ -1,4 +1,4 @@
-"""Compare unexpanded descriptions: macros, parameters, arguments, and the elements that no robot shows."""
+"""Compare unexpanded descriptions, including the elements that no robot shows."""
 
 from linkwright.review.parts.comparing import compare_parts
 from linkwright.review.parts.expanded import find_expanded_elements

@@ -28,7 +28,7 @@ _OPERATORS: dict[type[ast.operator], Callable[[float, float], float]] = {
 
 
 def evaluate_number(expression: str, values: Mapping[str, str]) -> str | None:
-    """Return the value of a numeric expression with 12 digits, or None for any other expression.
+    """Return the value of a numeric expression with 12 digits; None for other expressions.
 
     Args:
         expression: the expression, without ``${`` and ``}``.

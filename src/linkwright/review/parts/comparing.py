@@ -37,7 +37,9 @@ def compare_parts(
     subjects: Sequence[Subject],
     is_complete: Callable[[str], bool],
 ) -> list[Subject]:
-    """Return the subjects with the changes of unexpanded descriptions that no compared robot shows.
+    """Return the subjects with the changes in unexpanded descriptions.
+
+    Changes that a compared robot shows are left out.
 
     Args:
         versions: both versions.
@@ -55,7 +57,7 @@ def compare_parts(
         number = indexes.get(file.path)
         try:
             part = comparer.compare_file(file, is_compared=number is not None)
-        except Exception as error:  # noqa: BLE001 - whatever it is, the other files are compared
+        except Exception as error:  # noqa: BLE001 - any error; the other files are still compared
             problems = [failure_problem(error)]
             part = Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, [], problems=problems)
         if number is None:
@@ -71,6 +73,8 @@ def compare_parts(
 
 
 class _Comparer:
+    """Compares the changed files of a review, with the include graphs of both versions."""
+
     def __init__(
         self, versions: Versions, expanded: Collection[ExpandedPlace], is_complete: Callable[[str], bool]
     ) -> None:
@@ -83,7 +87,7 @@ class _Comparer:
         """Return a file with its changes.
 
         Args:
-            file: the file.
+            file: the changed file.
             is_compared: whether the file is a complete robot that the review has already compared.
         """
         changes: list[Change] = []

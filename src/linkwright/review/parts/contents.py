@@ -54,7 +54,7 @@ def make_comparison(pair: PartPair, old: MacroOutline | None = None, new: MacroO
 
 
 def compare_contents(pair: PartPair, renamed: Mapping[str, str]) -> None:
-    """Report the changes of elements that no compared robot shows.
+    """Report the changes to elements that no compared robot shows.
 
     Args:
         pair: both versions of the file.
@@ -84,7 +84,7 @@ def _find_hidden_differences(
 
 
 def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Element) -> bool:
-    """Return whether the compared robots show a difference, or would show it if it had an effect."""
+    """Return whether the compared robots show a difference that has an effect."""
     elements = difference.old_element, difference.new_element
     element = elements[1] or elements[0]
     assert element is not None
@@ -92,7 +92,7 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
     if difference.value == "conditions":
         return _is_condition_shown(pair, difference)
     if None in (difference.old, difference.new) and f"${{{difference.value}}}" in (difference.old, difference.new):
-        return True  # a call that hands on a parameter, which is a change of its own
+        return True  # a call that passes a parameter on; the parameter itself is reported
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
     if element.tag in (_INCLUDE, _INSERT):
@@ -101,9 +101,10 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
 
 
 def _is_condition_shown(pair: PartPair, difference: PartDifference) -> bool:
-    """Return whether the compared robots show a change of the conditions of an element.
+    """Return whether the compared robots show a change to the conditions of an element.
 
-    An added or removed condition matters for other arguments, even if all compared robots have the element.
+    An added or removed condition can have an effect with different arguments, even if all compared robots have the
+    element.
     """
     has_old = pair.is_expanded(difference.old_element, is_old=True)
     has_new = pair.is_expanded(difference.new_element, is_old=False)
@@ -113,7 +114,10 @@ def _is_condition_shown(pair: PartPair, difference: PartDifference) -> bool:
 
 
 def _is_property_shown(pair: PartPair, name: str, old: Element, new: Element) -> bool:
-    """Return whether a compared robot has an element that uses a property, directly or through other properties."""
+    """Return whether a compared robot has an element that uses a property.
+
+    The use can be direct or through other properties.
+    """
     is_used = False
     for root, is_old in ((old, True), (new, False)):
         names, pending = {name}, [name]
@@ -133,7 +137,7 @@ def _is_property_shown(pair: PartPair, name: str, old: Element, new: Element) ->
 
 
 def _find_renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
-    """Yield the old and new names of renamed properties, whose values are equal, in their order."""
+    """Yield the old and new names of renamed properties, which keep their values."""
     old, new = (
         {name: element.attributes.get("value") for name, element in iterate_properties(outline.root)}
         for outline in (pair.old, pair.new)
@@ -147,7 +151,10 @@ def _find_renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
 
 
 def _find_renamed_parameters(old: MacroOutline, new: MacroOutline) -> Iterator[tuple[str, str]]:
-    """Yield the old and new names of renamed parameters, if equally many were removed and added with equal defaults."""
+    """Yield the old and new names of renamed parameters.
+
+    The removed and added parameters must have the same defaults in the same order.
+    """
     removed = [parameter for name, parameter in old.parameters.items() if name not in new.parameters]
     added = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
     if [parameter.default for parameter in removed] == [parameter.default for parameter in added]:
@@ -215,9 +222,9 @@ class _ReportedDifference:
         return self.element
 
     def find_name_beside(self, first: _ReportedDifference) -> str | None:
-        """Return the name to list after the first element with the same change, or None if it adds nothing.
+        """Return the name to list after the first element; None if it adds nothing.
 
-        Elements with other values are listed with the values, and elements without a name with their attributes.
+        Elements with different values are listed with the values, and elements without a name with their attributes.
         """
         if self.element != first.element:
             has_other_contents = self.shows_contents and str(self.contents) != str(first.contents)
@@ -287,7 +294,10 @@ class _ReportedDifference:
         return extension_reason(Difference("extension", root, "changed", name, difference.old or "-", difference.new))
 
     def _find_lost_name_reason(self, old: Element) -> Phrase | None:
-        """Return the reason why removing a Gazebo element is breaking, or None if another element has its names."""
+        """Return the reason why removing a Gazebo element is breaking; None if it is not.
+
+        It is not breaking if a different element has its names.
+        """
         new_words = _collect_words(self.pair.new.root)
         for element in old.walk():
             text = " ".join(element.text().split())
@@ -322,7 +332,7 @@ def _merge_differences(differences: list[_ReportedDifference]) -> Iterator[Chang
 
 
 def _collect_words(root: Element) -> set[str]:
-    """Return the words in texts and attributes of a file, and the targets of remappings such as ``~/out:=scan``."""
+    """Return the words in texts and attributes, and the targets of remappings."""
     words: set[str] = set()
     for element in root.walk():
         for text in (element.text(), *element.attributes.values()):

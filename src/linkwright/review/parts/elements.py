@@ -89,7 +89,10 @@ class ItemComparison:
         return old_text == new_text or self.old.resolve_values(old_text) == self.new.resolve_values(new_text)
 
     def _match_items(self, old: Sequence[Item], new: Sequence[Item]) -> Iterator[tuple[Item | None, Item | None]]:
-        """Yield the matched pairs of elements, which may differ, in the order of the new description."""
+        """Yield the matched pairs of elements in the order of the new description.
+
+        Elements without a match follow, with None as the other element.
+        """
         remaining_old, remaining_new = list(old), list(new)
 
         def is_equal(old_item: Item, new_item: Item) -> bool:
@@ -115,7 +118,7 @@ class ItemComparison:
         yield from ((item, None) for item in remaining_old)
 
     def _take_joined_blocks(self, old: list[Item], new: list[Item]) -> list[tuple[Item, Item]]:
-        """Remove repeated ``<gazebo>`` elements of a link from both lists, and return them joined by link."""
+        """Remove repeated ``<gazebo>`` elements of a link from both lists, and return them joined."""
         pairs = []
         for key in dict.fromkeys(item.key for item in new if item.element.tag == GAZEBO):
             new_items = [item for item in new if item.key == key]
@@ -134,7 +137,7 @@ class ItemComparison:
         return pairs
 
     def _make_count_check(self, old: Sequence[Item], new: Sequence[Item]) -> Callable[[Item, Item], bool]:
-        """Return a function that returns whether the keys of two elements occur equally often in both lists."""
+        """Return a function that checks that a key occurs equally often in both lists."""
         counts = (
             Counter(self.old.rename_names(item.key) for item in old),
             Counter(item.key for item in new),
@@ -156,7 +159,10 @@ class ItemComparison:
         return pairs
 
     def _take_renamed(self, old: list[Item], new: list[Item]) -> list[tuple[Item, Item]]:
-        """Remove the renamed elements, whose contents are similar, from both lists, and return them as pairs."""
+        """Remove the renamed elements from both lists, and return them as pairs.
+
+        Their contents are similar.
+        """
         pairs = []
         for new_item in list(new):
             candidates = [item for item in old if item.element.tag == new_item.element.tag]
@@ -195,7 +201,7 @@ def _make_whole_difference(path: tuple[str, ...], old: Item | None, new: Item | 
 
 
 def summarize(item: Item) -> str:
-    """Return the attributes and the text of an element in one line, with the conditions around it."""
+    """Return the attributes, text and conditions of an element in one line."""
     element = item.element
     shown = [f"{name}={value}" for name, value in element.attributes.items() if name not in ("name", "reference")]
     conditions = [f"[{CONDITION_SEPARATOR.join(item.conditions)}]"] if item.conditions else []

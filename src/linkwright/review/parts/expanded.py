@@ -12,7 +12,10 @@ from linkwright.xmltree import Element
 
 
 def find_expanded_elements(versions: Versions, old: Description, new: Description) -> Iterator[ExpandedPlace]:
-    """Yield the elements of changed files that two expansions use: written elements, macro calls and includes."""
+    """Yield the elements of changed files that two expansions use.
+
+    These are written elements, macro calls and includes.
+    """
     for version, description in ((versions.old, old), (versions.new, new)):
         paths = {file.old_path if version.is_old else file.new_path for file in versions.changed_files}
         yield from _find_used_elements(version, description, {path for path in paths if path})

@@ -23,7 +23,7 @@ class IncludeGraph:
         self._version = version
 
     def declares(self, path: str, is_declared: Callable[[Outline], bool]) -> bool:
-        """Return whether a file or one of its included files has an outline that fulfills a condition."""
+        """Return whether a file, or a file that it includes, fulfills a condition."""
         return any(is_declared(self._outlines[reachable]) for reachable in self._find_reachable(path, self._included))
 
     def find_robots_with(self, path: str) -> list[str]:

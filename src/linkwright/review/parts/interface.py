@@ -1,4 +1,4 @@
-"""Compare the names that other descriptions and callers use: macros, their parameters, and arguments."""
+"""Compare the names that other files use: macros, their parameters, and arguments."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def _has_macro(graph: IncludeGraph, path: str, name: str) -> bool:
 
 
 def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) -> None:
-    """Report the added and removed parameters of a macro, and the changes of their defaults."""
+    """Report the added and removed parameters of a macro, and changed defaults."""
     removed = [name for name in old.parameters if name not in new.parameters]
     added = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
     renamed = dict(

@@ -1,4 +1,4 @@
-"""Read the outline of an unexpanded description: its arguments, properties, macros and elements."""
+"""Read the arguments, properties, macros and elements of an unexpanded description."""
 
 from __future__ import annotations
 
@@ -63,10 +63,10 @@ class Outline:
     """An unexpanded description.
 
     Attributes:
-        root: its root element.
+        root: the root element.
         macros: the macros by name.
         arguments: the ``<xacro:arg>`` by name.
-        inclusions: the files that it includes.
+        inclusions: the included files.
     """
 
     root: Element
@@ -147,7 +147,10 @@ def _move_conditions_inside(item: Item) -> Element:
 
 
 def _make_item_key(element: Element) -> str:
-    """Return the tag and name of an element. An element without a name gets the name of its plugin or sensor."""
+    """Return the tag and name of an element.
+
+    A nameless ``<gazebo>`` gets the name of its plugin or sensor.
+    """
     name = element.attributes.get("name") or element.attributes.get("reference")
     if element.tag == GAZEBO and name is None:
         inner = element.first("plugin") or element.first("sensor")

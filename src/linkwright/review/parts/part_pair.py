@@ -1,4 +1,4 @@
-"""Define a changed file with an unexpanded description, in both versions."""
+"""Both versions of a changed file with an unexpanded description."""
 
 from __future__ import annotations
 
@@ -37,7 +37,10 @@ class PartPair:
     changes: list[Change] = field(default_factory=list)
 
     def add(self, sentence: Phrase, old: Element | None, new: Element | None, reason: Phrase | None = None) -> None:
-        """Report a change at the location of the new or else the old element. A change with a reason is breaking."""
+        """Report a change at the location of the new or else the old element.
+
+        A change with a reason is breaking.
+        """
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         self.changes.append(Change(sentence, effect, reason, self._find_location(old, new)))
 

@@ -41,9 +41,9 @@ def _compute_shared_fraction(old: set[Hashable], new: set[Hashable]) -> float:
 
 
 def _find_uses(root: Element, name: str) -> Iterator[Hashable]:
-    """Yield the texts and attributes whose expressions use a name, with a mark in place of the name.
+    """Yield the texts and attributes that use a name, with a mark in place of the name.
 
-    The other attributes of the element count, too, unless an attribute passes the value on by the same name.
+    The other attributes of the element are included, unless an attribute passes the value on by the same name.
     """
     word = re.compile(rf"(?<![\w.]){re.escape(name)}(?!\w)")
     for element in root.walk():

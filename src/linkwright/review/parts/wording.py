@@ -35,7 +35,7 @@ class NameSubstitution:
         return _EXPRESSION.sub(lambda match: _WORD.sub(lambda word: self.renamed.get(word[0], word[0]), match[0]), text)
 
     def resolve_values(self, text: str) -> str:
-        """Return a text with the values of literal properties and expressions, and with normalized numbers."""
+        """Return a text with evaluated expressions and normalized numbers."""
         text = _EXPRESSION.sub(self._resolve_expression, " ".join(text.split()))
         return " ".join(map(_normalize_number, text.split()))
 
@@ -47,7 +47,7 @@ class NameSubstitution:
         return evaluate_number(content, self.literals) or match[0]
 
     def normalize_element(self, element: Element) -> Hashable:
-        """Return the comparable content of an element, without white space, comments and nested macros."""
+        """Return comparable contents, without white space, comments and nested macros."""
         attributes = frozenset(
             (name, self.resolve_values(self.rename_names(value))) for name, value in element.attributes.items()
         )
@@ -66,7 +66,7 @@ def read_literals(root: Element) -> dict[str, str]:
 
 
 def iterate_properties(root: Element) -> Iterator[tuple[str, Element]]:
-    """Yield the names and elements of the properties of a file, including properties inside macros."""
+    """Yield the names and elements of the properties of a file, including those in macros."""
     for element in root.walk():
         if element.tag == PROPERTY and "name" in element.attributes:
             yield element.attributes["name"], element
