@@ -173,7 +173,7 @@ class BuildFacts:
         facts: the known facts.
         files: the sources of the installed files relative to the package, by destination relative to the prefix.
         unknown: the reasons why more files may be installed than `files` contains.
-        rest: the other commands or settings, each with its name and its text.
+        other_commands: the other commands or settings, each with its name and its text.
         package: the path of the folder of the package relative to the root.
         project: the name of the package; empty if it is not known.
         environment: the environment variables that the file reads.
@@ -183,7 +183,7 @@ class BuildFacts:
     facts: list[Fact] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
     unknown: frozenset[str] = frozenset()
-    rest: list[tuple[str, str]] = field(default_factory=list)
+    other_commands: list[tuple[str, str]] = field(default_factory=list)
     package: str = ""
     project: str = ""
     environment: EnvironmentVariables = field(default_factory=lambda: EnvironmentVariables(()))
@@ -194,7 +194,7 @@ class BuildFacts:
         """Whether `files` contains all installed files."""
         return not self.unknown
 
-    def place(self, path: str) -> str:
+    def strip_project(self, path: str) -> str:
         """Return an installed path without the name of the package.
 
         The manifest reports a new package name.
@@ -234,21 +234,8 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             for facts in (old, new)
         )
         for name, fact in new_facts.items():
-            before = old_facts.get(name)
-            if before is None or not before.value or not fact.value:
-                continue
-            if old.place(before.value) != new.place(fact.value):
-                text = phrase(
-                    "{kind}: '{name}': {old} -> {new}", kind=kind.title, name=name, old=before.value, new=fact.value
-                )
-                reason = kind.reason if fact.is_value_used else None
-                if (
-                    kind is FactKind.EXECUTABLE
-                    and before.value == _PATH_FOLDER
-                    and fact.value.startswith(_PROGRAM_FOLDER_PREFIX)
-                ):
-                    reason = phrase("commands that find it through PATH fail; launch files find it only now")
-                pair.add(text, pair.location(fact.span), reason)
+            if name in old_facts:
+                _compare_values(pair, (old, old_facts[name]), (new, fact))
         for name, fact in new_facts.items():
             if name in old_facts and old_facts[name].condition != fact.condition:
                 conditions.setdefault((old_facts[name].condition, fact.condition), []).append(fact)
@@ -260,18 +247,45 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new))
         if kind is FactKind.STOP:
             _report_reworded_errors(pair, removed, added)
-        if added:
-            reason = None
-            if kind is FactKind.STOP:
-                reason = phrase("the build fails under a condition under which it did not fail before")
-            pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
-        if removed:
-            location = pair.location(removed[0].span, is_old=True)
-            pair.add(_format_facts(kind, removed, is_added=False), location, kind.reason)
+        _report_unpaired(pair, kind, removed, added)
     _report_conditions(pair, conditions)
     _compare_files(pair, old, new)
     _compare_other_commands(pair, old, new)
     old.environment.compare(pair, new.environment)
+
+
+def _compare_values(pair: FilePair, old: tuple[BuildFacts, Fact], new: tuple[BuildFacts, Fact]) -> None:
+    """Report a changed value of a fact, unless only the name of the package in a path changed."""
+    (old_facts, old_fact), (new_facts, new_fact) = old, new
+    if not old_fact.value or not new_fact.value:
+        return
+    if old_facts.strip_project(old_fact.value) == new_facts.strip_project(new_fact.value):
+        return
+    kind = new_fact.kind
+    text = phrase(
+        "{kind}: '{name}': {old} -> {new}",
+        kind=kind.title,
+        name=new_fact.name,
+        old=old_fact.value,
+        new=new_fact.value,
+    )
+    reason = kind.reason if new_fact.is_value_used else None
+    is_executable = kind is FactKind.EXECUTABLE
+    if is_executable and old_fact.value == _PATH_FOLDER and new_fact.value.startswith(_PROGRAM_FOLDER_PREFIX):
+        reason = phrase("commands that find it through PATH fail; launch files find it only now")
+    pair.add(text, pair.location(new_fact.span), reason)
+
+
+def _report_unpaired(pair: FilePair, kind: FactKind, removed: Sequence[Fact], added: Sequence[Fact]) -> None:
+    """Report the facts of a kind that only one version has."""
+    if added:
+        reason = None
+        if kind is FactKind.STOP:
+            reason = phrase("the build fails under a condition under which it did not fail before")
+        pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
+    if removed:
+        location = pair.location(removed[0].span, is_old=True)
+        pair.add(_format_facts(kind, removed, is_added=False), location, kind.reason)
 
 
 def _report_renamed(
@@ -427,13 +441,24 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         if new_target is None:
             if new.unknown <= old.unknown:
                 removed.append(target)
-        elif installed_source == source and old.place(target) != new.place(new_target):
-            folders_of_file = _get_folder(target), _get_folder(new_target)
-            is_renamed = folders_of_file[0] == folders_of_file[1]
-            moved.setdefault(folders_of_file, []).append(
+        elif installed_source == source and old.strip_project(target) != new.strip_project(new_target):
+            folders = _get_folder(target), _get_folder(new_target)
+            is_renamed = folders[0] == folders[1]
+            moved.setdefault(folders, []).append(
                 f"{_get_file_name(target)} -> {_get_file_name(new_target)}" if is_renamed else _get_file_name(target)
             )
     added = [target for source, target in new_sources.items() if target not in old.files and source not in old_sources]
+    _report_moved_files(pair, moved)
+    if added and old.unknown <= new.unknown:
+        _report_newly_installed_files(pair, old, new, added)
+    if removed:
+        names = summarize_files(removed, new.files)
+        text = phrase("not installed any more: {names}", names=list_names(names))
+        pair.add(text, None, phrase("programs that look for the files do not find them"))
+
+
+def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence[str]]) -> None:
+    """Report installed files with a different destination, by their old and new folders."""
     for (old_folder, new_folder), names in moved.items():
         text = phrase(
             "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=list_names(names)
@@ -443,16 +468,15 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                 "installed under another name in {folder}: {names}", folder=old_folder, names=list_names(names)
             )
         pair.add(text, None, phrase("programs that look for the files do not find them"))
-    if added and old.unknown <= new.unknown:
-        known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
-        folders = [name for name in summarize_files(added, old.files) if name.endswith("/")]
-        names = list(dict.fromkeys([*folders, *summarize_files(known, old.files)]))
-        if names:
-            pair.add(phrase("installed now: {names}", names=list_names(names)), None)
-    if removed:
-        names = summarize_files(removed, new.files)
-        text = phrase("not installed any more: {names}", names=list_names(names))
-        pair.add(text, None, phrase("programs that look for the files do not find them"))
+
+
+def _report_newly_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts, added: Sequence[str]) -> None:
+    """Report newly installed folders, and newly installed files that the old version already had."""
+    known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
+    folders = [name for name in summarize_files(added, old.files) if name.endswith("/")]
+    names = list(dict.fromkeys([*folders, *summarize_files(known, old.files)]))
+    if names:
+        pair.add(phrase("installed now: {names}", names=list_names(names)), None)
 
 
 def _find_installed_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str | None:
@@ -497,7 +521,10 @@ def _get_file_name(path: str) -> str:
 
 def _compare_other_commands(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Report the other commands that differ: a few as text, more of them by name."""
-    removed, added = _find_unpaired_items(old.rest, new.rest), _find_unpaired_items(new.rest, old.rest)
+    removed, added = (
+        _find_unpaired_items(old.other_commands, new.other_commands),
+        _find_unpaired_items(new.other_commands, old.other_commands),
+    )
     names = list(dict.fromkeys(name for name, _ in (*added, *removed)))
     if len(names) > _MAX_OTHER_COMMANDS:
         pair.add(phrase("other build settings changed: {names}", names=list_names(names)), None)

@@ -107,7 +107,7 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     )
     cmake = read_cmake(source, file.parent)
     _read_files(facts, cmake, file.parent)
-    facts.rest = [
+    facts.other_commands = [
         (_get_compared_name(command), _normalize_arguments(command, facts.project))
         for command in commands
         if command.name not in _FACT_COMMANDS and not _is_test(command) and not _sets_local_variable(command)

@@ -31,7 +31,7 @@ class _PluginClass:
     location: Location | None
 
 
-def plugin_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
+def compare_plugin_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
     """Yield the changed plugin descriptions with added, removed and changed classes.
 
     Moving a class to another file is not a change.

@@ -22,7 +22,7 @@ _Items = dict[tuple[str, str], Element]
 """Elements by tag and name."""
 
 
-def rosbuild_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
+def compare_rosbuild_manifests(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
     """Yield the changed rosbuild manifests with their changes."""
     for file in changed_files:
         if PurePosixPath(file.path).name not in _FILES or file.is_submodule:

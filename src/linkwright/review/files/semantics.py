@@ -64,11 +64,13 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
         if key in renamed:
             text = phrase("{entry} renamed to '{name}'", entry=_format_title(entry), name=new[renamed[key]].name)
             location = pair.location(new[renamed[key]].element.span())
-            pair.add(text, location, removal_reason(entry.tag, entry.name))
+            pair.add(text, location, find_removal_reason(entry.tag, entry.name))
         elif key not in new:
             location = pair.location(entry.element.span(), is_old=True)
             pair.add(
-                phrase("{entry} removed", entry=_format_title(entry)), location, removal_reason(entry.tag, entry.name)
+                phrase("{entry} removed", entry=_format_title(entry)),
+                location,
+                find_removal_reason(entry.tag, entry.name),
             )
     for tag in _PAIR_TAGS:
         _compare_pairs(pair, tag, *(_group_by_pair(root, tag) for root in (old_root, new_root)))
@@ -96,7 +98,7 @@ def find_disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
     return frozenset(pairs)
 
 
-def removal_reason(tag: str, name: str) -> Phrase | None:
+def find_removal_reason(tag: str, name: str) -> Phrase | None:
     """Return the reason why removing an element is breaking; None if it is not."""
     if tag == "group":
         return phrase("programs that plan for the group '{name}' do not find it", name=name)

@@ -120,7 +120,7 @@ def _read_call(facts: BuildFacts, setup: SetupFile, python: PythonFile) -> None:
         if keyword.arg in _SHOWN_ARGUMENTS and text is not None:
             facts.facts.append(Fact(FactKind.SETTING, keyword.arg or "", text, python.span(keyword.value)))
         else:
-            facts.rest.append((keyword.arg or "**", " ".join(ast.unparse(keyword.value).split())))
+            facts.other_commands.append((keyword.arg or "**", " ".join(ast.unparse(keyword.value).split())))
 
 
 def _read_entry_points(python: PythonFile, node: ast.expr | None) -> Iterator[Fact]:

@@ -47,7 +47,7 @@ def compare_parts(
         subjects: the subjects compared so far.
         is_complete: a function that returns whether a path is a complete robot.
     """
-    expanded = {place for subject in subjects for place in subject.expanded}
+    expanded = {element for subject in subjects for element in subject.expanded}
     result = list(subjects)
     indexes = {subject.path: number for number, subject in enumerate(subjects)}
     comparer = _Comparer(versions, expanded, is_complete)
@@ -140,8 +140,8 @@ def _compute_similarity(pair: PartPair, old: MacroOutline, new: MacroOutline) ->
     """Return the share of equal elements of two macros, from 0 to 1; 0 if they are not similar."""
     comparison = make_comparison(pair, old, new)
     contents = [
-        Counter(wording.normalize_element(child) for child in macro.element.elements())
-        for wording, macro in ((comparison.old, old), (comparison.new, new))
+        Counter(substitution.normalize_element(child) for child in macro.element.elements())
+        for substitution, macro in ((comparison.old, old), (comparison.new, new))
     ]
     total = sum(content.total() for content in contents)
     share = 2 * (contents[0] & contents[1]).total() / total if total else 0.0

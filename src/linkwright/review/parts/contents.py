@@ -18,12 +18,12 @@ from linkwright.review.breaking import (
 )
 from linkwright.review.changes import Change, Effect
 from linkwright.review.element_values import values_text
-from linkwright.review.files.semantics import removal_reason
+from linkwright.review.files.semantics import find_removal_reason
 from linkwright.review.merging import common_reason, name_edit
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
+from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import PROPERTY, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
-from linkwright.review.parts.wording import NameSubstitution, iterate_properties, read_literals
 from linkwright.xmltree import Element
 
 _MAX_CHARACTERS = 80
@@ -280,7 +280,7 @@ class _ReportedDifference:
         if len(difference.path) == 1 and difference.value == "name" and old.tag == "world":
             return world_reason(old.attributes.get("name", ""))
         if len(difference.path) == 1 and is_removed and old.tag in ("group", "group_state", "end_effector"):
-            return removal_reason(old.tag, old.attributes.get("name", ""))
+            return find_removal_reason(old.tag, old.attributes.get("name", ""))
         kind, name = difference.value, " ".join(difference.path[1:])
         if kind not in ("", "text", "conditions"):
             name = f"{name} @{kind}".strip()

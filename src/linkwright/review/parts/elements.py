@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from linkwright.descriptions.comparison import GAZEBO
+from linkwright.review.parts.name_substitution import NameSubstitution
 from linkwright.review.parts.outline import Item, iterate_items, join_items
-from linkwright.review.parts.wording import NameSubstitution
 from linkwright.xmltree import Element
 
 CONDITION_SEPARATOR = " and "
@@ -186,8 +186,8 @@ class ItemComparison:
     def _compute_similarity(self, old: Item, new: Item) -> float:
         """Return the share of equal children of two elements, from 0 to 1."""
         contents = [
-            Counter(wording.normalize_element(child) for child in item.element.elements())
-            for wording, item in ((self.old, old), (self.new, new))
+            Counter(substitution.normalize_element(child) for child in item.element.elements())
+            for substitution, item in ((self.old, old), (self.new, new))
         ]
         total = sum(content.total() for content in contents)
         return 2 * (contents[0] & contents[1]).total() / total if total else 0.0

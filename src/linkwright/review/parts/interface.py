@@ -39,7 +39,7 @@ def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, 
     for name, macro in pair.new.macros.items():
         if name in pair.old.macros:
             _compare_parameters(pair, pair.old.macros[name], macro)
-        elif name not in renamed.values() and not _has_macro(graphs.old, pair.old_path, name):
+        elif name not in renamed.values() and not _declares_macro(graphs.old, pair.old_path, name):
             pair.add(phrase("macro '{name}' added", name=name), None, macro.element)
     for name, macro in pair.old.macros.items():
         if name in renamed:
@@ -47,7 +47,7 @@ def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, 
             text = phrase("macro '{old}' renamed to '{name}'", old=name, name=new.name)
             pair.add(text, macro.element, new.element, make_macro_removal_reason())
             _compare_parameters(pair, macro, new)
-        elif name not in pair.new.macros and not _has_macro(graphs.new, pair.new_path, name):
+        elif name not in pair.new.macros and not _declares_macro(graphs.new, pair.new_path, name):
             _report_lost_macro(pair, macro, graphs.new)
 
 
@@ -66,7 +66,7 @@ def make_macro_removal_reason() -> Phrase:
     return phrase("descriptions that call the macro cannot be expanded")
 
 
-def _has_macro(graph: IncludeGraph, path: str, name: str) -> bool:
+def _declares_macro(graph: IncludeGraph, path: str, name: str) -> bool:
     return graph.declares(path, lambda outline: name in outline.macros)
 
 
@@ -160,12 +160,12 @@ def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
     added = {
         name: element
         for name, element in pair.new.arguments.items()
-        if name not in pair.old.arguments and not _is_declared(graphs.old, pair.old_path, name)
+        if name not in pair.old.arguments and not _is_declared_by_robots(graphs.old, pair.old_path, name)
     }
     removed = {
         name: element
         for name, element in pair.old.arguments.items()
-        if name not in pair.new.arguments and not _is_declared(graphs.new, pair.new_path, name)
+        if name not in pair.new.arguments and not _is_declared_by_robots(graphs.new, pair.new_path, name)
     }
     renamed = find_renamed_names(_get_defaults(removed), _get_defaults(added), pair.old.root, pair.new.root)
     old_names = {name: old_name for old_name, name in renamed}
@@ -215,7 +215,7 @@ def _compare_argument(pair: PartPair, old: Element, new: Element) -> None:
     pair.add(text, old, new)
 
 
-def _is_declared(graph: IncludeGraph, path: str, name: str) -> bool:
+def _is_declared_by_robots(graph: IncludeGraph, path: str, name: str) -> bool:
     """Return whether all robots that include a file declare an argument."""
 
     def is_declared(outline: Outline) -> bool:
