@@ -103,7 +103,7 @@ class Fact:
     """A fact of a build file.
 
     Attributes:
-        kind: what the fact is about.
+        kind: the kind of thing that the fact describes, such as an installed library.
         name: the name of the target, package or other subject.
         value: a property that may change, such as the function of an executable; empty if there is none.
         span: the location in the file.
@@ -471,7 +471,7 @@ def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence
 
 
 def _report_newly_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts, added: Sequence[str]) -> None:
-    """Report newly installed folders, and newly installed files that the old version already had."""
+    """Report newly installed folders, and newly installed files of the old version."""
     known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
     folders = [name for name in summarize_files(added, old.files) if name.endswith("/")]
     names = list(dict.fromkeys([*folders, *summarize_files(known, old.files)]))

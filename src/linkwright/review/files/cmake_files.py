@@ -1,4 +1,4 @@
-"""Compare what ``CMakeLists.txt`` files install: targets, interfaces and files."""
+"""Compare the targets, interfaces and files that ``CMakeLists.txt`` files install."""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ def _report_moved_sources(pair: FilePair, test: str, moved: Mapping[str, str], s
 
 
 class _TargetChange(NamedTuple):
-    """A change of targets: the kind of the parts, and the names that only one version has."""
+    """A change to targets: the kind of parts, and the names that only one version has."""
 
     kind: str
     is_added: bool

@@ -26,7 +26,7 @@ class KeyReaders:
     """The programs of the new version that may read a YAML file.
 
     Attributes:
-        versions: both versions.
+        versions: the repository before and after the change.
         path: the path of the YAML file in the new version.
     """
 

@@ -26,7 +26,7 @@ _ACTION_NAMESPACE = re.compile(r"(?:.*[.\[])?(?P<controller>[^.\[\]]+)\]?\.actio
 
 
 class MoveItRules:
-    """Decides which changes of a MoveIt parameter file are breaking.
+    """Decide which changes in a MoveIt parameter file are breaking.
 
     Args:
         old: the old values by their original paths.
@@ -85,7 +85,7 @@ class MoveItRules:
     def _is_removed(self, pattern: re.Pattern[str], name: str) -> bool:
         """Return whether the new file has parts of a kind, but none that can have the name.
 
-        A list that was removed as a whole may be in another file or form.
+        A list that was removed as a whole may be in a different file or form.
         """
         names = self._names[pattern]
         return bool(names) and name not in names and not any(can_evaluate_to(new_name, name) for new_name in names)

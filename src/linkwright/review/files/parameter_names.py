@@ -46,7 +46,7 @@ _WILDCARDS = ("**", "*")
 
 
 class NameRules:
-    """Decides which changes of a parameter file are breaking.
+    """Decide which changes in a parameter file are breaking.
 
     Args:
         old: the old values by path.

@@ -34,7 +34,7 @@ class _PluginClass:
 def compare_plugin_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
     """Yield the changed plugin descriptions with added, removed and changed classes.
 
-    Moving a class to another file is not a change.
+    Moving a class to a different file is not a change.
     """
     old = _read_declared_classes(versions.old, [file.old_path for file in changed_files])
     new = _read_declared_classes(versions.new, [file.new_path for file in changed_files])

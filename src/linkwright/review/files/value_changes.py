@@ -55,7 +55,7 @@ class ValueChange:
 
     @property
     def key(self) -> Hashable:
-        """A key that is equal for equal changes of values with the same name in different parts.
+        """A key that is equal for equal changes to values with the same name in different parts.
 
         Names with the same edit, such as a new prefix of topics, are equal changes.
         """

@@ -155,7 +155,7 @@ class _WorldChange:
 
     @property
     def kind(self) -> Hashable:
-        """A key that is equal for equal changes of several elements."""
+        """A key that is equal for equal changes to several elements."""
         difference = self.difference
         content = "" if difference.element is None else own_content(difference.element)
         if difference.element is not None and (is_added(difference) or is_removed(difference)):

@@ -42,7 +42,7 @@ def compare_parts(
     Changes that a compared robot shows are left out.
 
     Args:
-        versions: both versions.
+        versions: the repository before and after the change.
         files: the changed files of the review.
         subjects: the subjects compared so far.
         is_complete: a function that returns whether a path is a complete robot.
@@ -73,7 +73,7 @@ def compare_parts(
 
 
 class _Comparer:
-    """Compares the changed files of a review, with the include graphs of both versions."""
+    """Compare the changed files of a review, with the include graphs of both versions."""
 
     def __init__(
         self, versions: Versions, expanded: Collection[ExpandedPlace], is_complete: Callable[[str], bool]
@@ -158,7 +158,7 @@ def _report_lost_macros(names: Sequence[str]) -> Iterator[Change]:
 def _compare_whole_file(
     file: ChangedFile, old: Outline | Phrase | None, new: Outline | Phrase | None
 ) -> Iterator[Change]:
-    """Yield the changes of a part as a whole: added, removed, renamed, or unreadable."""
+    """Yield the changes to a part as a whole: added, removed, renamed, or unreadable."""
     reason = phrase("launch files and descriptions that name the file do not find it")
     is_semantic = file.path.endswith(_SEMANTIC)
     if isinstance(old, Outline) and file.new_path is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, counted, phrase
@@ -88,6 +88,16 @@ def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) ->
         pair.add(text, old.element, new.element, phrase("calls that pass it cannot be expanded"))
     removed = [name for name in removed if name not in renamed]
     added = [parameter for parameter in added if parameter.name not in renamed.values()]
+    _report_unpaired_parameters(pair, old, new, removed, added)
+    for name, parameter in new.parameters.items():
+        if name in old.parameters:
+            _compare_defaults(pair, old, new, old.parameters[name], parameter)
+
+
+def _report_unpaired_parameters(
+    pair: PartPair, old: MacroOutline, new: MacroOutline, removed: Sequence[str], added: Sequence[Parameter]
+) -> None:
+    """Report removed parameters, and added parameters with and without a default."""
     required = [parameter.name for parameter in added if not _has_default(parameter)]
     optional = [_format_parameter(parameter) for parameter in added if _has_default(parameter)]
     for names, change, reason in (
@@ -115,9 +125,6 @@ def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) ->
         if names:
             text = phrase("macro '{name}': {change}", name=new.name, change=change)
             pair.add(text, old.element, new.element, reason)
-    for name, parameter in new.parameters.items():
-        if name in old.parameters:
-            _compare_defaults(pair, old, new, old.parameters[name], parameter)
 
 
 def _compare_defaults(

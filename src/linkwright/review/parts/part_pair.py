@@ -17,7 +17,7 @@ class PartPair:
     """A changed file with an unexpanded description. A comparison adds its changes.
 
     Attributes:
-        versions: both versions.
+        versions: the repository before and after the change.
         old_path: the path in the old version.
         new_path: the path in the new version.
         old: the old outline.
