@@ -47,7 +47,7 @@ def _installed_paths(version: Version, package: str, path: str) -> frozenset[str
     if facts is None or not facts.is_complete:
         return None
     source = PurePosixPath(path).relative_to(package).as_posix()
-    return frozenset(facts.place(target) for target, other in facts.files.items() if other == source)
+    return frozenset(facts.strip_project(target) for target, other in facts.files.items() if other == source)
 
 
 @lru_cache(maxsize=64)

@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect
-from linkwright.review.files.build_facts import BuildFacts, FactKind, files_and_folders, list_names
+from linkwright.review.files.build_facts import BuildFacts, FactKind, list_names, summarize_files
 from linkwright.review.installed_paths import build_file, package_facts, python_packages
 from linkwright.review.kinds import rule_of
 from linkwright.review.renamed_packages import find_renamed_packages
@@ -71,7 +71,7 @@ def _lost_targets(
         (others, phrase("programs that look for the files do not find them")),
     ):
         if targets:
-            names = list_names(files_and_folders(targets, new.files))
+            names = list_names(summarize_files(targets, new.files))
             yield Change(phrase("not installed any more: {names}", names=names), Effect.BREAKING, reason)
 
 

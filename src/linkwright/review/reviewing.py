@@ -29,10 +29,10 @@ from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
 from linkwright.review.files.cmake_files import CMAKE_FILE
-from linkwright.review.files.maps import is_map, map_of_image
+from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
-from linkwright.review.files.plugin_files import plugin_subjects
-from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, rosbuild_subjects
+from linkwright.review.files.plugin_files import compare_plugin_files
+from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, compare_rosbuild_manifests
 from linkwright.review.files.templates import is_template
 from linkwright.review.findings import Findings, compare_findings, find_findings, find_findings_singly
 from linkwright.review.folders import review_without_folder
@@ -231,9 +231,9 @@ class _Reviewer:
         result = _with_changes(result, self._run_step(find_lost_files))
         for path, changes in lost.items():
             result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
-        result += self._run_step(plugin_subjects)
+        result += self._run_step(compare_plugin_files)
         result += self._removed_submodules()
-        result += self._run_step(rosbuild_subjects)
+        result += self._run_step(compare_rosbuild_manifests)
         paths = {subject.path for subject in result}
         result += (found for found in self._run_step(source_subjects) if found.path not in paths)
         result = _with_changes(result, self._run_step(broken_callers))
@@ -443,7 +443,7 @@ def _find_maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> It
     """Yield the paths of the changed map images, each with the path of the YAML file that describes the map."""
     for file in files:
         for version, path in ((versions.new, file.new_path), (versions.old, file.old_path)):
-            map_path = None if path is None else map_of_image(version, path)
+            map_path = None if path is None else find_map_of_image(version, path)
             if map_path is not None:
                 yield file.path, map_path
                 break

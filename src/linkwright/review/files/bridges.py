@@ -26,13 +26,13 @@ class Bridge:
 
     Attributes:
         settings: the settings by name.
-        places: the line and the column of each setting, starting at 1.
+        positions: the line and the column of each setting, starting at 1.
         line: the line of the bridge.
         column: the column of the bridge.
     """
 
     settings: Mapping[str, str]
-    places: Mapping[str, tuple[int, int]]
+    positions: Mapping[str, tuple[int, int]]
     line: int
     column: int
 
@@ -49,7 +49,7 @@ class Bridge:
 
 
 def read_bridges(text: str) -> list[Bridge] | None:
-    """Return the bridges that a YAML document configures, or None if it does not configure bridges.
+    """Return the bridges that a YAML document configures; None for any other document.
 
     Raises:
         UnreadableFileError: the text is not YAML.
@@ -63,58 +63,60 @@ def read_bridges(text: str) -> list[Bridge] | None:
 
 def _read_bridge(node: yaml.Node) -> Bridge | None:
     settings: dict[str, str] = {}
-    places: dict[str, tuple[int, int]] = {}
+    positions: dict[str, tuple[int, int]] = {}
     for key, value in node.value if isinstance(node, yaml.MappingNode) else []:
         if isinstance(key, yaml.ScalarNode) and isinstance(value, yaml.ScalarNode):
             settings[key.value] = value.value
-            places[key.value] = value.start_mark.line + 1, value.start_mark.column + 1
+            positions[key.value] = value.start_mark.line + 1, value.start_mark.column + 1
     if not any(key in settings for key in _TOPIC_KEYS):
         return None
-    return Bridge(settings, places, node.start_mark.line + 1, node.start_mark.column + 1)
+    return Bridge(settings, positions, node.start_mark.line + 1, node.start_mark.column + 1)
 
 
 def compare_bridges(pair: FilePair, old: Sequence[Bridge], new: Sequence[Bridge]) -> None:
     """Compare two versions of a configuration of bridges, topic by topic."""
-    old_rest, new_rest = list(old), list(new)
-    for old_bridge, new_bridge in list(_take_matches(old_rest, new_rest)):
+    unmatched_old, unmatched_new = list(old), list(new)
+    for old_bridge, new_bridge in list(_take_matching_pairs(unmatched_old, unmatched_new)):
         _compare_settings(pair, old_bridge, new_bridge)
-    for bridge in new_rest:
-        text = _with_contents(phrase("bridge '{topic}' added", topic=bridge.topic), bridge)
+    for bridge in unmatched_new:
+        text = _append_contents(phrase("bridge '{topic}' added", topic=bridge.topic), bridge)
         pair.add(text, Location(pair.new_path, bridge.line, bridge.column))
-    for bridge in old_rest:
+    for bridge in unmatched_old:
         location = Location(pair.old_path, bridge.line, bridge.column, is_old=True)
-        text = _with_contents(phrase("bridge '{topic}' removed", topic=bridge.topic), bridge)
+        text = _append_contents(phrase("bridge '{topic}' removed", topic=bridge.topic), bridge)
         pair.add(text, location, name_reason(bridge.topic))
 
 
-def _with_contents(text: Phrase, bridge: Bridge) -> Phrase:
+def _append_contents(text: Phrase, bridge: Bridge) -> Phrase:
     return phrase("{change}: {contents}", change=text, contents=bridge.contents) if bridge.contents else text
 
 
-def _take_matches(old: list[Bridge], new: list[Bridge]) -> Iterator[tuple[Bridge, Bridge]]:
+def _take_matching_pairs(old: list[Bridge], new: list[Bridge]) -> Iterator[tuple[Bridge, Bridge]]:
     """Remove the matching bridges from both lists, and yield them as pairs.
 
     Bridges match if they have the same ROS topic, or else the same simulator topic and type.
     """
     for keys in (("topic",), ("gz_topic_name", _ROS_TYPE), ("ign_topic_name", _ROS_TYPE)):
         for new_bridge in list(new):
-            key = _match_key(new_bridge, keys)
-            old_bridge = next((bridge for bridge in old if key is not None and _match_key(bridge, keys) == key), None)
+            key = _make_match_key(new_bridge, keys)
+            old_bridge = next(
+                (bridge for bridge in old if key is not None and _make_match_key(bridge, keys) == key), None
+            )
             if old_bridge is not None:
                 old.remove(old_bridge)
                 new.remove(new_bridge)
                 yield old_bridge, new_bridge
 
 
-def _match_key(bridge: Bridge, names: Sequence[str]) -> tuple[str, ...] | None:
+def _make_match_key(bridge: Bridge, names: Sequence[str]) -> tuple[str, ...] | None:
     values = [bridge.topic if name == "topic" else bridge.settings.get(name) for name in names]
-    known = tuple(value for value in values if value)
-    return known if len(known) == len(names) else None
+    known_values = tuple(value for value in values if value)
+    return known_values if len(known_values) == len(names) else None
 
 
 def _compare_settings(pair: FilePair, old: Bridge, new: Bridge) -> None:
     if old.topic != new.topic:
-        line, column = new.places[next(key for key in _TOPIC_KEYS if key in new.settings)]
+        line, column = new.positions[next(key for key in _TOPIC_KEYS if key in new.settings)]
         text = phrase("bridge '{old}' renamed to '{topic}'", old=old.topic, topic=new.topic)
         pair.add(text, Location(pair.new_path, line, column), name_reason(old.topic))
     for name in dict.fromkeys([*new.settings, *old.settings]):
@@ -122,13 +124,13 @@ def _compare_settings(pair: FilePair, old: Bridge, new: Bridge) -> None:
         is_name = name == next((key for key in _TOPIC_KEYS if key in new.settings), None)
         if before == after or (is_name and old.topic != new.topic):
             continue
-        line, column = new.places.get(name, (new.line, new.column))
+        line, column = new.positions.get(name, (new.line, new.column))
         change = change_text(name, "-" if before is None else before, "-" if after is None else after)
         text = phrase("bridge '{topic}': {change}", topic=new.topic, change=change)
-        pair.add(text, Location(pair.new_path, line, column), _setting_reason(new.topic, name, before, after))
+        pair.add(text, Location(pair.new_path, line, column), _find_setting_reason(new.topic, name, before, after))
 
 
-def _setting_reason(topic: str, name: str, old: str | None, new: str | None) -> Phrase | None:
+def _find_setting_reason(topic: str, name: str, old: str | None, new: str | None) -> Phrase | None:
     """Return the reason why a changed setting of a bridge is breaking, or None if it is not."""
     if name == _ROS_TYPE and old is not None and new is not None and _normalize_type(old) != _normalize_type(new):
         return phrase("programs that use the topic '{topic}' with the old type do not receive it", topic=topic)
@@ -140,5 +142,5 @@ def _setting_reason(topic: str, name: str, old: str | None, new: str | None) -> 
 
 
 def _normalize_type(name: str) -> str:
-    """Return the name of a type in the long form: ``sensor_msgs/Imu`` becomes ``sensor_msgs/msg/Imu``."""
+    """Return a comparable type name: both forms become ``sensor_msgs/Imu``."""
     return name.replace("/msg/", "/")

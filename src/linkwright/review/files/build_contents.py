@@ -8,24 +8,24 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.review.files.build_facts import BUILT_KINDS, INSTALLED_KINDS, BuildFacts, FactKind, list_names
 
-_SHOWN = (
+_SHOWN_KINDS = (
     *(FactKind.EXECUTABLE, FactKind.LIBRARY, *BUILT_KINDS, FactKind.COMPONENT, FactKind.PLUGIN_DESCRIPTION),
     *(FactKind.INTERFACE, FactKind.MODULE, FactKind.ENTRY_POINT, FactKind.TEST),
 )
 
 
 def build_contents(facts: BuildFacts) -> Phrase | None:
-    """Return the installed targets and files and the tests of a build file, or None if there are none."""
-    parts = list(_content_parts(facts))
+    """Return the installed targets, files and tests of a build file; None if there are none."""
+    parts = list(_list_content_parts(facts))
     return joined(parts, "; ") if parts else None
 
 
-def _content_parts(facts: BuildFacts) -> Iterator[Phrase]:
+def _list_content_parts(facts: BuildFacts) -> Iterator[Phrase]:
     installed = {fact.name for fact in facts.facts if fact.kind in INSTALLED_KINDS}
-    for kind in _SHOWN:
-        left_out = installed if kind in BUILT_KINDS else ()
+    for kind in _SHOWN_KINDS:
+        hidden_names = installed if kind in BUILT_KINDS else ()
         names = list(dict.fromkeys(fact.name for fact in facts.facts if fact.kind is kind))
-        names = [name for name in names if name not in left_out]
+        names = [name for name in names if name not in hidden_names]
         if names:
             yield phrase("{kind} {names}", kind=kind.title, names=list_names(names))
     folders = list(dict.fromkeys(f"{PurePosixPath(target).parent}/" for target in facts.files))

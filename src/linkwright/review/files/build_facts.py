@@ -15,25 +15,25 @@ from linkwright.review.list_changes import EMPTY, change_text, shorten
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
-_MAX_RESTS = 6
+_MAX_OTHER_COMMANDS = 6
 """The maximum number of other commands whose text is shown."""
-_MAX_TEXT = 200
-_MIN_FOLDER = 3
+_MAX_TEXT_CHARACTERS = 200
+_MIN_FOLDER_PARTS = 3
 """The minimum number of path parts of a folder that replaces its files in a report."""
-_LONG_LIST = 5
+_MIN_LONG_LIST_WORDS = 5
 """The minimum number of words of a command of which only the differing words are shown."""
-_DOWNLOADS = ("externalproject_add", "fetchcontent_declare")
-"""The commands that download other projects, with an address and a version after keywords."""
+_DOWNLOAD_COMMANDS = ("externalproject_add", "fetchcontent_declare")
+"""The commands that download other projects, with a URL and a version after keywords."""
 _KEYWORD = re.compile(r"[A-Z][A-Z_]{2,}")
 
 _PATH_FOLDER = "bin"
-"""The folder below the prefix whose programs commands find by their names."""
-_LIBRARIES = "lib/"
-"""The beginning of the folders in which launch files find programs."""
+"""The folder below the prefix that is in ``PATH``."""
+_PROGRAM_FOLDER_PREFIX = "lib/"
+"""The start of the folders in which launch files find programs."""
 
 
 class FactKind(Enum):
-    """The kind of a fact: its title in a report, and the reason why removing such a fact is breaking."""
+    """The kind of a fact: its title, and the reason why removing such a fact is breaking."""
 
     EXECUTABLE = (
         phrase("installed executables"),
@@ -92,7 +92,7 @@ INSTALLED_KINDS = (FactKind.EXECUTABLE, FactKind.LIBRARY)
 """The kinds of targets that are installed."""
 BUILT_KINDS = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT_TARGET)
 """The kinds of built targets that are reported even if they are not installed."""
-_CONDITIONAL = (*INSTALLED_KINDS, *BUILT_KINDS, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
+_CONDITIONAL_KINDS = (*INSTALLED_KINDS, *BUILT_KINDS, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
 """The kinds whose conditions are shown when they are added or removed."""
 ANY_VERSION = "any version"
 """The value for a package without a required version."""
@@ -103,11 +103,11 @@ class Fact:
     """A fact of a build file.
 
     Attributes:
-        kind: the kind of the fact.
+        kind: the kind of thing that the fact describes, such as an installed library.
         name: the name of the target, package or other subject.
         value: a property that may change, such as the function of an executable; empty if there is none.
         span: the location in the file.
-        is_value_used: whether other packages use the value, so that another value is breaking.
+        is_value_used: whether other packages use the value, so that a different value is breaking.
         condition: the condition under which the fact holds, as written in the file; empty for always.
     """
 
@@ -119,7 +119,7 @@ class Fact:
     condition: str = ""
 
 
-_KNOWN_VARIABLES = frozenset(
+_STANDARD_VARIABLES = frozenset(
     {"HOME", "PATH", "PWD", "USER", "CC", "CXX", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH"}
 )
 
@@ -134,7 +134,7 @@ class EnvironmentVariables:
     def __init__(self, variables: Iterable[tuple[str, Span | None]]) -> None:
         self._spans: dict[str, Span | None] = {}
         for name, span in variables:
-            if not name.startswith("ROS_") and name not in _KNOWN_VARIABLES:
+            if not name.startswith("ROS_") and name not in _STANDARD_VARIABLES:
                 self._spans.setdefault(name, span)
 
     def compare(self, pair: FilePair, new: EnvironmentVariables) -> None:
@@ -170,10 +170,10 @@ class BuildFacts:
     """The facts of a build file.
 
     Attributes:
-        facts: the facts that are known.
+        facts: the known facts.
         files: the sources of the installed files relative to the package, by destination relative to the prefix.
         unknown: the reasons why more files may be installed than `files` contains.
-        rest: the other commands or settings, each with its name and its text.
+        other_commands: the other commands or settings, each with its name and its text.
         package: the path of the folder of the package relative to the root.
         project: the name of the package; empty if it is not known.
         environment: the environment variables that the file reads.
@@ -183,7 +183,7 @@ class BuildFacts:
     facts: list[Fact] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
     unknown: frozenset[str] = frozenset()
-    rest: list[tuple[str, str]] = field(default_factory=list)
+    other_commands: list[tuple[str, str]] = field(default_factory=list)
     package: str = ""
     project: str = ""
     environment: EnvironmentVariables = field(default_factory=lambda: EnvironmentVariables(()))
@@ -194,8 +194,11 @@ class BuildFacts:
         """Whether `files` contains all installed files."""
         return not self.unknown
 
-    def place(self, path: str) -> str:
-        """Return an installed path without the name of the package. The manifest reports a new name."""
+    def strip_project(self, path: str) -> str:
+        """Return an installed path without the name of the package.
+
+        The manifest reports a new package name.
+        """
         parts = PurePosixPath(path).parts
         is_own = len(parts) > 1 and parts[1] == self.project
         return PurePosixPath(parts[0], *parts[2:]).as_posix() if is_own else path
@@ -231,17 +234,8 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             for facts in (old, new)
         )
         for name, fact in new_facts.items():
-            before = old_facts.get(name)
-            if before is None or not before.value or not fact.value:
-                continue
-            if old.place(before.value) != new.place(fact.value):
-                text = phrase(
-                    "{kind}: '{name}': {old} -> {new}", kind=kind.title, name=name, old=before.value, new=fact.value
-                )
-                reason = kind.reason if fact.is_value_used else None
-                if kind is FactKind.EXECUTABLE and before.value == _PATH_FOLDER and fact.value.startswith(_LIBRARIES):
-                    reason = phrase("commands that find it through PATH fail; launch files find it only now")
-                pair.add(text, pair.location(fact.span), reason)
+            if name in old_facts:
+                _compare_values(pair, (old, old_facts[name]), (new, fact))
         for name, fact in new_facts.items():
             if name in old_facts and old_facts[name].condition != fact.condition:
                 conditions.setdefault((old_facts[name].condition, fact.condition), []).append(fact)
@@ -250,21 +244,48 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         if kind in BUILT_KINDS:
             installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
             added, removed = ([fact for fact in facts if fact.name not in installed] for facts in (added, removed))
-        _report_renamed(pair, kind, removed, added, _renamed_targets(pair, old, new))
+        _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new))
         if kind is FactKind.STOP:
-            _report_reworded(pair, removed, added)
-        if added:
-            reason = None
-            if kind is FactKind.STOP:
-                reason = phrase("the build fails under a condition under which it did not fail before")
-            pair.add(_facts_sentence(kind, added, is_added=True), pair.location(added[0].span), reason)
-        if removed:
-            location = pair.location(removed[0].span, is_old=True)
-            pair.add(_facts_sentence(kind, removed, is_added=False), location, kind.reason)
+            _report_reworded_errors(pair, removed, added)
+        _report_unpaired(pair, kind, removed, added)
     _report_conditions(pair, conditions)
     _compare_files(pair, old, new)
-    _compare_rest(pair, old, new)
+    _compare_other_commands(pair, old, new)
     old.environment.compare(pair, new.environment)
+
+
+def _compare_values(pair: FilePair, old: tuple[BuildFacts, Fact], new: tuple[BuildFacts, Fact]) -> None:
+    """Report a changed value of a fact, unless only the name of the package in a path changed."""
+    (old_facts, old_fact), (new_facts, new_fact) = old, new
+    if not old_fact.value or not new_fact.value:
+        return
+    if old_facts.strip_project(old_fact.value) == new_facts.strip_project(new_fact.value):
+        return
+    kind = new_fact.kind
+    text = phrase(
+        "{kind}: '{name}': {old} -> {new}",
+        kind=kind.title,
+        name=new_fact.name,
+        old=old_fact.value,
+        new=new_fact.value,
+    )
+    reason = kind.reason if new_fact.is_value_used else None
+    is_executable = kind is FactKind.EXECUTABLE
+    if is_executable and old_fact.value == _PATH_FOLDER and new_fact.value.startswith(_PROGRAM_FOLDER_PREFIX):
+        reason = phrase("commands that find it through PATH fail; launch files find it only now")
+    pair.add(text, pair.location(new_fact.span), reason)
+
+
+def _report_unpaired(pair: FilePair, kind: FactKind, removed: Sequence[Fact], added: Sequence[Fact]) -> None:
+    """Report the facts of a kind that only one version has."""
+    if added:
+        reason = None
+        if kind is FactKind.STOP:
+            reason = phrase("the build fails under a condition under which it did not fail before")
+        pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
+    if removed:
+        location = pair.location(removed[0].span, is_old=True)
+        pair.add(_format_facts(kind, removed, is_added=False), location, kind.reason)
 
 
 def _report_renamed(
@@ -274,7 +295,7 @@ def _report_renamed(
 
     Args:
         pair: both versions of the build file.
-        kind: the kind of the facts.
+        kind: the common kind of all facts.
         removed: the facts of the old version.
         added: the facts of the new version.
         targets: the new names of targets that have the same sources, by old name.
@@ -291,8 +312,11 @@ def _report_renamed(
             pair.add(text, pair.location(new.span), kind.reason)
 
 
-def _report_reworded(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:
-    """Report the errors that have another text under the same condition, and remove them from both lists."""
+def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:
+    """Report errors with a different text under the same condition.
+
+    They are removed from both lists.
+    """
     for old in list(removed):
         new = next((fact for fact in added if fact.condition == old.condition), None)
         if new is not None:
@@ -302,8 +326,11 @@ def _report_reworded(pair: FilePair, removed: list[Fact], added: list[Fact]) -> 
             pair.add(text, pair.location(new.span))
 
 
-def _renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
-    """Return the new names of renamed targets by old name. A renamed target keeps its first source."""
+def _find_renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
+    """Return the new names of renamed targets by old name.
+
+    A renamed target keeps its first source.
+    """
     sources = {
         next(iter(parts.sources)): name
         for name, parts in new.targets.items()
@@ -311,13 +338,13 @@ def _renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[s
     }
     renamed = {}
     for name, parts in old.targets.items():
-        source = next((new_source(pair, old, new, item) for item in parts.sources), None)
+        source = next((find_new_source(pair, old, new, item) for item in parts.sources), None)
         if source in sources and not new.targets.get(name, TargetParts()).sources:
             renamed[name] = sources[source]
     return renamed
 
 
-def new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str:
+def find_new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str:
     """Return the path of a source in the new version.
 
     Args:
@@ -335,21 +362,21 @@ def new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) ->
     return PurePosixPath(new_path).relative_to(new.package).as_posix() if new_path and is_inside else source
 
 
-def _facts_sentence(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
-    texts = [_fact_text(fact) for fact in facts]
-    return _list_sentence(kind.title, texts, is_added=is_added)
+def _format_facts(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
+    texts = [_format_fact(fact) for fact in facts]
+    return _format_list(kind.title, texts, is_added=is_added)
 
 
-def _fact_text(fact: Fact) -> str:
+def _format_fact(fact: Fact) -> str:
     """Return the name of a fact, with its value or condition if a reader needs it."""
     if fact.kind is FactKind.SETTING or (fact.kind is FactKind.PACKAGE and fact.value not in ("", ANY_VERSION)):
         return f"{fact.name} {fact.value}"
-    is_plain = not fact.condition or fact.kind not in _CONDITIONAL
-    return fact.name if is_plain else f"{fact.name} (if {fact.condition})"
+    is_unconditional = not fact.condition or fact.kind not in _CONDITIONAL_KINDS
+    return fact.name if is_unconditional else f"{fact.name} (if {fact.condition})"
 
 
 def _report_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequence[Fact]]) -> None:
-    """Report facts whose condition changed, with the same change of several facts in one line."""
+    """Report facts whose condition changed. Facts with the same change share a line."""
     for (old_condition, new_condition), facts in conditions.items():
         kinds = dict.fromkeys(fact.kind for fact in facts)
         groups = (
@@ -361,17 +388,17 @@ def _report_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequ
         text = phrase(
             "{subjects}: {old} -> {new}",
             subjects=joined(groups, "; "),
-            old=_condition_text(old_condition),
-            new=_condition_text(new_condition),
+            old=_format_condition(old_condition),
+            new=_format_condition(new_condition),
         )
         pair.add(text, pair.location(facts[0].span))
 
 
-def _condition_text(condition: str) -> Phrase:
+def _format_condition(condition: str) -> Phrase:
     return phrase("if {condition}", condition=condition) if condition else phrase("always")
 
 
-def _list_sentence(title: Phrase, names: Sequence[str], *, is_added: bool) -> Phrase:
+def _format_list(title: Phrase, names: Sequence[str], *, is_added: bool) -> Phrase:
     names_text = list_names(names)
     if is_added:
         return phrase("{kind} added: {names}", kind=title, names=names_text)
@@ -387,7 +414,10 @@ def list_names(names: Sequence[str]) -> Phrase:
 
 
 def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
-    """Return whether both or neither version has the interface file, so that the file itself is not reported."""
+    """Return whether a difference in a fact is reported here.
+
+    An interface file that only one version has is reported as a file instead.
+    """
     if fact.kind is not FactKind.INTERFACE:
         return True
     path = (PurePosixPath(facts.package) / fact.name).as_posix()
@@ -398,26 +428,37 @@ def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
 
 
 def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
-    """Report files that both versions have but only one installs, and files with another destination."""
+    """Report files of both versions that only one installs, or whose destination differs."""
     old_sources, new_sources = ({source: target for target, source in facts.files.items()} for facts in (old, new))
-    kept = {source: _new_source(pair, old, new, source) for source in old_sources}
+    new_sources_by_old = {source: _find_installed_source(pair, old, new, source) for source in old_sources}
     moved: dict[tuple[str, str], list[str]] = {}
     removed: list[str] = []
     for source, target in old_sources.items():
-        new_source = kept[source]
-        new_target = None if new_source is None else new_sources.get(new_source)
-        if new_source is None or target in new.files:
+        installed_source = new_sources_by_old[source]
+        new_target = None if installed_source is None else new_sources.get(installed_source)
+        if installed_source is None or target in new.files:
             continue
         if new_target is None:
             if new.unknown <= old.unknown:
                 removed.append(target)
-        elif new_source == source and old.place(target) != new.place(new_target):
-            places = _folder_name(target), _folder_name(new_target)
-            is_renamed = places[0] == places[1]
-            moved.setdefault(places, []).append(
-                f"{_file_name(target)} -> {_file_name(new_target)}" if is_renamed else _file_name(target)
+        elif installed_source == source and old.strip_project(target) != new.strip_project(new_target):
+            folders = _get_folder(target), _get_folder(new_target)
+            is_renamed = folders[0] == folders[1]
+            moved.setdefault(folders, []).append(
+                f"{_get_file_name(target)} -> {_get_file_name(new_target)}" if is_renamed else _get_file_name(target)
             )
     added = [target for source, target in new_sources.items() if target not in old.files and source not in old_sources]
+    _report_moved_files(pair, moved)
+    if added and old.unknown <= new.unknown:
+        _report_newly_installed_files(pair, old, new, added)
+    if removed:
+        names = summarize_files(removed, new.files)
+        text = phrase("not installed any more: {names}", names=list_names(names))
+        pair.add(text, None, phrase("programs that look for the files do not find them"))
+
+
+def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence[str]]) -> None:
+    """Report installed files with a different destination, by their old and new folders."""
     for (old_folder, new_folder), names in moved.items():
         text = phrase(
             "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=list_names(names)
@@ -427,20 +468,19 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                 "installed under another name in {folder}: {names}", folder=old_folder, names=list_names(names)
             )
         pair.add(text, None, phrase("programs that look for the files do not find them"))
-    if added and old.unknown <= new.unknown:
-        known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
-        folders = [name for name in files_and_folders(added, old.files) if name.endswith("/")]
-        names = list(dict.fromkeys([*folders, *files_and_folders(known, old.files)]))
-        if names:
-            pair.add(phrase("installed now: {names}", names=list_names(names)), None)
-    if removed:
-        names = files_and_folders(removed, new.files)
-        text = phrase("not installed any more: {names}", names=list_names(names))
-        pair.add(text, None, phrase("programs that look for the files do not find them"))
 
 
-def _new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str | None:
-    """Return the path of an installed file in the new version, or None if the new version lacks it."""
+def _report_newly_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts, added: Sequence[str]) -> None:
+    """Report newly installed folders, and newly installed files of the old version."""
+    known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
+    folders = [name for name in summarize_files(added, old.files) if name.endswith("/")]
+    names = list(dict.fromkeys([*folders, *summarize_files(known, old.files)]))
+    if names:
+        pair.add(phrase("installed now: {names}", names=list_names(names)), None)
+
+
+def _find_installed_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str | None:
+    """Return the path of an installed file in the new version; None if it is absent there."""
     path = (PurePosixPath(old.package) / source).as_posix()
     new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), path)
     if new_path is None or not pair.versions.new.file(new_path).is_file():
@@ -453,54 +493,60 @@ def _is_in_old_version(pair: FilePair, old: BuildFacts, source: str) -> bool:
     return pair.versions.old.file((PurePosixPath(old.package) / source).as_posix()).is_file()
 
 
-def files_and_folders(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
-    """Return installed files, or their folders where the other version installs nothing in the folder."""
+def summarize_files(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:
+    """Return installed files, or their folders.
+
+    A folder replaces its files if the other version installs nothing in it.
+    """
     other_folders = {parent.as_posix() for target in others for parent in PurePosixPath(target).parents}
     names: dict[str, None] = {}
     for target in targets:
-        parents = (parent for parent in PurePosixPath(target).parents if len(parent.parts) >= _MIN_FOLDER)
+        parents = (parent for parent in PurePosixPath(target).parents if len(parent.parts) >= _MIN_FOLDER_PARTS)
         folders = [parent.as_posix() for parent in parents]
         outermost = next((folder for folder in reversed(folders) if folder not in other_folders), None)
         names[target if outermost is None else f"{outermost}/"] = None
     return list(names)
 
 
-def _folder_name(path: str) -> str:
+def _get_folder(path: str) -> str:
     return PurePosixPath(path).parent.as_posix()
 
 
-def _file_name(path: str) -> str:
+def _get_file_name(path: str) -> str:
     return PurePosixPath(path).name
 
 
 # --- other commands ---------------------------------------------------------------------------------------------------
 
 
-def _compare_rest(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+def _compare_other_commands(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Report the other commands that differ: a few as text, more of them by name."""
-    removed, added = _lone_items(old.rest, new.rest), _lone_items(new.rest, old.rest)
+    removed, added = (
+        _find_unpaired_items(old.other_commands, new.other_commands),
+        _find_unpaired_items(new.other_commands, old.other_commands),
+    )
     names = list(dict.fromkeys(name for name, _ in (*added, *removed)))
-    if len(names) > _MAX_RESTS:
+    if len(names) > _MAX_OTHER_COMMANDS:
         pair.add(phrase("other build settings changed: {names}", names=list_names(names)), None)
         return
     for name in names:
         old_texts, new_texts = ([text for other, text in items if other == name] for items in (removed, added))
         old_text, new_text = ("; ".join(filter(None, texts)) for texts in (old_texts, new_texts))
-        if name in _DOWNLOADS and len(old_texts) == len(new_texts) == 1:
-            for text in _keyword_changes(name, old_text.split(), new_text.split()):
+        if name in _DOWNLOAD_COMMANDS and len(old_texts) == len(new_texts) == 1:
+            for text in _compare_keywords(name, old_text.split(), new_text.split()):
                 pair.add(text, None)
         elif old_texts and new_texts:
-            pair.add(_word_changes_text(name, old_text, new_text), None)
+            pair.add(_format_word_changes(name, old_text, new_text), None)
         elif new_texts:
-            text = phrase("{parameter} added: {items}", parameter=name, items=shorten(new_text, _MAX_TEXT))
+            text = phrase("{parameter} added: {items}", parameter=name, items=shorten(new_text, _MAX_TEXT_CHARACTERS))
             pair.add(text if new_text else phrase("{parameter} added", parameter=name), None)
         else:
-            text = phrase("{parameter} removed: {items}", parameter=name, items=shorten(old_text, _MAX_TEXT))
+            text = phrase("{parameter} removed: {items}", parameter=name, items=shorten(old_text, _MAX_TEXT_CHARACTERS))
             pair.add(text if old_text else phrase("{parameter} removed", parameter=name), None)
 
 
-def _keyword_changes(name: str, old_words: Sequence[str], new_words: Sequence[str]) -> Iterator[Phrase]:
-    """Yield the changes of the arguments of a command after each keyword, such as ``GIT_TAG``."""
+def _compare_keywords(name: str, old_words: Sequence[str], new_words: Sequence[str]) -> Iterator[Phrase]:
+    """Yield the changes to the arguments of a command after each keyword, such as ``GIT_TAG``."""
     old, new = _group_by_keyword(old_words), _group_by_keyword(new_words)
     for keyword in dict.fromkeys([*old, *new]):
         before, after = old.get(keyword), new.get(keyword)
@@ -509,7 +555,7 @@ def _keyword_changes(name: str, old_words: Sequence[str], new_words: Sequence[st
 
 
 def _group_by_keyword(words: Sequence[str]) -> dict[str, str]:
-    """Return the arguments by the keyword before them. The first arguments have an empty keyword."""
+    """Return the arguments by the keyword before them; an empty keyword for the first ones."""
     values: dict[str, list[str]] = {}
     keyword = ""
     for word in words:
@@ -521,22 +567,25 @@ def _group_by_keyword(words: Sequence[str]) -> dict[str, str]:
     return {key: " ".join(items) for key, items in values.items()}
 
 
-def _word_changes_text(name: str, old: str, new: str) -> Phrase:
-    """Return the change of the arguments of a command. For long lists, only added and removed words are shown."""
+def _format_word_changes(name: str, old: str, new: str) -> Phrase:
+    """Return the change to the arguments of a command.
+
+    For long lists, only added and removed words are shown.
+    """
     old_words, new_words = old.split(), new.split()
     added = [word for word in new_words if word not in old_words]
     removed = [word for word in old_words if word not in new_words]
-    if min(len(old_words), len(new_words)) < _LONG_LIST or not (added or removed):
+    if min(len(old_words), len(new_words)) < _MIN_LONG_LIST_WORDS or not (added or removed):
         return change_text(name, old, new)
     return change_text(name, f"[{', '.join(dict.fromkeys(old_words))}]", f"[{', '.join(dict.fromkeys(new_words))}]")
 
 
-def _lone_items(items: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    rest = list(others)
-    lone = []
+def _find_unpaired_items(items: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    unpaired_others = list(others)
+    unpaired = []
     for item in items:
-        if item in rest:
-            rest.remove(item)
+        if item in unpaired_others:
+            unpaired_others.remove(item)
         else:
-            lone.append(item)
-    return lone
+            unpaired.append(item)
+    return unpaired

@@ -15,48 +15,53 @@ from linkwright.packages.readers.cmake_syntax import (
 )
 
 
-def conditions_of(source: SourceText) -> dict[int, str]:
-    """Return the condition of each argument in a file, by offset. Unconditional arguments are absent."""
+def find_conditions(source: SourceText) -> dict[int, str]:
+    """Return the condition of each argument in a file, by offset.
+
+    Unconditional arguments are absent.
+    """
     conditions: dict[int, str] = {}
-    for statement, condition in conditional_statements(source):
+    for statement, condition in iterate_conditional_commands(source):
         if condition:
             conditions |= {token.start: condition for token in statement.tokens}
     return conditions
 
 
-def conditional_statements(source: SourceText) -> Iterator[tuple[Statement, str]]:
-    """Yield the commands of a file with the condition around each, which is empty if there is none."""
-    yield from _walk(list(parse_statements(source)), ())
+def iterate_conditional_commands(source: SourceText) -> Iterator[tuple[Statement, str]]:
+    """Yield the commands of a file with their conditions; empty for unconditional commands."""
+    yield from _walk_block(list(parse_statements(source)), ())
 
 
-def _walk(body: Sequence[Statement], around: tuple[str, ...], depth: int = 0) -> Iterator[tuple[Statement, str]]:
+def _walk_block(
+    commands: Sequence[Statement], enclosing_conditions: tuple[str, ...], depth: int = 0
+) -> Iterator[tuple[Statement, str]]:
     if depth > MAX_NESTED_BLOCKS:
         return
     index = 0
-    while index < len(body):
-        statement = body[index]
+    while index < len(commands):
+        statement = commands[index]
         index += 1
         if statement.name not in BLOCK_ENDS:
-            yield statement, " AND ".join(around)
+            yield statement, " AND ".join(enclosing_conditions)
             continue
-        end = find_end_of_block(body, index, statement.name)
-        block = body[index:end]
+        end = find_end_of_block(commands, index, statement.name)
+        block = commands[index:end]
         if statement.name != "if":
-            yield from _walk(block, around, depth + 1)
+            yield from _walk_block(block, enclosing_conditions, depth + 1)
         else:
-            yield from _walk_branches(statement, block, around, depth + 1)
+            yield from _walk_branches(statement, block, enclosing_conditions, depth + 1)
         index = end + 1
 
 
 def _walk_branches(
-    opening: Statement, body: Sequence[Statement], around: tuple[str, ...], depth: int
+    if_command: Statement, commands: Sequence[Statement], enclosing_conditions: tuple[str, ...], depth: int
 ) -> Iterator[tuple[Statement, str]]:
     earlier: list[str] = []
-    for condition, branch in split_branches(opening, body):
+    for condition, branch in split_branches(if_command, commands):
         if condition is None:
             texts = [f"NOT ({text})" if " " in text else f"NOT {text}" for text in earlier[:1]]
         else:
             text = " ".join(f'"{token.text}"' if token.is_quoted else token.text for token in condition.tokens)
             earlier.append(text)
             texts = [text]
-        yield from _walk(branch, (*around, *texts), depth)
+        yield from _walk_block(branch, (*enclosing_conditions, *texts), depth)

@@ -1,4 +1,4 @@
-"""Compare ``CMakeLists.txt`` files: the executables, libraries, interfaces and files that a package installs."""
+"""Compare the targets, interfaces and files that ``CMakeLists.txt`` files install."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from linkwright.review.files.build_facts import (
     FactKind,
     compare_build_files,
 )
-from linkwright.review.files.cmake_branches import conditional_statements, conditions_of
+from linkwright.review.files.cmake_branches import find_conditions, iterate_conditional_commands
 from linkwright.review.files.cmake_targets import compare_targets, read_targets
 from linkwright.review.versions import Version
 
@@ -32,10 +32,10 @@ _COMMANDS_AFTER_TARGETS = (
     *("ament_export_", "catkin_package", "project"),
 )
 """The prefixes of commands that refer to targets without creating them."""
-_EXECUTABLES = ("add_executable", "ament_auto_add_executable", "rosbuild_add_executable", "cuda_add_executable")
-_LIBRARIES = ("add_library", "ament_auto_add_library", "rosbuild_add_library", "cuda_add_library")
+_EXECUTABLE_COMMANDS = ("add_executable", "ament_auto_add_executable", "rosbuild_add_executable", "cuda_add_executable")
+_LIBRARY_COMMANDS = ("add_library", "ament_auto_add_library", "rosbuild_add_library", "cuda_add_library")
 _LIBRARY_TYPES = ("SHARED", "STATIC", "MODULE", "INTERFACE", "OBJECT")
-_INTERFACE_COMMANDS = {
+_ROS1_INTERFACE_COMMANDS = {
     "add_message_files": ("msg", ".msg"),
     "add_service_files": ("srv", ".srv"),
     "add_action_files": ("action", ".action"),
@@ -49,7 +49,7 @@ _INSTALL_KEYWORDS = frozenset(
     {"EXPORT", "ARCHIVE", "LIBRARY", "RUNTIME", "OBJECTS", "INCLUDES", "DESTINATION", "COMPONENT", "OPTIONAL"}
 )
 _TEST_COMMAND = re.compile(r"(\w+_)?add_(\w*_)?(\w*tests?|gmock|gbenchmark|catch2|file_check)")
-_KEYWORDS = frozenset(
+_PACKAGE_KEYWORDS = frozenset(
     {
         *("INCLUDE_DIRS", "LIBRARIES", "CATKIN_DEPENDS", "DEPENDS", "CFG_EXTRAS", "EXPORTED_TARGETS", "DEPENDENCIES"),
         *("LIBRARY_NAME", "ADD_LINTER_TESTS", "SKIP_INSTALL"),
@@ -57,7 +57,7 @@ _KEYWORDS = frozenset(
     }
 )
 """The keywords of ``catkin_package`` and of the commands that build interfaces."""
-_IRRELEVANT = re.compile(
+_IRRELEVANT_VARIABLE = re.compile(
     r"CMAKE_(EXPORT_COMPILE_COMMANDS|VERBOSE_MAKEFILE|COLOR_\w+|RULE_MESSAGES|INSTALL_MESSAGE|MESSAGE_\w+|"
     r"\w+_COMPILER_LAUNCHER|TLS_VERIFY|SUPPRESS_\w+|WARN_\w+|ERROR_\w+)"
 )
@@ -65,12 +65,15 @@ _IRRELEVANT = re.compile(
 _COMMENT = re.compile(r"#[^\n]*")
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _ENVIRONMENT = re.compile(r"\bENV\{(\w+)\}")
-_STANDARDS = ("CMAKE_CXX_STANDARD", "CMAKE_C_STANDARD", "CMAKE_BUILD_TYPE")
+_BUILD_VARIABLES = ("CMAKE_CXX_STANDARD", "CMAKE_C_STANDARD", "CMAKE_BUILD_TYPE")
 _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
 
 
 def compare_cmake_files(pair: FilePair) -> None:
-    """Compare two versions of a ``CMakeLists.txt``, with its subdirectories, without running CMake."""
+    """Compare two versions of a ``CMakeLists.txt`` without running CMake.
+
+    Its subdirectories are included.
+    """
     compare_build_files(pair, read_cmake_facts, compare_targets)
 
 
@@ -78,18 +81,25 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     """Return the facts of a ``CMakeLists.txt`` with its subdirectories."""
     file = version.file(path)
     source = SourceText(str(file), file.read_text(encoding="utf-8", errors="replace"))
-    facts = BuildFacts(package=_parent_folder(path))
+    facts = BuildFacts(package=_get_parent_folder(path))
     program = CMakeProgram(file.parent)
     commands = list(program.run(source))
-    for reader in (_installed_targets, _read_interfaces, _read_exports, _read_packages, _read_tests, _read_settings):
+    for reader in (
+        _read_installed_targets,
+        _read_interfaces,
+        _read_exports,
+        _read_packages,
+        _read_tests,
+        _read_settings,
+    ):
         facts.facts += reader(commands)
-    facts.facts += _own_interfaces(commands, file.parent)
-    facts.facts += _built_targets(commands)
+    facts.facts += _read_ros1_interfaces(commands, file.parent)
+    facts.facts += _read_built_targets(commands)
     folder_name = PurePosixPath(facts.package).name
     if folder_name and any(command.name == "rosbuild_init" for command in commands):
         program.variables.setdefault("PROJECT_NAME", folder_name)
-    facts.facts += _skipped_targets(source, commands, program.variables)
-    facts.facts += _build_failures(source, commands)
+    facts.facts += _read_skipped_targets(source, commands, program.variables)
+    facts.facts += _read_build_failures(source, commands)
     facts.targets = read_targets(commands)
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     facts.environment = EnvironmentVariables(
@@ -97,34 +107,37 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     )
     cmake = read_cmake(source, file.parent)
     _read_files(facts, cmake, file.parent)
-    facts.rest = [
-        (_name_of(command), _normalized_arguments(command, facts.project))
+    facts.other_commands = [
+        (_get_compared_name(command), _normalize_arguments(command, facts.project))
         for command in commands
-        if command.name not in _FACT_COMMANDS and not _is_test(command) and not _is_variable(command)
+        if command.name not in _FACT_COMMANDS and not _is_test(command) and not _sets_local_variable(command)
     ]
     return facts
 
 
-def _name_of(command: Command) -> str:
+def _get_compared_name(command: Command) -> str:
     """Return the name of a command, or of the variable that it sets."""
     return command.words[0] if command.name == "set" else command.name
 
 
-def _normalized_arguments(command: Command, project: str) -> str:
+def _normalize_arguments(command: Command, project: str) -> str:
     """Return the arguments of a command without interfaces and the name of the project."""
     words = [word for word in command.words if not word.endswith(_INTERFACE_SUFFIXES)]
     return " ".join("${PROJECT_NAME}" if word == project else word for word in words)
 
 
-def _is_variable(command: Command) -> bool:
-    """Return whether a command sets a variable of the file. The uses of the variable are compared instead."""
+def _sets_local_variable(command: Command) -> bool:
+    """Return whether a command sets a variable of the file.
+
+    The uses of the variable are compared instead.
+    """
     if command.name != "set":
         return False
     name = "".join(command.words[:1])
-    return not name.startswith("CMAKE_") or name in _STANDARDS or _IRRELEVANT.fullmatch(name) is not None
+    return not name.startswith("CMAKE_") or name in _BUILD_VARIABLES or _IRRELEVANT_VARIABLE.fullmatch(name) is not None
 
 
-def _parent_folder(path: str) -> str:
+def _get_parent_folder(path: str) -> str:
     parent = PurePosixPath(path).parent.as_posix()
     return "" if parent == "." else parent
 
@@ -148,7 +161,10 @@ def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
 
 
 def _drop_missing_sources(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
-    """Remove sources that the repository lacks from the copy rules, and add missing folders as facts."""
+    """Remove sources that the repository lacks from the copy rules.
+
+    Missing folders are added as facts.
+    """
     for index, rule in enumerate(cmake.copies):
         missing = [item for item in rule.items if not _exists(package, item.text)]
         if rule.kind == "DIRECTORY":
@@ -163,23 +179,23 @@ def _exists(package: Path, item: str) -> bool:
 def _make_fact(kind: FactKind, argument: Argument, value: str = "", name: str | None = None) -> Fact:
     span = argument.source.span(argument.start, argument.end)
     is_value_used = kind in (FactKind.EXECUTABLE, FactKind.PLUGIN_DESCRIPTION)
-    condition = _read_conditions(argument.source).get(argument.start, "")
+    condition = _get_conditions(argument.source).get(argument.start, "")
     return Fact(kind, argument.text if name is None else name, value, span, is_value_used, condition)
 
 
 @lru_cache(maxsize=16)
-def _read_conditions(source: SourceText) -> dict[int, str]:
-    return conditions_of(source)
+def _get_conditions(source: SourceText) -> dict[int, str]:
+    return find_conditions(source)
 
 
-def _installed_targets(commands: Sequence[Command]) -> Iterator[Fact]:
+def _read_installed_targets(commands: Sequence[Command]) -> Iterator[Fact]:
     """Yield the installed and exported targets, and the executables of components."""
-    libraries = {command.words[0] for command in commands if command.name in _LIBRARIES and command.words}
-    built = _BuiltNames(commands)
+    libraries = {command.words[0] for command in commands if command.name in _LIBRARY_COMMANDS and command.words}
+    built = _BuiltTargetNames(commands)
     for command in commands:
         arguments = command.arguments
         if command.name.startswith("ament_auto_add_") and arguments:
-            kind = FactKind.EXECUTABLE if command.name in _EXECUTABLES else FactKind.LIBRARY
+            kind = FactKind.EXECUTABLE if command.name in _EXECUTABLE_COMMANDS else FactKind.LIBRARY
             yield _make_fact(kind, arguments[0])
         if command.name == "install" and command.words[:1] == ["TARGETS"]:
             targets = takewhile(lambda argument: argument.text not in _INSTALL_KEYWORDS, arguments[1:])
@@ -189,88 +205,104 @@ def _installed_targets(commands: Sequence[Command]) -> Iterator[Fact]:
                 if target.text in libraries:
                     yield _make_fact(FactKind.LIBRARY, target)
                 else:
-                    yield _make_fact(FactKind.EXECUTABLE, target, _installation_folder(command.words))
+                    yield _make_fact(FactKind.EXECUTABLE, target, _find_installation_folder(command.words))
                 if "EXPORT" in command.words:
                     yield _make_fact(FactKind.EXPORTED_TARGET, target)
         if command.name == "rclcpp_components_register_node":
-            yield from _arguments_after(command, "EXECUTABLE", FactKind.EXECUTABLE)
-            yield from _arguments_after(command, "PLUGIN", FactKind.COMPONENT)
+            yield from _read_argument_after(command, "EXECUTABLE", FactKind.EXECUTABLE)
+            yield from _read_argument_after(command, "PLUGIN", FactKind.COMPONENT)
         if command.name == "rclcpp_components_register_nodes":
             yield from (_make_fact(FactKind.COMPONENT, argument) for argument in arguments[1:])
 
 
-class _BuiltNames:
-    """The possible names of built targets. CMake fails at an installed target that nothing builds."""
+class _BuiltTargetNames:
+    """The possible names of built targets.
+
+    CMake fails if a target is installed that nothing builds.
+    """
 
     def __init__(self, commands: Sequence[Command]) -> None:
-        makers = [
+        target_commands = [
             command for command in commands if not command.name.startswith(_COMMANDS_AFTER_TARGETS) and command.words
         ]
-        self._names = {word for command in makers for word in command.words}
-        self._may_be_any = any(
-            is_open(command.words[0]) for command in makers if command.name in _EXECUTABLES + _LIBRARIES
+        self._names = {word for command in target_commands for word in command.words}
+        self._has_unknown_name = any(
+            is_open(command.words[0])
+            for command in target_commands
+            if command.name in _EXECUTABLE_COMMANDS + _LIBRARY_COMMANDS
         )
 
     def __contains__(self, name: str) -> bool:
-        return self._may_be_any or name in self._names
+        return self._has_unknown_name or name in self._names
 
 
-def _built_targets(commands: Sequence[Command]) -> Iterator[Fact]:
+def _read_built_targets(commands: Sequence[Command]) -> Iterator[Fact]:
     """Yield the targets that are built."""
     for command in commands:
-        if command.name not in _EXECUTABLES + _LIBRARIES or not command.arguments or is_open(command.words[0]):
+        if (
+            command.name not in _EXECUTABLE_COMMANDS + _LIBRARY_COMMANDS
+            or not command.arguments
+            or is_open(command.words[0])
+        ):
             continue
         library_type = next((word for word in command.words[1:2] if word in _LIBRARY_TYPES), "")
-        yield _make_fact(_built_kind(command.name, commands), command.arguments[0], library_type)
+        yield _make_fact(_find_built_kind(command.name, commands), command.arguments[0], library_type)
 
 
-def _skipped_targets(source: SourceText, commands: Sequence[Command], variables: Mapping[str, str]) -> Iterator[Fact]:
-    """Yield the targets of unfulfilled conditions, such as a condition for another version of ROS."""
+def _read_skipped_targets(
+    source: SourceText, commands: Sequence[Command], variables: Mapping[str, str]
+) -> Iterator[Fact]:
+    """Yield the targets of unfulfilled conditions, such as a different version of ROS."""
 
-    def with_values(text: str) -> str:
+    def substitute_variables(text: str) -> str:
         return _VARIABLE.sub(lambda match: variables.get(match[1], match[0]), text)
 
-    makers = [command for command in commands if command.name in _EXECUTABLES + _LIBRARIES and command.words]
-    built = {with_values(command.words[0]) for command in makers}
-    for statement, condition in conditional_statements(source):
-        if not condition or statement.name not in _EXECUTABLES + _LIBRARIES or not statement.tokens:
+    target_commands = [
+        command for command in commands if command.name in _EXECUTABLE_COMMANDS + _LIBRARY_COMMANDS and command.words
+    ]
+    built = {substitute_variables(command.words[0]) for command in target_commands}
+    for statement, condition in iterate_conditional_commands(source):
+        if not condition or statement.name not in _EXECUTABLE_COMMANDS + _LIBRARY_COMMANDS or not statement.tokens:
             continue
         token = statement.tokens[0]
-        name = with_values(token.text)
+        name = substitute_variables(token.text)
         if name not in built and not is_open(name):
-            kind = _built_kind(statement.name, commands)
+            kind = _find_built_kind(statement.name, commands)
             yield Fact(kind, name, span=source.span(token.start, token.end), condition=condition)
 
 
-def _built_kind(command: str, commands: Sequence[Command]) -> FactKind:
-    """Return the kind of the targets of a command. In ROS 1, targets can be used without being installed."""
+def _find_built_kind(command: str, commands: Sequence[Command]) -> FactKind:
+    """Return the kind of the targets of a command.
+
+    In ROS 1, targets can be used without being installed.
+    """
     if not any(command.name in ("catkin_package", "rosbuild_init") for command in commands):
         return FactKind.BUILT_TARGET
-    return FactKind.BUILT_EXECUTABLE if command in _EXECUTABLES else FactKind.BUILT_LIBRARY
+    return FactKind.BUILT_EXECUTABLE if command in _EXECUTABLE_COMMANDS else FactKind.BUILT_LIBRARY
 
 
-def _build_failures(source: SourceText, commands: Sequence[Command]) -> Iterator[Fact]:
+def _read_build_failures(source: SourceText, commands: Sequence[Command]) -> Iterator[Fact]:
     """Yield the messages of possible build failures, including unfulfilled conditions."""
     sources = {source.name: source}
     for command in commands:
         sources |= {argument.source.name: argument.source for argument in command.arguments[:1]}
     for source in sources.values():
-        for statement, condition in conditional_statements(source):
+        for statement, condition in iterate_conditional_commands(source):
             tokens = statement.tokens
             if statement.name == "message" and len(tokens) > 1 and tokens[0].text in ("FATAL_ERROR", "SEND_ERROR"):
                 text = " ".join(" ".join(token.text for token in tokens[1:]).split())
                 yield Fact(FactKind.STOP, text, span=source.span(tokens[1].start, tokens[1].end), condition=condition)
 
 
-def _installation_folder(words: Sequence[str]) -> str:
+def _find_installation_folder(words: Sequence[str]) -> str:
     """Return the installation folder of executables; empty if it is unknown."""
     start = words.index("RUNTIME") if "RUNTIME" in words else 0
-    rest = words[start:]
-    target = rest[rest.index("DESTINATION") + 1] if "DESTINATION" in rest[:-1] else ""
+    arguments = words[start:]
+    target = arguments[arguments.index("DESTINATION") + 1] if "DESTINATION" in arguments[:-1] else ""
     return "" if is_open(target) else target.rstrip("/")
 
 
-def _arguments_after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fact]:
+def _read_argument_after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fact]:
     words = command.words
     if keyword in words[:-1]:
         yield _make_fact(kind, command.arguments[words.index(keyword) + 1])
@@ -285,17 +317,20 @@ def _read_interfaces(commands: Sequence[Command]) -> Iterator[Fact]:
                 elif argument.text == "DEPENDENCIES":
                     break
         if command.name in ("rosidl_generate_interfaces", "generate_messages"):
-            yield from _listed_after(command, "DEPENDENCIES", FactKind.INTERFACE_DEPENDENCY)
+            yield from _read_arguments_after(command, "DEPENDENCIES", FactKind.INTERFACE_DEPENDENCY)
         if command.name in ("generate_dynamic_reconfigure_options", "gencfg"):
             yield from (_make_fact(FactKind.DYNAMIC, argument) for argument in command.arguments)
 
 
-def _own_interfaces(commands: Sequence[Command], package: Path) -> Iterator[Fact]:
-    """Yield the interfaces that ROS 1 commands build. A command without a list builds all interfaces of a folder."""
+def _read_ros1_interfaces(commands: Sequence[Command], package: Path) -> Iterator[Fact]:
+    """Yield the interfaces that ROS 1 commands build.
+
+    A command without a list builds all interfaces of a folder.
+    """
     for command in commands:
-        if command.name not in _INTERFACE_COMMANDS:
+        if command.name not in _ROS1_INTERFACE_COMMANDS:
             continue
-        folder, suffix = _INTERFACE_COMMANDS[command.name]
+        folder, suffix = _ROS1_INTERFACE_COMMANDS[command.name]
         words = command.words
         folder = words[words.index("DIRECTORY") + 1] if "DIRECTORY" in words[:-1] else folder
         named = [argument for argument in command.arguments if argument.text.endswith(suffix)]
@@ -317,26 +352,26 @@ def _read_exports(commands: Sequence[Command]) -> Iterator[Fact]:
         elif command.name == "ament_export_libraries":
             yield from (_make_fact(FactKind.EXPORTED_TARGET, item) for item in command.arguments)
         elif command.name == "ament_export_include_directories":
-            yield from (_exported_folder(item, project) for item in command.arguments)
+            yield from (_make_exported_folder_fact(item, project) for item in command.arguments)
         elif command.name == "catkin_package":
-            yield from _listed_after(command, "INCLUDE_DIRS", FactKind.EXPORTED_FOLDER)
-            yield from _listed_after(command, "LIBRARIES", FactKind.EXPORTED_TARGET)
-            yield from _listed_after(command, "CATKIN_DEPENDS", FactKind.EXPORTED_DEPENDENCY)
-            yield from _listed_after(command, "DEPENDS", FactKind.EXPORTED_DEPENDENCY)
+            yield from _read_arguments_after(command, "INCLUDE_DIRS", FactKind.EXPORTED_FOLDER)
+            yield from _read_arguments_after(command, "LIBRARIES", FactKind.EXPORTED_TARGET)
+            yield from _read_arguments_after(command, "CATKIN_DEPENDS", FactKind.EXPORTED_DEPENDENCY)
+            yield from _read_arguments_after(command, "DEPENDS", FactKind.EXPORTED_DEPENDENCY)
 
 
-def _exported_folder(argument: Argument, project: str) -> Fact:
+def _make_exported_folder_fact(argument: Argument, project: str) -> Fact:
     """Return the fact about an exported folder. The name of the project in it is ignored."""
     return _make_fact(FactKind.EXPORTED_FOLDER, argument, name=argument.text.removesuffix(f"/{project}"))
 
 
-def _listed_after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fact]:
+def _read_arguments_after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fact]:
     """Yield the arguments between a keyword and the next one."""
     if keyword in command.words:
-        rest = command.arguments[command.words.index(keyword) + 1 :]
+        arguments = command.arguments[command.words.index(keyword) + 1 :]
         yield from (
             _make_fact(kind, item)
-            for item in takewhile(lambda argument: argument.text not in _KEYWORDS, rest)
+            for item in takewhile(lambda argument: argument.text not in _PACKAGE_KEYWORDS, arguments)
             if not item.text.startswith("$")
         )
 
@@ -344,14 +379,14 @@ def _listed_after(command: Command, keyword: str, kind: FactKind) -> Iterator[Fa
 def _read_packages(commands: Sequence[Command]) -> Iterator[Fact]:
     for command in commands:
         if command.name == "find_package" and command.arguments:
-            package, *others = command.arguments
-            version = next((other.text for other in others[:1] if _VERSION.fullmatch(other.text)), ANY_VERSION)
+            package, *options = command.arguments
+            version = next((other.text for other in options[:1] if _VERSION.fullmatch(other.text)), ANY_VERSION)
             value = version if "REQUIRED" in command.words or package.text == "catkin" else f"{version}, optional"
             yield _make_fact(FactKind.PACKAGE, package, value)
-            start = command.words.index("COMPONENTS") if "COMPONENTS" in command.words else len(others)
+            start = command.words.index("COMPONENTS") if "COMPONENTS" in command.words else len(options)
             if package.text == "catkin":
-                start = 0  # the keyword can be left out
-            for component in others[start:]:
+                start = 0  # the keyword is optional
+            for component in options[start:]:
                 if not component.text.isupper():  # a keyword, such as REQUIRED
                     name = component.text if package.text == "catkin" else f"{package.text} {component.text}"
                     yield _make_fact(FactKind.PACKAGE, component, name=name)
@@ -375,7 +410,7 @@ def _read_settings(commands: Sequence[Command]) -> Iterator[Fact]:
         words, arguments = command.words, command.arguments
         if command.name == "cmake_minimum_required" and len(words) > 1:
             yield _make_fact(FactKind.SETTING, arguments[1], words[1], command.name)
-        elif command.name == "set" and len(words) > 1 and words[0] in _STANDARDS:
+        elif command.name == "set" and len(words) > 1 and words[0] in _BUILD_VARIABLES:
             yield _make_fact(FactKind.SETTING, arguments[0], words[1])
         elif command.name == "option" and words:
             yield _make_fact(FactKind.SETTING, arguments[0], words[2] if len(words) > 2 else "OFF")
@@ -392,7 +427,7 @@ _FACT_COMMANDS = frozenset(
         *("ament_export_libraries", "ament_export_include_directories", "rosidl_generate_interfaces", "gencfg"),
         *("generate_dynamic_reconfigure_options", "rosbuild_add_executable", "rosbuild_add_library", "rosbuild_init"),
         *("rosbuild_link_boost", "rosbuild_find_ros_package", "cuda_add_executable", "cuda_add_library"),
-        *_INTERFACE_COMMANDS,
+        *_ROS1_INTERFACE_COMMANDS,
         *("message", "project", "list", "unset", "install", "ament_package", "file", "string"),
     }
 )

@@ -10,7 +10,7 @@ from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.cmake_language import Argument, Command, to_package_path
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.build_facts import BuildFacts, TargetParts, list_names, new_source
+from linkwright.review.files.build_facts import BuildFacts, TargetParts, find_new_source, list_names
 
 _SOURCE_COMMANDS = frozenset(
     {
@@ -31,7 +31,10 @@ _VARIABLE = re.compile(r"\$\{(\w+?)_(LIBRARIES|LIBRARY|TARGETS|LIBS)\}", re.IGNO
 
 
 def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
-    """Return the parts of targets, by target. Packages and their targets count as the same library."""
+    """Return the parts of targets, by target.
+
+    Packages and their targets count as the same library.
+    """
     targets: dict[str, TargetParts] = {}
     for command in commands:
         if command.name not in _SOURCE_COMMANDS | _TEST_COMMANDS | _LINK_COMMANDS or not command.arguments:
@@ -43,15 +46,15 @@ def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
             if argument.text.isupper():
                 continue  # a keyword, such as PUBLIC
             if command.name in _LINK_COMMANDS:
-                parts.libraries.setdefault(_library_name(argument.text, command.name), _argument_span(argument))
+                parts.libraries.setdefault(_get_library_name(argument.text, command.name), _get_span(argument))
             elif not is_open(argument.text) and (
                 command.name not in _TEST_COMMANDS or _TEST_SOURCE.fullmatch(argument.text)
             ):
-                parts.sources.setdefault(to_package_path(argument.text, command.folder), _argument_span(argument))
+                parts.sources.setdefault(to_package_path(argument.text, command.folder), _get_span(argument))
     return targets
 
 
-def _library_name(text: str, command: str) -> str:
+def _get_library_name(text: str, command: str) -> str:
     """Return the name of a library, or of its package if it is a target of a package."""
     variable = _VARIABLE.fullmatch(text)
     if variable is not None:
@@ -61,20 +64,23 @@ def _library_name(text: str, command: str) -> str:
     return text if text.startswith("$<") else text.partition("::")[0]
 
 
-def _argument_span(argument: Argument) -> Span:
+def _get_span(argument: Argument) -> Span:
     return argument.source.span(argument.start, argument.end)
 
 
 def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
-    """Report the changed libraries and sources of targets. Equal changes of several targets are one line."""
-    changes: dict[_Key, list[tuple[str, Span]]] = {}
+    """Report the changed libraries and sources of targets.
+
+    Equal changes to several targets share a line.
+    """
+    changes: dict[_TargetChange, list[tuple[str, Span]]] = {}
     for name, parts in new.targets.items():
         before = old.targets.get(name)
         if before is None:
             continue
-        sources = {new_source(pair, old, new, item): span for item, span in before.sources.items()}
+        sources = {find_new_source(pair, old, new, item): span for item, span in before.sources.items()}
         if parts.is_test:
-            _report_moved(pair, name, dict(zip(before.sources, sources, strict=False)), parts.sources)
+            _report_moved_sources(pair, name, dict(zip(before.sources, sources, strict=False)), parts.sources)
         for kind, old_items, new_items in (
             ("libraries", before.libraries, parts.libraries),
             ("sources", sources, parts.sources if sources else {}),
@@ -83,18 +89,18 @@ def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                 continue  # no longer built
             span = next(iter({**new_items, **old_items}.values()), None)
             for is_added, items in (
-                (True, _lone_names(new_items, old_items)),
-                (False, _lone_names(old_items, new_items)),
+                (True, _find_unpaired_names(new_items, old_items)),
+                (False, _find_unpaired_names(old_items, new_items)),
             ):
                 if items and span is not None:
-                    key = _Key(kind, is_added, tuple(items))
+                    key = _TargetChange(kind, is_added, tuple(items))
                     changes.setdefault(key, []).append((name, new_items.get(items[0], span)))
     for key, targets in changes.items():
-        text = _change_text(key.kind, [name for name, _ in targets], key.items, is_added=key.is_added)
+        text = _format_change(key.kind, [name for name, _ in targets], key.items, is_added=key.is_added)
         pair.add(text, pair.location(targets[0][1]))
 
 
-def _report_moved(pair: FilePair, test: str, moved: Mapping[str, str], sources: Mapping[str, Span]) -> None:
+def _report_moved_sources(pair: FilePair, test: str, moved: Mapping[str, str], sources: Mapping[str, Span]) -> None:
     """Report the moved sources of a test. No other line of a review names the sources of tests."""
     for old_path, path in moved.items():
         if old_path != path and path in sources:
@@ -102,19 +108,19 @@ def _report_moved(pair: FilePair, test: str, moved: Mapping[str, str], sources: 
             pair.add(text, pair.location(sources[path]))
 
 
-class _Key(NamedTuple):
-    """A change of targets: the kind of the parts, and the names that only one version has."""
+class _TargetChange(NamedTuple):
+    """A change to targets: the kind of parts, and the names that only one version has."""
 
     kind: str
     is_added: bool
     items: tuple[str, ...]
 
 
-def _lone_names(items: Mapping[str, Span], others: Mapping[str, Span]) -> list[str]:
+def _find_unpaired_names(items: Mapping[str, Span], others: Mapping[str, Span]) -> list[str]:
     return [item for item in items if item not in others]
 
 
-def _change_text(kind: str, targets: Sequence[str], items: Sequence[str], *, is_added: bool) -> Phrase:
+def _format_change(kind: str, targets: Sequence[str], items: Sequence[str], *, is_added: bool) -> Phrase:
     names = {"targets": list_names(targets), "names": list_names(items)}
     if kind == "libraries":
         if is_added:

@@ -13,25 +13,25 @@ from linkwright.review.files.build_facts import EnvironmentVariables
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.xmltree import Element
 
-_VERSIONS = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
-_EXPORTED = frozenset({"depend", "build_export_depend", "buildtool_export_depend"})
+_VERSION_SIGNS = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
+_EXPORTED_TAGS = frozenset({"depend", "build_export_depend", "buildtool_export_depend"})
 """The tags of dependencies that dependents of the package also need to build."""
-_EXECUTION = frozenset({"depend", "exec_depend", "run_depend"})
+_EXECUTION_TAGS = frozenset({"depend", "exec_depend", "run_depend"})
 _VARIABLE = re.compile(r"\$(\w+)")
 
 
-class _Key(NamedTuple):
+class _Dependency(NamedTuple):
     """The tag of a dependency, and the package."""
 
     tag: str
     package: str
 
 
-_Elements = Mapping[_Key, list[Element]]
+_Elements = Mapping[_Dependency, list[Element]]
 
 
-class _Edit(NamedTuple):
-    """A change of dependencies: their tags in both versions, and whether the change is breaking."""
+class _DependencyChange(NamedTuple):
+    """A change to dependencies: the tags in both versions, and whether it is breaking."""
 
     old_tags: str
     new_tags: str
@@ -39,11 +39,13 @@ class _Edit(NamedTuple):
 
 
 def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    """Report changed dependencies and conditions, with the same change of several packages in one line."""
+    """Report changed dependencies and conditions. Packages with the same change share a line."""
     names = PackageNames(find_renamed_packages(pair.versions))
-    new_elements = _elements_by_key(new)
-    old_elements = {_Key(tag, names.of_package(name)): found for (tag, name), found in _elements_by_key(old).items()}
-    edits: dict[_Edit, list[_Key]] = {}
+    new_elements = _group_elements(new)
+    old_elements = {
+        _Dependency(tag, names.of_package(name)): elements for (tag, name), elements in _group_elements(old).items()
+    }
+    changes: dict[_DependencyChange, list[_Dependency]] = {}
     for package in dict.fromkeys(key.package for key in (*new_elements, *old_elements)):
         before, after = (
             [key for key in elements if key.package == package] for elements in (old_elements, new_elements)
@@ -52,28 +54,32 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
             [key for key in keys if key not in others] for keys, others in ((before, after), (after, before))
         )
         if removed or added:
-            edit = _Edit(_tags_text(removed), _tags_text(added), _is_lost(before, after, old))
-            edits.setdefault(edit, []).append((added or removed)[0])
+            change = _DependencyChange(_format_tags(removed), _format_tags(added), _is_lost(before, after, old))
+            changes.setdefault(change, []).append((added or removed)[0])
         if not (removed and added):
             for key in (key for key in after if key in before):
                 _compare_conditions(pair, key, old_elements[key], new_elements[key])
-    for edit in sorted(edits, key=_sort_key):
-        _report(pair, edit, edits[edit], new_elements if edit.new_tags else old_elements, _lost_reason(old))
+    for change in sorted(changes, key=_make_sort_key):
+        _report_change(
+            pair, change, changes[change], new_elements if change.new_tags else old_elements, _make_lost_reason(old)
+        )
     old_variables, new_variables = (
-        EnvironmentVariables(_condition_variables(elements)) for elements in (old_elements, new_elements)
+        EnvironmentVariables(_find_condition_variables(elements)) for elements in (old_elements, new_elements)
     )
     old_variables.compare(pair, new_variables)
 
 
-def _sort_key(edit: _Edit) -> int:
-    """Return a sort key: added dependencies come first, dependencies with other tags last."""
-    return 2 if edit.old_tags and edit.new_tags else 1 if edit.old_tags else 0
+def _make_sort_key(change: _DependencyChange) -> int:
+    """Return a sort key: additions come first, then removals, then changed tags."""
+    return 2 if change.old_tags and change.new_tags else 1 if change.old_tags else 0
 
 
-def _report(pair: FilePair, edit: _Edit, keys: list[_Key], elements: _Elements, reason: Phrase) -> None:
-    """Report a change of dependencies with their conditions."""
-    old_tags, new_tags, is_breaking = edit
-    packages = ", ".join(_with_conditions(key.package, elements[key]) for key in keys)
+def _report_change(
+    pair: FilePair, change: _DependencyChange, keys: list[_Dependency], elements: _Elements, reason: Phrase
+) -> None:
+    """Report a change to dependencies, with their conditions."""
+    old_tags, new_tags, is_breaking = change
+    packages = ", ".join(_append_conditions(key.package, elements[key]) for key in keys)
     if not old_tags:
         text = phrase("{tags} added: {packages}", tags=new_tags, packages=packages)
     elif not new_tags:
@@ -84,12 +90,12 @@ def _report(pair: FilePair, edit: _Edit, keys: list[_Key], elements: _Elements, 
     pair.add(text, location, reason if is_breaking else None)
 
 
-def _with_conditions(package: str, elements: list[Element]) -> str:
-    conditions = _conditions_text(elements)
+def _append_conditions(package: str, elements: list[Element]) -> str:
+    conditions = _format_conditions(elements)
     return f"{package} ({conditions})" if conditions else package
 
 
-def _is_lost(before: list[_Key], after: list[_Key], manifest: Manifest) -> bool:
+def _is_lost(before: list[_Dependency], after: list[_Dependency], manifest: Manifest) -> bool:
     """Return whether dependents no longer get a package through this one.
 
     An execution dependency is installed with the package, also for building other packages.
@@ -101,9 +107,9 @@ def _is_lost(before: list[_Key], after: list[_Key], manifest: Manifest) -> bool:
     """
     old_tags, new_tags = ({key.tag for key in keys} for keys in (before, after))
     if _is_metapackage(manifest):
-        return not old_tags.isdisjoint(_EXECUTION) and new_tags.isdisjoint(_EXECUTION)
-    is_exported = not old_tags.isdisjoint(_EXPORTED) and manifest.build_type != "ament_python"
-    return is_exported and new_tags.isdisjoint(_EXPORTED | _EXECUTION)
+        return not old_tags.isdisjoint(_EXECUTION_TAGS) and new_tags.isdisjoint(_EXECUTION_TAGS)
+    is_exported = not old_tags.isdisjoint(_EXPORTED_TAGS) and manifest.build_type != "ament_python"
+    return is_exported and new_tags.isdisjoint(_EXPORTED_TAGS | _EXECUTION_TAGS)
 
 
 def _is_metapackage(manifest: Manifest) -> bool:
@@ -111,26 +117,29 @@ def _is_metapackage(manifest: Manifest) -> bool:
     return export is not None and export.first("metapackage") is not None
 
 
-def _lost_reason(manifest: Manifest) -> Phrase:
-    """Return the reason why it is breaking that dependents no longer get a package through this one."""
+def _make_lost_reason(manifest: Manifest) -> Phrase:
+    """Return the reason why losing a package for dependents is breaking.
+
+    Dependents no longer get the package through this one.
+    """
     if _is_metapackage(manifest):
         return phrase("installing the package does not install them any more")
     return phrase("packages that have them only through this package do not build")
 
 
-def _elements_by_key(manifest: Manifest) -> _Elements:
-    elements: dict[_Key, list[Element]] = {}
+def _group_elements(manifest: Manifest) -> _Elements:
+    elements: dict[_Dependency, list[Element]] = {}
     for dependency in manifest.dependencies:
-        elements.setdefault(_Key(dependency.tag, dependency.name), []).append(dependency.element)
+        elements.setdefault(_Dependency(dependency.tag, dependency.name), []).append(dependency.element)
     return elements
 
 
-def _tags_text(keys: list[_Key]) -> str:
+def _format_tags(keys: list[_Dependency]) -> str:
     return " + ".join(key.tag for key in keys)
 
 
-def _compare_conditions(pair: FilePair, key: _Key, old: list[Element], new: list[Element]) -> None:
-    old_text, new_text = _conditions_text(old), _conditions_text(new)
+def _compare_conditions(pair: FilePair, key: _Dependency, old: list[Element], new: list[Element]) -> None:
+    old_text, new_text = _format_conditions(old), _format_conditions(new)
     if old_text != new_text:
         always = phrase("always")
         text = phrase(
@@ -143,20 +152,22 @@ def _compare_conditions(pair: FilePair, key: _Key, old: list[Element], new: list
         pair.add(text, pair.location(new[0].span()))
 
 
-def _conditions_text(elements: list[Element]) -> str:
-    """Return the conditions and versions under which a package is a dependency; empty for always."""
-    texts = [" ".join(_condition_parts(element)) for element in elements]
+def _format_conditions(elements: list[Element]) -> str:
+    """Return the conditions and versions for which a dependency holds; empty for always."""
+    texts = [" ".join(_list_condition_parts(element)) for element in elements]
     return "; ".join(texts) if all(texts) else ""
 
 
-def _condition_parts(element: Element) -> Iterator[str]:
-    yield from (f"{sign} {element.attributes[name]}" for name, sign in _VERSIONS.items() if name in element.attributes)
+def _list_condition_parts(element: Element) -> Iterator[str]:
+    yield from (
+        f"{sign} {element.attributes[name]}" for name, sign in _VERSION_SIGNS.items() if name in element.attributes
+    )
     condition = " ".join(element.attributes.get("condition", "").split())
     if condition:
         yield f"if {condition}"
 
 
-def _condition_variables(elements: _Elements) -> Iterator[tuple[str, Span | None]]:
+def _find_condition_variables(elements: _Elements) -> Iterator[tuple[str, Span | None]]:
     """Yield the environment variables in conditions, each with its location."""
     for element in (element for group in elements.values() for element in group):
         for name in _VARIABLE.findall(element.attributes.get("condition", "")):

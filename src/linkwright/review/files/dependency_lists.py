@@ -20,7 +20,7 @@ REPOSITORY_SUFFIXES = (".repos", ".rosinstall")
 REQUIREMENTS = re.compile(r"requirements([-_.]\w+)*\.txt")
 """The names of files with Python packages for pip."""
 _REPOSITORIES = "repositories"
-_LOCAL_NAME, _ADDRESS, _REVISION = "local-name", "uri", "version"
+_LOCAL_NAME, _URL, _REVISION = "local-name", "uri", "version"
 """The keys of an entry of rosinstall."""
 _REQUIREMENT = re.compile(r"(?P<name>[A-Za-z0-9][\w.-]*)\s*(?P<rest>.*)")
 _COMMENT = re.compile(r"(^|\s)#.*")
@@ -32,7 +32,7 @@ class Entry:
 
     Attributes:
         line: the line, starting at 1.
-        settings: the address, version and other settings by name.
+        settings: the URL, version and other settings by name.
     """
 
     line: int
@@ -49,12 +49,12 @@ _Entries = Mapping[str, Entry]
 
 def compare_repositories(pair: FilePair) -> None:
     """Compare two versions of a list of repositories."""
-    _compare(pair, read_repositories, lambda name: phrase("repository '{name}'", name=name))
+    _compare_entries(pair, read_repositories, lambda name: phrase("repository '{name}'", name=name))
 
 
 def compare_requirements(pair: FilePair) -> None:
     """Compare two versions of a list of Python packages."""
-    _compare(pair, read_requirements, lambda name: phrase("Python package '{name}'", name=name))
+    _compare_entries(pair, read_requirements, lambda name: phrase("Python package '{name}'", name=name))
 
 
 def repository_contents(version: Version, path: str) -> Phrase | None:
@@ -67,7 +67,7 @@ def requirement_contents(version: Version, path: str) -> Phrase | None:
     return joined_first(list(read_requirements(version.file(path))), MAX_NAMES) or None
 
 
-def _compare(pair: FilePair, read: Callable[[Path], _Entries], title: Callable[[str], Phrase]) -> None:
+def _compare_entries(pair: FilePair, read: Callable[[Path], _Entries], title: Callable[[str], Phrase]) -> None:
     entries = pair.read(read)
     if entries is None:
         return
@@ -76,7 +76,7 @@ def _compare(pair: FilePair, read: Callable[[Path], _Entries], title: Callable[[
         location = Location(pair.new_path, entry.line, 1)
         if name not in old:
             text = phrase("{element} added", element=title(name))
-            pair.add(_with_settings(text, entry), location)
+            pair.add(_append_settings(text, entry), location)
             continue
         before = old[name].settings
         for setting in dict.fromkeys([*entry.settings, *before]):
@@ -87,10 +87,10 @@ def _compare(pair: FilePair, read: Callable[[Path], _Entries], title: Callable[[
     for name, entry in old.items():
         if name not in new:
             text = phrase("{element} removed", element=title(name))
-            pair.add(_with_settings(text, entry), Location(pair.old_path, entry.line, 1, is_old=True))
+            pair.add(_append_settings(text, entry), Location(pair.old_path, entry.line, 1, is_old=True))
 
 
-def _with_settings(text: Phrase, entry: Entry) -> Phrase:
+def _append_settings(text: Phrase, entry: Entry) -> Phrase:
     return phrase("{change}: {contents}", change=text, contents=entry.text) if entry.settings else text
 
 
@@ -111,11 +111,11 @@ def read_repositories(file: Path) -> dict[str, Entry]:
 
 
 def _read_rosinstall_entry(node: yaml.Node) -> Iterator[tuple[str, Entry]]:
-    for kind, inner in _read_mapping(node).items():
-        settings = _read_settings(inner)
+    for kind, entry in _read_mapping(node).items():
+        settings = _read_settings(entry)
         name = settings.pop(_LOCAL_NAME, None)
         if name is not None:
-            values = {"type": kind, "url": settings.get(_ADDRESS, ""), "version": settings.get(_REVISION, "")}
+            values = {"type": kind, "url": settings.get(_URL, ""), "version": settings.get(_REVISION, "")}
             yield name, Entry(node.start_mark.line + 1, {key: value for key, value in values.items() if value})
 
 
@@ -129,7 +129,9 @@ def _read_mapping(node: yaml.Node | None) -> dict[str, yaml.Node]:
 
 
 def read_requirements(file: Path) -> dict[str, Entry]:
-    """Return the Python packages in a requirements file by name, with their versions; other lines by their text.
+    """Return the versions in a requirements file by Python package.
+
+    Lines that name no package, such as options, are keys without a version.
 
     Raises:
         UnreadableFileError: the text is too long.

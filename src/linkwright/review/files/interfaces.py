@@ -22,8 +22,7 @@ from linkwright.xacro.cache import read_document
 _SEPARATOR = "---"
 _IDL = ".idl"
 _MIN_RENUMBERED = 3
-"""The minimum number of constants with other values that are summarized in one line. An inserted value renumbers those
-below."""
+"""The minimum number of changed constants that share a line. An inserted constant can renumber those below it."""
 _PART_PREFIXES = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
 """The prefixes of field names: the structures of a message, a service and an action."""
 
@@ -31,7 +30,7 @@ _PART_PREFIXES = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result "
 def compare_interfaces(pair: FilePair) -> None:
     """Compare two versions of the definition of a message, service or action.
 
-    A change of a field is breaking: the type gets another hash (REP 2016), and nodes that were built with different
+    A change to a field is breaking: the hash of the type changes (REP 2016), and nodes that were built with different
     versions do not exchange messages. In ROS 1, constants are a part of the MD5 sum of a type.
     """
     definitions = pair.read(_read)
@@ -39,37 +38,37 @@ def compare_interfaces(pair: FilePair) -> None:
         return
     old, new = definitions
     if old.keys() != new.keys() and pair.new_file.suffix != _IDL:
-        return  # a message that is a service now, for example, whose file has another name
-    renamed = _renamed_structures(old, new)
+        return  # such as a message that became a service, with a different file name
+    renamed = _find_renamed_structures(old, new)
     is_ros1 = _is_ros1(pair.new_file)
     for index, (name, new_part) in enumerate(new.items()):
-        places = _Places(pair, index, new_part.type_name)
+        locations = _Locations(pair, index, new_part.type_name)
         old_part = old.get(renamed.get(name, name), Structure(name, ()))
         if name in renamed:
             names = {"old": old_part.type_name, "new": new_part.type_name}
             text = phrase("structure '{old}' renamed to '{new}'", **names)
             if _is_enumeration(new_part):
                 text = phrase("enumeration '{old}' renamed to '{new}'", **names)
-            pair.add(text, places.first, _use_reason())
+            pair.add(text, locations.new_start, _make_use_reason())
         elif name not in old and _is_enumeration(new_part):
             values = joined_first([constant.name for constant in new_part.constants], MAX_NAMES)
             text = phrase("enumeration '{name}' added: {values}", name=new_part.type_name, values=values)
-            pair.add(text, places.first)
+            pair.add(text, locations.new_start)
             continue
         elif name not in old and new_part.fields:
-            pair.add(phrase("structure '{name}' added", name=new_part.type_name), places.first)
+            pair.add(phrase("structure '{name}' added", name=new_part.type_name), locations.new_start)
             continue
-        _compare_fields(pair, old_part.fields, new_part.fields, name, places)
-        _compare_constants(pair, old_part.constants, new_part.constants, name, places, is_ros1=is_ros1)
+        _compare_fields(pair, old_part.fields, new_part.fields, name, locations)
+        _compare_constants(pair, old_part.constants, new_part.constants, name, locations, is_ros1=is_ros1)
     for name in [name for name in old if name not in new and name not in renamed.values()]:
         text = phrase("structure '{name}' removed", name=old[name].type_name)
         if _is_enumeration(old[name]):
             text = phrase("enumeration '{name}' removed", name=old[name].type_name)
-        pair.add(text, _Places(pair, 0, old[name].type_name).first_old, _use_reason())
+        pair.add(text, _Locations(pair, 0, old[name].type_name).old_start, _make_use_reason())
 
 
 def interface_contents(version: Version, path: str) -> Phrase | None:
-    """Return the fields of an interface with types and the constants with values, or None if there are none."""
+    """Return the typed fields and the constants of an interface; None if there are none."""
     parts = _read(version.file(path))
     names = [
         f"{field.type.to_msg_text()} {part}{field.name}"
@@ -83,13 +82,13 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
 
 
 def _read(file: Path) -> Mapping[str, Structure]:
-    """Return the structures of a file by the text in front of the names of their fields."""
+    """Return the structures of a file by the prefix of their field names."""
     kind = file.parent.name if file.suffix == _IDL else file.suffix.removeprefix(".")
-    if kind not in SECTIONS:  # a file of another program than ROS, which can have any number of structures
+    if kind not in SECTIONS:  # not a ROS file, so it can have any number of structures
         try:
             return {f"{structure.type_name}.": structure for structure in parse_idl_structures(read_source(file))}
         except LinkwrightError as error:
-            raise LimitError(error.diagnostics[0].message) from None  # ROS reads less of IDL than other programs
+            raise LimitError(error.diagnostics[0].message) from None  # ROS supports less of IDL than other programs
     package = enclosing_package(file.parent)
     name = package[0] if package else file.parent.name
     if package is None and (file.parent.parent / ROSBUILD_MANIFEST).is_file():
@@ -99,14 +98,14 @@ def _read(file: Path) -> Mapping[str, Structure]:
     return dict(zip(_PART_PREFIXES[len(parts)], parts, strict=True))
 
 
-def _renamed_structures(old: Mapping[str, Structure], new: Mapping[str, Structure]) -> dict[str, str]:
-    """Return the old names of structures that only have another name, by their new names."""
+def _find_renamed_structures(old: Mapping[str, Structure], new: Mapping[str, Structure]) -> dict[str, str]:
+    """Return the old names of renamed structures by new name. Their contents are equal."""
     renamed: dict[str, str] = {}
     removed = [name for name in old if name not in new and (old[name].fields or _is_enumeration(old[name]))]
     for name in [name for name in new if name not in old]:
-        same = [old_name for old_name in removed if old[old_name][1:] == new[name][1:]]
-        if len(same) == 1 and same[0] not in renamed.values():
-            renamed[name] = same[0]
+        matching = [old_name for old_name in removed if old[old_name][1:] == new[name][1:]]
+        if len(matching) == 1 and matching[0] not in renamed.values():
+            renamed[name] = matching[0]
     return renamed
 
 
@@ -114,7 +113,7 @@ def _is_enumeration(structure: Structure) -> bool:
     return not structure.fields and any(constant.type == ENUMERATION for constant in structure.constants)
 
 
-def _use_reason() -> Phrase:
+def _make_use_reason() -> Phrase:
     return phrase("programs that use the type do not build or start")
 
 
@@ -126,7 +125,7 @@ def _is_ros1(file: Path) -> bool:
     return Manifest(read_document(str(package[1] / MANIFEST))).is_ros1
 
 
-class _Places:
+class _Locations:
     """The locations of the names in a structure of a definition.
 
     Args:
@@ -137,19 +136,19 @@ class _Places:
 
     def __init__(self, pair: FilePair, index: int, name: str) -> None:
         self._pair = pair
-        self._old, self._new = (_numbered_lines(file, index, name) for file in (pair.old_file, pair.new_file))
+        self._old, self._new = (_read_numbered_lines(file, index, name) for file in (pair.old_file, pair.new_file))
 
     @property
-    def first(self) -> Location:
+    def new_start(self) -> Location:
         """The location of the structure in the new version."""
         return Location(self._pair.new_path, self._new[0][0] if self._new else 1, 1)
 
     @property
-    def first_old(self) -> Location:
+    def old_start(self) -> Location:
         """The location of the structure in the old version."""
         return Location(self._pair.old_path, self._old[0][0] if self._old else 1, 1, is_old=True)
 
-    def location_of(self, name: str, *, is_old: bool = False) -> Location:
+    def find(self, name: str, *, is_old: bool = False) -> Location:
         """Return the location of a field or constant."""
         path, lines = (self._pair.old_path, self._old) if is_old else (self._pair.new_path, self._new)
         start = r".*\s" if path.endswith(_IDL) else r"\s*[^#\s]\S*\s+"
@@ -161,8 +160,11 @@ class _Places:
         return Location(path, 1, 1, is_old)
 
 
-def _numbered_lines(file: Path, index: int, name: str) -> list[tuple[int, str]]:
-    """Return the numbered lines of a structure, or those from its start to the end of the file if it is in IDL."""
+def _read_numbered_lines(file: Path, index: int, name: str) -> list[tuple[int, str]]:
+    """Return the numbered lines of a structure.
+
+    For IDL, these are all lines from the start of the structure to the end of the file.
+    """
     lines = list(enumerate(read_source(file).text.splitlines(), 1))
     if file.suffix == _IDL:
         head = re.compile(rf"\s*(?:struct|enum|union)\s+{re.split('/|::', name)[-1]}\b")
@@ -173,17 +175,19 @@ def _numbered_lines(file: Path, index: int, name: str) -> list[tuple[int, str]]:
     return lines[start : end - 1]
 
 
-def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], part: str, places: _Places) -> None:
-    reason = _exchange_reason()
+def _compare_fields(
+    pair: FilePair, old: Sequence[Field], new: Sequence[Field], part: str, locations: _Locations
+) -> None:
+    reason = _make_exchange_reason()
     old_fields, new_fields = ({field.name: field for field in fields} for fields in (old, new))
     for name in dict.fromkeys([*new_fields, *old_fields]):
         before, after = old_fields.get(name), new_fields.get(name)
         if before is None and after is not None:
             text = phrase("field '{name}' of type {type} added", name=part + name, type=after.type.to_msg_text())
-            pair.add(text, places.location_of(name), reason)
+            pair.add(text, locations.find(name), reason)
         elif after is None:
             text = phrase("field '{name}' removed", name=part + name)
-            pair.add(text, places.location_of(name, is_old=True), reason)
+            pair.add(text, locations.find(name, is_old=True), reason)
         elif before is not None and before.type != after.type:
             text = phrase(
                 "field '{name}': {old} -> {new}",
@@ -191,7 +195,7 @@ def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], 
                 old=before.type.to_msg_text(),
                 new=after.type.to_msg_text(),
             )
-            pair.add(text, places.location_of(name), reason)
+            pair.add(text, locations.find(name), reason)
         elif before is not None and before.default != after.default:
             text = phrase(
                 "default of field '{name}': {old} -> {new}",
@@ -199,29 +203,29 @@ def _compare_fields(pair: FilePair, old: Sequence[Field], new: Sequence[Field], 
                 old=str(before.default),
                 new=str(after.default),
             )
-            pair.add(text, places.location_of(name))
+            pair.add(text, locations.find(name))
     common = [name for name in new_fields if name in old_fields]
     if common != [name for name in old_fields if name in new_fields]:
-        pair.add(phrase("order of the fields changed"), places.location_of(common[0]), reason)
+        pair.add(phrase("order of the fields changed"), locations.find(common[0]), reason)
 
 
-def _exchange_reason() -> Phrase:
+def _make_exchange_reason() -> Phrase:
     return phrase("nodes that were built with the old type do not exchange messages with new ones")
 
 
 def _compare_constants(
-    pair: FilePair, old: Sequence[Constant], new: Sequence[Constant], part: str, places: _Places, *, is_ros1: bool
+    pair: FilePair, old: Sequence[Constant], new: Sequence[Constant], part: str, locations: _Locations, *, is_ros1: bool
 ) -> None:
     old_values, new_values = ({constant.name: constant.value for constant in constants} for constants in (old, new))
     for name, value in new_values.items():
         if name not in old_values:
             text = phrase("constant '{name}' = {value} added", name=part + name, value=str(value))
-            pair.add(text, places.location_of(name), _exchange_reason() if is_ros1 else None)
+            pair.add(text, locations.find(name), _make_exchange_reason() if is_ros1 else None)
     for name in old_values:
         if name not in new_values:
             reason = phrase("programs that use the constant do not build or start")
             text = phrase("constant '{name}' removed", name=part + name)
-            pair.add(text, places.location_of(name, is_old=True), reason)
+            pair.add(text, locations.find(name, is_old=True), reason)
     changes = [
         (name, str(old_values[name]), str(value))
         for name, value in new_values.items()
@@ -231,8 +235,8 @@ def _compare_constants(
     if len(changes) < _MIN_RENUMBERED:
         for name, before, after in changes:
             text = phrase("constant '{name}': {old} -> {new}", name=part + name, old=before, new=after)
-            pair.add(text, places.location_of(name), reason)
+            pair.add(text, locations.find(name), reason)
         return
     items = ", ".join(f"{part}{name} {before} -> {after}" for name, before, after in changes)
     text = phrase("{count} constants have other values: {changes}", count=len(changes), changes=items)
-    pair.add(text, places.location_of(changes[0][0]), reason)
+    pair.add(text, locations.find(changes[0][0]), reason)

@@ -14,7 +14,7 @@ from linkwright.review.list_changes import EMPTY, list_items
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _PROGRAM_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".launch", ".launch.xml")
-_SOURCES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
+_SOURCE_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
 _COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
 _NAME_PARAMETER = re.compile(r"(^|[._])names?$")
 """The keys of lists of names. Other lists, such as modes, contain words that many programs use."""
@@ -26,15 +26,15 @@ class KeyReaders:
     """The programs of the new version that may read a YAML file.
 
     Attributes:
-        versions: both versions.
+        versions: the repository before and after the change.
         path: the path of the YAML file in the new version.
     """
 
     versions: Versions
     path: str
 
-    def key_reason(self, keys: Iterable[str]) -> Phrase | None:
-        """Return the reason why removing keys is breaking, or None if no unchanged program reads them from the file.
+    def find_key_reason(self, keys: Iterable[str]) -> Phrase | None:
+        """Return the reason why removing keys is breaking; None if no unchanged program needs them.
 
         Only a read without a default certainly fails, such as ``settings["rate"]``.
         """
@@ -45,8 +45,10 @@ class KeyReaders:
                 return phrase("'{file}' reads the key '{name}' and does not find it", file=reader, name=key)
         return None
 
-    def name_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
-        """Return the reason why removing names from a list is breaking, or None if no unchanged source contains one.
+    def find_name_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
+        """Return the reason why removing names from a list is breaking; None if it is not.
+
+        It is breaking if an unchanged source contains one of the names.
 
         Args:
             parameter: the path of the list.
@@ -55,11 +57,11 @@ class KeyReaders:
         """
         if not (old.is_list and new.is_list) or not _NAME_PARAMETER.search(parameter):
             return None
-        kept = set(list_items(new.text))
+        new_names = set(list_items(new.text))
         removed = [
-            item for item in list_items(old.text) if item not in kept and item != EMPTY and _NAME.fullmatch(item)
+            item for item in list_items(old.text) if item not in new_names and item != EMPTY and _NAME.fullmatch(item)
         ]
-        for name in removed if self._is_named else ():
+        for name in removed if self._is_file_used else ():
             pattern = re.compile(rf"[\"']{re.escape(name)}[\"']")
             reader = next((path for path, text in self._unchanged_sources if pattern.search(text)), None)
             if reader is not None:
@@ -67,10 +69,10 @@ class KeyReaders:
         return None
 
     @cached_property
-    def _is_named(self) -> bool:
+    def _is_file_used(self) -> bool:
         """Whether a program contains the name of the file."""
         name = PurePosixPath(self.path).name
-        return any(name in self.versions.new.text(path) for path in self._paths(_PROGRAM_SUFFIXES, ()))
+        return any(name in self.versions.new.text(path) for path in self._list_paths(_PROGRAM_SUFFIXES, ()))
 
     @cached_property
     def _readers(self) -> list[tuple[str, str]]:
@@ -82,10 +84,10 @@ class KeyReaders:
     def _unchanged_sources(self) -> list[tuple[str, str]]:
         """The paths and texts, without comments, of the unchanged sources."""
         changed = {file.new_path for file in self.versions.changed_files}
-        paths = self._paths(_SOURCES, changed)
+        paths = self._list_paths(_SOURCE_SUFFIXES, changed)
         return [(path, _COMMENT.sub(r"\1", self.versions.new.text(path))) for path in paths]
 
-    def _paths(self, suffixes: tuple[str, ...], excluded: Collection[str | None]) -> Iterator[str]:
+    def _list_paths(self, suffixes: tuple[str, ...], excluded: Collection[str | None]) -> Iterator[str]:
         for path in self.versions.new.paths(suffixes):
             if path not in excluded and TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
                 yield path

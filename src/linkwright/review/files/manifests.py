@@ -19,7 +19,7 @@ from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element, Text
 
 _TEXT_TAGS = ("name", "version", "license", "maintainer", "author", "url", "member_of_group", "group_depend")
-_PLUGIN = "plugin"
+_PLUGIN_ATTRIBUTE = "plugin"
 """The attribute of an export that names a plugin description."""
 _BLOCK_TAGS = frozenset({"p", "br", "li", "ul", "ol", "div", "tr", "h1", "h2", "h3"})
 """The tags of XHTML after which a new line begins."""
@@ -44,7 +44,10 @@ def compare_manifests(pair: FilePair) -> None:
 
 
 def manifest_contents(version: Version, path: str) -> Phrase:
-    """Return the name, version, build type and dependencies, and the folder of a package with the same name."""
+    """Return the name, version, build type and dependencies of a package.
+
+    A folder with a package of the same name is added.
+    """
     manifest = _read(version.file(path))
     export = manifest.root.first("export")
     is_metapackage = export is not None and export.first("metapackage") is not None
@@ -56,8 +59,8 @@ def manifest_contents(version: Version, path: str) -> Phrase:
     ]  # fmt: skip
     if names:
         texts.append(phrase("depends on {names}", names=joined_first(names, MAX_NAMES)))
-    others = [folder for folder in find_targets([version.root]).packages if package_name(folder) == manifest.name]
-    paths = [other for other in map(version.relative, others) if other != PurePosixPath(path).parent.as_posix()]
+    folders = [folder for folder in find_targets([version.root]).packages if package_name(folder) == manifest.name]
+    paths = [other for other in map(version.relative, folders) if other != PurePosixPath(path).parent.as_posix()]
     if paths:
         texts.append(phrase("{folder} has a package with the same name", folder=f"{paths[0]}/"))
     return joined(texts, "; ")
@@ -66,7 +69,7 @@ def manifest_contents(version: Version, path: str) -> Phrase:
 def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
     manifests = old, new
     for tag in _TEXT_TAGS:
-        old_text, new_text = (_joined_text(manifest, tag) for manifest in manifests)
+        old_text, new_text = (_join_texts(manifest, tag) for manifest in manifests)
         if old_text != new_text:
             text = phrase("{tag}: {old} -> {new}", tag=tag, old=old_text or "-", new=new_text or "-")
             if tag == "name":
@@ -75,17 +78,17 @@ def _compare_texts(pair: FilePair, old: Manifest, new: Manifest) -> None:
             element = new.root.first(tag) or new.root
             pair.add(text, pair.location(element.span()), reason if tag == "name" else None)
     for tag in ("maintainer", "author"):
-        old_addresses, new_addresses = (_joined_addresses(manifest, tag) for manifest in manifests)
-        if old_addresses != new_addresses and _joined_text(old, tag) == _joined_text(new, tag):
+        old_addresses, new_addresses = (_join_addresses(manifest, tag) for manifest in manifests)
+        if old_addresses != new_addresses and _join_texts(old, tag) == _join_texts(new, tag):
             text = phrase("email of {tag}: {old} -> {new}", tag=tag, old=old_addresses or "-", new=new_addresses or "-")
             pair.add(text, pair.location((new.root.first(tag) or new.root).span()))
     _compare_descriptions(pair, old, new)
 
 
 def _compare_descriptions(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    """Report the changed description as text, or the change of its markup."""
+    """Report a changed text of the description, or else changed markup."""
     elements = [manifest.root.first("description") for manifest in (old, new)]
-    old_text, new_text = ("" if element is None else _plain_text(element) for element in elements)
+    old_text, new_text = ("" if element is None else _read_plain_text(element) for element in elements)
     location = pair.location((elements[1] or new.root).span())
     if old_text != new_text:
         before, after = differing_excerpts(old_text, new_text)
@@ -94,7 +97,7 @@ def _compare_descriptions(pair: FilePair, old: Manifest, new: Manifest) -> None:
         pair.add(phrase("markup of the description changed"), location)
 
 
-def _plain_text(element: Element) -> str:
+def _read_plain_text(element: Element) -> str:
     """Return the text of an element without markup."""
     return " ".join("".join(_iterate_texts(element)).split())
 
@@ -118,18 +121,18 @@ def _read(file: Path) -> Manifest:
     return Manifest(read_document(str(file)))
 
 
-def _joined_text(manifest: Manifest, tag: str) -> str:
+def _join_texts(manifest: Manifest, tag: str) -> str:
     return ", ".join(" ".join(element.text().split()) for element in manifest.root.elements(tag))
 
 
-def _joined_addresses(manifest: Manifest, tag: str) -> str:
+def _join_addresses(manifest: Manifest, tag: str) -> str:
     return ", ".join(element.attributes.get("email", "") for element in manifest.root.elements(tag))
 
 
 def _compare_exports(pair: FilePair, old: Manifest, new: Manifest) -> None:
-    """Report added, removed and changed ``<export>`` elements, such as the paths of plugin descriptions."""
+    """Report added, removed and changed ``<export>`` elements."""
     old_exports, new_exports = (
-        {_export_text(element): element for element in _read_exports(manifest)} for manifest in (old, new)
+        {_format_export(element): element for element in _read_exports(manifest)} for manifest in (old, new)
     )
     names = PackageNames(find_renamed_packages(pair.versions))
     removed = [element for text, element in old_exports.items() if text not in new_exports]
@@ -141,12 +144,12 @@ def _compare_exports(pair: FilePair, old: Manifest, new: Manifest) -> None:
             added.remove(successor)
             _compare_attributes(pair, element, successor)
     for element in added:
-        pair.add(phrase("export added: {export}", export=_export_text(element)), pair.location(element.span()))
+        pair.add(phrase("export added: {export}", export=_format_export(element)), pair.location(element.span()))
     for element in removed:
         is_replaced = any(_have_same_purpose(element, other) for other in new_exports.values())
-        reason = None if is_replaced else _export_reason(element)
+        reason = None if is_replaced else _find_export_reason(element)
         location = pair.location(element.span(), is_old=True)
-        pair.add(phrase("export removed: {export}", export=_export_text(element)), location, reason)
+        pair.add(phrase("export removed: {export}", export=_format_export(element)), location, reason)
 
 
 def _compare_attributes(pair: FilePair, old: Element, new: Element) -> None:
@@ -161,7 +164,7 @@ def _compare_attributes(pair: FilePair, old: Element, new: Element) -> None:
             text = phrase("export {tag}: {name} {value} added", tag=new.tag, name=name, value=value)
             if after is None:
                 text = phrase("export {tag}: {name} {value} removed", tag=new.tag, name=name, value=value)
-            pair.add(text, location, _export_reason(old) if after is None else None)
+            pair.add(text, location, _find_export_reason(old) if after is None else None)
         else:
             text = phrase("export {tag}: {name} {old} -> {new}", tag=new.tag, name=name, old=before, new=after)
             pair.add(text, location)
@@ -176,7 +179,7 @@ def _read_exports(manifest: Manifest) -> list[Element]:
     return [] if export is None else [element for element in export.elements() if element.tag != "build_type"]
 
 
-def _export_text(element: Element) -> str:
+def _format_export(element: Element) -> str:
     words = [element.tag, *(f"{name}={value}" for name, value in sorted(element.attributes.items()))]
     return " ".join([*words, *element.text().split()])
 
@@ -186,9 +189,9 @@ def _have_same_purpose(old: Element, new: Element) -> bool:
     return old.tag == new.tag and set(old.attributes) <= set(new.attributes)
 
 
-def _export_reason(element: Element) -> Phrase | None:
+def _find_export_reason(element: Element) -> Phrase | None:
     """Return the reason why removing an export is breaking, or None if it is not."""
-    if _PLUGIN in element.attributes:
+    if _PLUGIN_ATTRIBUTE in element.attributes:
         return phrase("programs that look for plugins of '{name}' do not find these", name=element.tag)
     if element.tag.startswith("gazebo"):
         return phrase("the simulator does not find the folders of the package")

@@ -20,15 +20,15 @@ from linkwright.review.versions import Version
 IMAGE_SUFFIXES = (".pgm", ".png", ".bmp", ".jpg", ".jpeg", ".gif")
 """The name endings of files that can be the image of a map."""
 _KEY_PATTERNS = tuple(re.compile(rf"^{key}\s*:", re.MULTILINE) for key in ("image", "resolution", "origin"))
-_MAX_BYTES = 100_000
-_MAX_FILES = 100
+_MAX_YAML_BYTES = 100_000
+_MAX_YAML_FILES = 100
 """The maximum number of YAML files in a folder that are searched for the map of an image."""
 
 
 def is_map(file: Path) -> bool:
     """Return whether a YAML file describes a map."""
     try:
-        if file.stat().st_size > _MAX_BYTES:
+        if file.stat().st_size > _MAX_YAML_BYTES:
             return False
         text = file.read_text("utf-8", errors="replace")
     except OSError:
@@ -36,12 +36,12 @@ def is_map(file: Path) -> bool:
     return all(key.search(text) for key in _KEY_PATTERNS)
 
 
-def map_of_image(version: Version, path: str) -> str | None:
-    """Return the path of the map YAML file for an image in the same folder, or None if there is none."""
+def find_map_of_image(version: Version, path: str) -> str | None:
+    """Return the path of the map for an image in the same folder; None if there is none."""
     file = version.file(path)
     if PurePosixPath(path).suffix.lower() not in IMAGE_SUFFIXES:
         return None
-    for yaml_file in sorted(file.parent.glob("*.y*ml"))[:_MAX_FILES]:
+    for yaml_file in sorted(file.parent.glob("*.y*ml"))[:_MAX_YAML_FILES]:
         if (
             is_map(yaml_file)
             and _try_read_map_yaml(yaml_file) is not None
@@ -58,7 +58,7 @@ def map_contents(version: Version, path: str) -> Phrase | None:
         LinkwrightError: the YAML file does not describe a map.
     """
     content = read_map_yaml(version.file(path))
-    size = _size_text(content)
+    size = _format_size(content)
     parts: list[Phrase | str] = [content.image.name, *([size] if size else [])]
     parts.append(phrase("resolution {resolution} m", resolution=f"{content.resolution:g}"))
     parts.append(phrase("origin {origin}", origin=_format_numbers(content.origin)))
@@ -70,18 +70,18 @@ def compare_map_files(pair: FilePair) -> None:
     maps = pair.read(read_map_yaml)
     if maps is None:
         return
-    for name, old_text, new_text in _changed_settings(*maps):
+    for name, old_text, new_text in _pair_settings(*maps):
         if old_text != new_text:
             pair.add(change_text(name, old_text, new_text), None)
-    old_size, new_size = (_size_text(content) for content in maps)
+    old_size, new_size = (_format_size(content) for content in maps)
     if old_size and new_size and str(old_size) != str(new_size):
         pair.figures.append(Figure(phrase("size of the map"), str(old_size), str(new_size)))
-    old_image, new_image = (_try_read_shade(content.image) for content in maps)
+    old_image, new_image = (_try_read_cells(content.image) for content in maps)
     if old_image is not None and new_image is not None and old_image.shape == new_image.shape:
         _compare_cells(pair, old_image, new_image)
 
 
-def _changed_settings(old: MapYaml, new: MapYaml) -> Iterator[tuple[str, str, str]]:
+def _pair_settings(old: MapYaml, new: MapYaml) -> Iterator[tuple[str, str, str]]:
     yield "image", old.image.name, new.image.name
     yield "resolution", f"{old.resolution:g} m", f"{new.resolution:g} m"
     yield "origin", _format_numbers(old.origin), _format_numbers(new.origin)
@@ -102,9 +102,9 @@ def _try_read_map_yaml(file: Path) -> MapYaml | None:
         return None
 
 
-def _size_text(content: MapYaml) -> Phrase | None:
+def _format_size(content: MapYaml) -> Phrase | None:
     """Return the size of a map in cells and in meters, or None if its image cannot be read."""
-    image = _try_read_shade(content.image)
+    image = _try_read_cells(content.image)
     if image is None:
         return None
     rows, columns = image.shape
@@ -116,7 +116,7 @@ def _size_text(content: MapYaml) -> Phrase | None:
 
 def compare_maps(pair: FilePair) -> None:
     """Compare two versions of an image that no YAML file describes as a map, cell by cell."""
-    images = pair.read(_read_shade)
+    images = pair.read(_read_cells)
     if images is None:
         return
     old, new = images
@@ -129,7 +129,7 @@ def compare_maps(pair: FilePair) -> None:
 
 
 def _compare_cells(pair: FilePair, old: NDArray[np.float64], new: NDArray[np.float64]) -> bool:
-    """Report the share and place of the cells that differ, and return whether there are any."""
+    """Report how many cells differ and where, and return whether there are any."""
     rows, columns = np.nonzero(old != new)
     if not len(rows):
         return False
@@ -145,14 +145,17 @@ def _compare_cells(pair: FilePair, old: NDArray[np.float64], new: NDArray[np.flo
     return True
 
 
-def _try_read_shade(file: Path) -> NDArray[np.float64] | None:
-    """Return the brightness of the cells, or None if the image cannot be read, such as a Git LFS pointer."""
+def _try_read_cells(file: Path) -> NDArray[np.float64] | None:
+    """Return the brightness of the cells; None for an unreadable image.
+
+    An example is a Git LFS pointer.
+    """
     try:
-        return _read_shade(file)
+        return _read_cells(file)
     except (LinkwrightError, OSError):
         return None
 
 
-def _read_shade(file: Path) -> NDArray[np.float64]:
+def _read_cells(file: Path) -> NDArray[np.float64]:
     """Return the brightness of the cells, shape (rows, columns)."""
     return read_image(file).shade

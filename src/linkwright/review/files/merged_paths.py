@@ -1,4 +1,4 @@
-"""Merge equal changes of several elements whose paths differ in one word."""
+"""Merge equal changes to several elements whose paths differ in one word."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ _MAX_WORDS = 3
 
 
 class MergedPaths:
-    """Paths of equal changes, such as of the same limit of several joints."""
+    """Paths of equal changes, such as changes to the same limit of several joints."""
 
     def __init__(self) -> None:
         self._words: list[list[str]] = []
-        self._places: list[int | None] = []
-        self._others: list[list[str]] = []
+        self._positions: list[int | None] = []
+        self._other_words: list[list[str]] = []
         self._groups: dict[tuple[tuple[str, ...], int, Hashable], int] = {}
 
     def add(self, path: str, change: Hashable) -> int:
@@ -25,60 +25,64 @@ class MergedPaths:
             change: a key that is equal for all changes of a group.
         """
         words = path.split(" ")
-        patterns = [((*words[:place], "", *words[place + 1 :]), place, change) for place in range(len(words))]
+        patterns = [
+            ((*words[:position], "", *words[position + 1 :]), position, change) for position in range(len(words))
+        ]
         for pattern in patterns:
             group = self._groups.get(pattern)
-            if group is not None and self._places[group] in (None, pattern[1]):
-                self._places[group] = pattern[1]
-                self._others[group].append(words[pattern[1]])
+            if group is not None and self._positions[group] in (None, pattern[1]):
+                self._positions[group] = pattern[1]
+                self._other_words[group].append(words[pattern[1]])
                 return group
         group = len(self._words)
         self._words.append(words)
-        self._places.append(None)
-        self._others.append([])
+        self._positions.append(None)
+        self._other_words.append([])
         for pattern in patterns:
             self._groups.setdefault(pattern, group)
         return group
 
     @property
     def paths(self) -> Sequence[str]:
-        """The first path of each group, with the differing words of the other paths at the same place."""
-        return [self._path(*parts) for parts in zip(self._words, self._places, self._others, strict=True)]
+        """The first path of each group, with the differing words of the other paths."""
+        return [
+            self._format_path(*parts) for parts in zip(self._words, self._positions, self._other_words, strict=True)
+        ]
 
-    def _path(self, words: Sequence[str], place: int | None, others: Sequence[str]) -> str:
-        if place is None:
+    def _format_path(self, words: Sequence[str], position: int | None, other_words: Sequence[str]) -> str:
+        if position is None:
             return " ".join(words)
-        names = [words[place], *others]
+        names = [words[position], *other_words]
         text = ", ".join(names[:_MAX_WORDS])
         if len(names) > _MAX_WORDS:
             text = f"{text}, ... ({len(names)})"
-        return " ".join([*words[:place], text, *words[place + 1 :]])
+        return " ".join([*words[:position], text, *words[position + 1 :]])
 
 
-_NAMED = frozenset(
+_NAMED_TAGS = frozenset(
     {"world", "model", "include", "link", "joint", "visual", "collision", "sensor", "light", "plugin", "frame", "actor"}
 )
 """The tags of elements with names."""
 
 
-def path_pattern(path: str) -> tuple[str, ...]:
+def to_path_pattern(path: str) -> tuple[str, ...]:
     """Return the words of a path, with empty strings for the names of elements.
 
-    Equal changes with equal patterns belong together, such as of the visuals of all links.
+    Equal changes with equal patterns belong together, such as those of the visuals of all links.
     """
     pattern: list[str] = []
     is_name = False
     for word in path.split(" "):
         pattern.append("" if is_name else word)
-        is_name = not is_name and word in _NAMED
+        is_name = not is_name and word in _NAMED_TAGS
     return tuple(pattern)
 
 
-def differing_parts(paths: Sequence[str]) -> list[str]:
+def trim_common_words(paths: Sequence[str]) -> list[str]:
     """Return paths of equal length without their common first and last words."""
     rows = [path.split(" ") for path in paths]
     columns = list(zip(*rows, strict=True))
-    places = [place for place, words in enumerate(columns) if len(set(words)) > 1]
-    if not places:
+    positions = [position for position, words in enumerate(columns) if len(set(words)) > 1]
+    if not positions:
         return list(paths)
-    return [" ".join(words[places[0] : places[-1] + 1]) for words in rows]
+    return [" ".join(words[positions[0] : positions[-1] + 1]) for words in rows]

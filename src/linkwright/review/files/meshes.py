@@ -14,7 +14,7 @@ from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.versions import Version
 
 _MAX_BYTES = 100 << 20
-"""The maximum size in bytes of compared meshes. Of larger meshes, only the sizes are compared."""
+"""The maximum size in bytes of compared meshes. For larger meshes, only the file sizes are compared."""
 _MAX_CONTENT_BYTES = 10 << 20
 """The maximum size in bytes of added meshes whose contents are shown. A commit can add hundreds of meshes."""
 _TOLERANCE = 1e-6
@@ -50,7 +50,10 @@ def compare_meshes(pair: FilePair) -> None:
 
 
 def mesh_contents(version: Version, path: str) -> Phrase | None:
-    """Return the number of triangles and the size of a mesh in the units of the file, or None for a large file."""
+    """Return the number of triangles and the size of a mesh; None for a large file.
+
+    The size is in the units of the file.
+    """
     file = version.file(path)
     if file.stat().st_size > _MAX_CONTENT_BYTES:
         return None

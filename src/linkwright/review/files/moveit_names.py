@@ -1,4 +1,4 @@
-"""Check shared names in parameter files of MoveIt: controllers, planners and joints with limits."""
+"""Check shared names in MoveIt parameter files: controllers, planners and limited joints."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.breaking import joint_name_reason
-from linkwright.review.files.parameter_names import controller_reason, may_be, part_names
+from linkwright.review.files.parameter_names import can_evaluate_to, list_part_paths, make_controller_reason
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import list_items
 
@@ -15,21 +15,21 @@ _CONTROLLER = re.compile(r"(?:.*[._])?controller_list\[(?!(?:old )?\d+\])(?P<nam
 """The path of a controller in a list of mappings."""
 _PLANNER = re.compile(r"(?:.*\.)?planner_configs\.(?P<name>[^.\[]+)")
 """The path of the settings of a planner."""
-_PLANNERS = re.compile(r"(?:.*\.)?planner_configs")
+_PLANNER_LIST = re.compile(r"(?:.*\.)?planner_configs")
 """The path of the list of the planners of a group."""
 _LIMITED_JOINT = re.compile(r"(?:.*\.)?joint_limits\.(?P<name>[^.\[]+)")
 """The path of the limits of a joint."""
 _LIMIT = re.compile(r"has_\w+_limits|(max|min)_\w+")
 """The last name in the path of a limit of a joint."""
-_ACTION = re.compile(r"(?:.*[.\[])?(?P<controller>[^.\[\]]+)\]?\.action_ns")
+_ACTION_NAMESPACE = re.compile(r"(?:.*[.\[])?(?P<controller>[^.\[\]]+)\]?\.action_ns")
 """The path of the namespace of the action that MoveIt calls."""
 
 
 class MoveItRules:
-    """Decides which changes of a MoveIt parameter file are breaking.
+    """Decide which changes in a MoveIt parameter file are breaking.
 
     Args:
-        old: the old values by path, without the new names of renamed parts.
+        old: the old values by their original paths.
         new: the new values by path.
     """
 
@@ -37,42 +37,44 @@ class MoveItRules:
         self._old = old
         self._names = {
             pattern: {match["name"] for part in parts if (match := pattern.fullmatch(part))}
-            for parts in [{part for name in new for part in part_names(name)}]
+            for parts in [{part for name in new for part in list_part_paths(name)}]
             for pattern in (_CONTROLLER, _PLANNER, _LIMITED_JOINT)
         }
-        parts = {part for name in old for part in part_names(name)}
+        parts = {part for name in old for part in list_part_paths(name)}
         self._old_planners = {match["name"] for part in parts if (match := _PLANNER.fullmatch(part))}
 
-    def change_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
+    def find_change_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
         """Return the reason why a changed value is breaking, or None if it is not.
 
-        A planner that lost its settings, too, is reported with the settings.
+        A planner whose settings were also removed is reported with the settings.
         """
-        action = _ACTION.fullmatch(parameter)
-        if action is not None and old.text and not may_be(new.text, old.text):
+        action = _ACTION_NAMESPACE.fullmatch(parameter)
+        if action is not None and old.text and not can_evaluate_to(new.text, old.text):
             name = f"{action['controller']}/{old.text}"
             return phrase("the action server '{name}' gets no goals", name=name)
-        if not _PLANNERS.fullmatch(parameter) or not old.is_list:
+        if not _PLANNER_LIST.fullmatch(parameter) or not old.is_list:
             return None
         items = list_items(new.text)
-        removed = {name for name in list_items(old.text) if name and not any(may_be(item, name) for item in items)}
+        removed = {
+            name for name in list_items(old.text) if name and not any(can_evaluate_to(item, name) for item in items)
+        }
         removed -= {*items, *(self._old_planners - self._names[_PLANNER])}
-        return _planner_reason(", ".join(sorted(removed))) if removed else None
+        return _make_planner_reason(", ".join(sorted(removed))) if removed else None
 
-    def removal_reason(self, parameter: str) -> Phrase | None:
+    def find_removal_reason(self, parameter: str) -> Phrase | None:
         """Return the reason why removing a parameter is breaking, or None if it is not."""
-        for part in part_names(parameter):
-            for pattern, reason in ((_CONTROLLER, controller_reason), (_PLANNER, _planner_reason)):
+        for part in list_part_paths(parameter):
+            for pattern, reason in ((_CONTROLLER, make_controller_reason), (_PLANNER, _make_planner_reason)):
                 match = pattern.fullmatch(part)
                 if match is not None and self._is_removed(pattern, match["name"]):
                     return reason(match["name"])
         return None
 
-    def renaming_reason(self, part: str) -> Phrase | None:
-        """Return the reason why renaming or moving a part of the old file is breaking, or None if it is not."""
+    def find_renaming_reason(self, part: str) -> Phrase | None:
+        """Return the reason why renaming or moving a part is breaking; None if it is not."""
         joint = _LIMITED_JOINT.fullmatch(part)
         if joint is None:
-            return self.removal_reason(part)
+            return self.find_removal_reason(part)
         has_limits = any(
             name.startswith(f"{part}.") and _LIMIT.fullmatch(name.removeprefix(f"{part}.")) for name in self._old
         )
@@ -83,11 +85,11 @@ class MoveItRules:
     def _is_removed(self, pattern: re.Pattern[str], name: str) -> bool:
         """Return whether the new file has parts of a kind, but none that can have the name.
 
-        A list that was removed as a whole may be in another file or form.
+        A list that was removed as a whole may be in a different file or form.
         """
         names = self._names[pattern]
-        return bool(names) and name not in names and not any(may_be(new_name, name) for new_name in names)
+        return bool(names) and name not in names and not any(can_evaluate_to(new_name, name) for new_name in names)
 
 
-def _planner_reason(name: str) -> Phrase:
+def _make_planner_reason(name: str) -> Phrase:
     return phrase("programs that plan with the planner '{name}' do not find it", name=name)

@@ -1,4 +1,4 @@
-"""Compare YAML files: parameters of nodes and controllers, and settings that launch files read."""
+"""Compare YAML files: parameters of nodes and controllers, and settings of launch files."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.moveit_names import MoveItRules
 from linkwright.review.files.parameter_names import (
     NameRules,
-    has_other_type,
+    find_node_name,
+    find_part_renaming_reason,
+    has_different_type,
     is_parameter,
-    node_of_parameter,
-    part_names,
-    renaming_reason,
+    list_part_paths,
 )
-from linkwright.review.files.renamed_parts import edit_of, find_renamed_parts, parent_of, with_new_parts
+from linkwright.review.files.renamed_parts import find_edit, find_renamed_parts, get_parent, rename_parts
 from linkwright.review.files.value_changes import ValueChange, merge_values
-from linkwright.review.files.yaml_includes import with_includes
-from linkwright.review.files.yaml_lists import item_labels
-from linkwright.review.files.yaml_values import YamlType, YamlValue, compose_yaml, read_yaml_text, yaml_values
+from linkwright.review.files.yaml_includes import resolve_includes
+from linkwright.review.files.yaml_lists import find_item_labels
+from linkwright.review.files.yaml_values import YamlType, YamlValue, collect_values, compose_yaml, read_yaml_text
 from linkwright.review.list_changes import shorten
 from linkwright.review.merging import common_reason
 from linkwright.review.versions import Version
 
 _MAX_VALUES = 32
 """The maximum number of values in the line about an added file, divided among the nodes or keys."""
-_MIN_VALUES = 3
-_MAX_VALUE = 60
-_NAMES_OF_ITEMS = ("name", "id")
+_MIN_VALUES_OF_PART = 3
+_MAX_VALUE_CHARACTERS = 60
+_ITEM_NAME_KEYS = ("name", "id")
 
 
 def compare_parameter_files(pair: FilePair) -> None:
@@ -53,12 +53,15 @@ def compare_parameter_files(pair: FilePair) -> None:
         return
     old, new = roots
     if old is not None and new is not None:
-        old, new = with_includes(pair, old, new)
+        old, new = resolve_includes(pair, old, new)
     pair.changes += merge_values(_find_changes(pair, old, new))
 
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
-    """Return the parameters of nodes, or the top-level keys of other files, with values; None if there are none."""
+    """Return the node parameters in a file, or else its top-level keys, with values.
+
+    Returns None if there are none.
+    """
     text = read_yaml_text(version.file(path))
     bridges = read_bridges(text)
     if bridges:
@@ -66,25 +69,25 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
     root = _compose_root(text)
     if not isinstance(root, yaml.MappingNode):
         return None
-    values = yaml_values(root, {})
+    values = collect_values(root, {})
     nodes: dict[str, dict[str, YamlValue]] = {}
     for name, value in values.items():
-        node = node_of_parameter(name)
+        node = find_node_name(name)
         if node is not None:
             nodes.setdefault(node, {})[name] = value
     if nodes:
-        return phrase("parameters of {names}", names=_with_values(nodes))
+        return phrase("parameters of {names}", names=_format_values(nodes))
     names = [str(key.value) for key, _ in root.value]
     keys = {key: {name: value for name, value in values.items() if _is_below(name, key)} for key in names}
-    return _with_values(keys) if keys else None
+    return _format_values(keys) if keys else None
 
 
-def _with_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
+def _format_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     """Return the names of nodes or keys with their first values."""
-    limit = max(_MIN_VALUES, _MAX_VALUES // len(parts))
+    limit = max(_MIN_VALUES_OF_PART, _MAX_VALUES // len(parts))
     texts: list[Phrase] = []
     for part, values in parts.items():
-        items = [shorten(item, _MAX_VALUE) for item in _lone_content(part, values)]
+        items = [shorten(item, _MAX_VALUE_CHARACTERS) for item in _list_values(part, values)]
         if part in values:
             texts.append(phrase("{parameter} {value}", parameter=part, value=items[0]))
         else:
@@ -100,18 +103,18 @@ def _compose_root(text: str) -> yaml.Node | None:
     """
     root = compose_yaml(text)
     if root is not None:
-        yaml_values(root, {})
+        collect_values(root, {})
     return root
 
 
 def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | None) -> Iterator[ValueChange]:
-    labels = item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
-    old_values, new = ({} if root is None else yaml_values(root, labels) for root in (old_root, new_root))
+    labels = find_item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
+    old_values, new = ({} if root is None else collect_values(root, labels) for root in (old_root, new_root))
     moveit = MoveItRules(old_values, new)
     old = _report_renamed(pair, old_values, new, moveit)
     rules = NameRules(old, new)
     readers = KeyReaders(pair.versions, pair.new_path)
-    new_keys = frozenset(_last_key(part) for name in new for part in part_names(name))
+    new_keys = frozenset(_get_last_key(part) for name in new for part in list_part_paths(name))
     for name, value in new.items():
         old_value = old.get(name)
         if (
@@ -120,27 +123,29 @@ def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Nod
             and not _is_new_label(name, old_value, value)
         ):
             location = Location(pair.new_path, value.line, value.column)
-            shown = _shown_values(old_value, value)
-            reason = moveit.change_reason(name, old_value, value) or rules.change_reason(name, old_value, value)
-            reason = reason or readers.name_reason(name, old_value, value)
-            yield ValueChange(name, "changed", shown, location, reason)
-    for name, values_below in _lone_parts(new, old):
+            value_texts = _format_value_pair(old_value, value)
+            reason = moveit.find_change_reason(name, old_value, value) or rules.find_change_reason(
+                name, old_value, value
+            )
+            reason = reason or readers.find_name_reason(name, old_value, value)
+            yield ValueChange(name, "changed", value_texts, location, reason)
+    for name, values_below in _find_unpaired_parts(new, old):
         first = next(iter(values_below.values()))
         location = Location(pair.new_path, first.line, first.column)
-        yield ValueChange(name, "added", _lone_content(name, values_below), location)
-    for name, values_below in _lone_parts(old, new):
+        yield ValueChange(name, "added", _list_values(name, values_below), location)
+    for name, values_below in _find_unpaired_parts(old, new):
         first = next(iter(values_below.values()))
         location = Location(pair.old_path, first.line, first.column, is_old=True)
         reasons = (
-            moveit.removal_reason(inner_name) or rules.removal_reason(inner_name, value.text)
+            moveit.find_removal_reason(inner_name) or rules.find_removal_reason(inner_name, value.text)
             for inner_name, value in values_below.items()
         )
         reason = next((reason for reason in reasons if reason is not None), None)
-        reason = reason or readers.key_reason(_lost_keys(next(iter(values_below)), new_keys))
-        yield ValueChange(name, "removed", _lone_content(name, values_below), location, reason)
+        reason = reason or readers.find_key_reason(_find_lost_keys(next(iter(values_below)), new_keys))
+        yield ValueChange(name, "removed", _list_values(name, values_below), location, reason)
 
 
-def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
+def _format_value_pair(old: YamlValue, new: YamlValue) -> tuple[str, str]:
     """Return the texts of two values, quoted if they differ only in their quotes."""
     if old.shown != new.shown:
         return old.shown, new.shown
@@ -148,7 +153,7 @@ def _shown_values(old: YamlValue, new: YamlValue) -> tuple[str, str]:
     return old_text, new_text
 
 
-def _lone_content(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]:
+def _list_values(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]:
     """Return the value of a part that is a single value, or the names and values inside a part."""
     if part in values:
         return (values[part].shown,)
@@ -159,36 +164,39 @@ def _lone_content(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]
 def _is_label(name: str, value: YamlValue) -> bool:
     """Return whether a value is the name of a list item, which labels the item in paths."""
     item, _, key = name.rpartition(".")
-    return key in _NAMES_OF_ITEMS and item.endswith(f"[{value.text}]")
+    return key in _ITEM_NAME_KEYS and item.endswith(f"[{value.text}]")
 
 
 def _is_new_label(name: str, old: YamlValue, new: YamlValue) -> bool:
-    """Return whether a changed value is the name of a list item, so that the path of the item changes with it."""
+    """Return whether a changed value is the name of a list item.
+
+    The path of the item changes with the name.
+    """
     return old.text != new.text and _is_label(name, new)
 
 
-def _lone_parts(
+def _find_unpaired_parts(
     values: Mapping[str, YamlValue], others: Mapping[str, YamlValue]
 ) -> Iterator[tuple[str, dict[str, YamlValue]]]:
     """Yield the largest parts of a file that the other version lacks, with their values."""
-    other_parts = {part for name in others for part in part_names(name)}
+    other_parts = {part for name in others for part in list_part_paths(name)}
     parts: dict[str, dict[str, YamlValue]] = {}
     for name, value in values.items():
         if name not in others and (value.text or name not in other_parts):  # an empty key can get children
-            part = next((part for part in part_names(name) if part not in other_parts), name)
+            part = next((part for part in list_part_paths(name) if part not in other_parts), name)
             parts.setdefault(part, {})[name] = value
     for part, values_below in parts.items():
         yield next(iter(values_below)) if len(values_below) == 1 else part, values_below
 
 
-def _lost_keys(name: str, new_keys: Collection[str]) -> list[str]:
-    """Return the keys in the path of a value that the new version lacks; empty for a node parameter."""
+def _find_lost_keys(name: str, new_keys: Collection[str]) -> list[str]:
+    """Return the keys in a path that the new version lacks; empty for a node parameter."""
     if is_parameter(name):
         return []  # nodes declare their parameters with defaults
-    return [key for key in map(_last_key, part_names(name)) if key not in new_keys and "[" not in key]
+    return [key for key in map(_get_last_key, list_part_paths(name)) if key not in new_keys and "[" not in key]
 
 
-def _last_key(part: str) -> str:
+def _get_last_key(part: str) -> str:
     return part.rpartition(".")[2]
 
 
@@ -203,20 +211,20 @@ def _report_renamed(
     renamed = find_renamed_parts(old, new)
     groups: dict[Hashable, list[Change]] = {}
     for old_part, new_part in renamed.items():
-        inside = next(value for name, value in new.items() if _is_below(name, new_part))
+        first_value = next(value for name, value in new.items() if _is_below(name, new_part))
         text = phrase("{old} moved to {name}", old=old_part, name=new_part)
-        if parent_of(old_part) == parent_of(new_part):
+        if get_parent(old_part) == get_parent(new_part):
             text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
-        reason = moveit.renaming_reason(old_part) or renaming_reason(old_part, new_part, old)
+        reason = moveit.find_renaming_reason(old_part) or find_part_renaming_reason(old_part, new_part, old)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
-        change = Change(text, effect, reason, Location(pair.new_path, inside.line, inside.column))
+        change = Change(text, effect, reason, Location(pair.new_path, first_value.line, first_value.column))
         kind = None if reason is None else reason.template
-        groups.setdefault((edit_of(old_part, new_part), kind), []).append(change)
+        groups.setdefault((find_edit(old_part, new_part), kind), []).append(change)
     for first, *others in groups.values():
         names = tuple(f"{change.sentence.arguments['old']} -> {change.sentence.arguments['name']}" for change in others)
         reason = common_reason(change.reason for change in (first, *others))
         pair.changes.append(replace(first, reason=reason, other_names=names))
-    return with_new_parts(old, renamed)
+    return rename_parts(old, renamed)
 
 
 def _are_equal(name: str, old: YamlValue, new: YamlValue) -> bool:
@@ -224,7 +232,7 @@ def _are_equal(name: str, old: YamlValue, new: YamlValue) -> bool:
 
     The parameters of a node must also have the same type.
     """
-    if is_parameter(name) and has_other_type(old, new):
+    if is_parameter(name) and has_different_type(old, new):
         return False
     if old.is_null or new.is_null:
         return old.is_null and new.is_null

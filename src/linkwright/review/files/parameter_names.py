@@ -1,4 +1,7 @@
-"""Check shared names in parameter files: controllers, joints and frames, and the types of parameters."""
+"""Check shared names and the types of parameters in parameter files.
+
+The names are those of controllers, joints and frames.
+"""
 
 from __future__ import annotations
 
@@ -10,40 +13,40 @@ from linkwright.review.breaking import name_reason
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
 
-_FRAMES = re.compile(r"(^|[._])frame_id$")
+_FRAME_PARAMETER = re.compile(r"(^|[._])frame_id$")
 """The parameters that name a frame which the node publishes."""
-_USED_FRAMES = re.compile(r"(^|[._])(base|odom|map|global|world|target|reference)_frame_id$")
-"""The parameters that name a frame which localization and navigation only use. Controllers publish it."""
-_TRANSFORMS = re.compile(
+_USED_FRAME_PARAMETER = re.compile(r"(^|[._])(base|odom|map|global|world|target|reference)_frame_id$")
+"""The parameters that name a frame which localization and navigation use but do not publish."""
+_TRANSFORM_SWITCH = re.compile(
     r"(^|[._])(publish_tf|tf[._]send|enable_odom_tf|broadcast_tf|publish_odom_tf|pub_tf|tf_broadcast)$"
 )
-"""The parameters that switch a transform of a node on and off."""
-_JOINTS = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
+"""The parameters that enable and disable a transform of a node."""
+_JOINT_PARAMETER = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
 """The parameters that name joints of a controller. Other nodes only use the joints."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
 _OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
 _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|controller_list)$")
 """The parameters that name controllers which a program loads or commands."""
-_CLASS = re.compile(r"\w+/\w+")
+_ROS1_CLASS = re.compile(r"\w+/\w+")
 """The class of a plugin in the notation of ROS 1."""
 _NODE = re.compile(r"(?P<node>.*)\.ros__parameters\.")
 _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
 _STAMPED_BY_DEFAULT = "use_stamped_vel"
 """The parameter of diff_drive_controller and its relatives, which is true by default."""
-_NUMBER_OR_TRUTH = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
-_PLUGINS = re.compile(r"(^|[._])(plugins|plugin_names|plugin_ids)$")
+_NUMBER_OR_BOOLEAN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
+_PLUGIN_LIST = re.compile(r"(^|[._])(plugins|plugin_names|plugin_ids)$")
 """The parameters that list plugin names, which behavior trees and goals use."""
 _SEPARATOR = re.compile(r"(?<=.)[.\[]")
 """The separators of the names in a path."""
 _SUBSTITUTION = re.compile(r"\\\$\\\([\w\\ -]+\\\)")
 """A substitution of launch in a name, after `re.escape`."""
-_ANY = ("**", "*")
+_WILDCARDS = ("**", "*")
 """The wildcards in the names of nodes in parameter files."""
 
 
 class NameRules:
-    """Decides which changes of a parameter file are breaking.
+    """Decide which changes in a parameter file are breaking.
 
     Args:
         old: the old values by path.
@@ -51,18 +54,18 @@ class NameRules:
     """
 
     def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
-        self._new_nodes = {node for name in new if (node := node_of_parameter(name)) is not None}
+        self._new_nodes = {node for name in new if (node := find_node_name(name)) is not None}
         self._controllers = {*find_controllers(old), *find_controllers(new)}
         self._new_controllers = set(find_controllers(new))
-        self._new_parts = {part for name in new for part in part_names(name)}
+        self._new_parts = {part for name in new for part in list_part_paths(name)}
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
 
-    def change_reason(self, parameter: str, old_value: YamlValue, new_value: YamlValue) -> Phrase | None:
+    def find_change_reason(self, parameter: str, old_value: YamlValue, new_value: YamlValue) -> Phrase | None:
         """Return the reason why a changed value is breaking, or None if it is not."""
         old, new = old_value.text, new_value.text
         if _STAMPED.search(parameter) and {old.lower(), new.lower()} == {"true", "false"}:
             return phrase("the message type of a topic changes between one with and one without a header")
-        controller = _typed_controller(parameter, old, new)
+        controller = _find_typed_controller(parameter, old, new)
         if controller is not None:
             return phrase(
                 "the controller '{name}' has the type '{new}' instead of '{old}', with other topics and interfaces",
@@ -70,24 +73,26 @@ class NameRules:
                 old=old,
                 new=new,
             )
-        removed = _name_items(old) - _name_items(new)
-        removed -= {name for name in removed if any(may_be(item, name) for item in _name_items(new))}
-        if _TRANSFORMS.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
+        removed = _find_name_items(old) - _find_name_items(new)
+        removed -= {name for name in removed if any(can_evaluate_to(item, name) for item in _find_name_items(new))}
+        if _TRANSFORM_SWITCH.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
             return phrase("the node does not publish its transform any more")
         is_offered = offers_frame(parameter)
         if is_offered:
             removed -= self._new_frames
-        if self._is_controllers(parameter):
-            is_offered = _FRAMES.search(parameter) is not None or _JOINTS.search(parameter) is not None
+        if self._belongs_to_controller(parameter):
+            is_offered = (
+                _FRAME_PARAMETER.search(parameter) is not None or _JOINT_PARAMETER.search(parameter) is not None
+            )
         if removed and is_offered:
             return name_reason(", ".join(sorted(removed)))
-        if removed and _PLUGINS.search(parameter):
-            return _plugin_reason(removed)
+        if removed and _PLUGIN_LIST.search(parameter):
+            return _make_plugin_reason(removed)
         if removed and old_value.is_list and _CONTROLLER_LIST.search(parameter):
-            return controller_reason(", ".join(sorted(removed)))
-        return type_reason(old_value, new_value) if is_parameter(parameter) else None
+            return make_controller_reason(", ".join(sorted(removed)))
+        return find_type_reason(old_value, new_value) if is_parameter(parameter) else None
 
-    def removal_reason(self, parameter: str, old: str) -> Phrase | None:
+    def find_removal_reason(self, parameter: str, old: str) -> Phrase | None:
         """Return the reason why removing a parameter is breaking, or None if it is not.
 
         The type of a controller can also be declared among its own parameters.
@@ -96,23 +101,26 @@ class NameRules:
             return phrase("the message type of a topic changes between one with and one without a header")
         controller = _CONTROLLER_TYPE.fullmatch(parameter)
         if controller is not None and controller["controller"] not in self._new_controllers:
-            return controller_reason(controller["controller"])
+            return make_controller_reason(controller["controller"])
         node = _NODE.match(parameter)
         if node is not None and not self._has_node(parameter):
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
-        if _PLUGINS.search(parameter) and _name_items(old):
-            return _plugin_reason(_name_items(old))
+        if _PLUGIN_LIST.search(parameter) and _find_name_items(old):
+            return _make_plugin_reason(_find_name_items(old))
         if node is not None and controller is None and self._is_in_lost_group(parameter, node[0].rstrip(".")):
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
-        own = next(_ros1_controllers({parameter: old}), None)
-        return None if own is None else controller_reason(_slash_separated(own))
+        ros1_controller = next(_find_ros1_controllers({parameter: old}), None)
+        return None if ros1_controller is None else make_controller_reason(_separate_by_slashes(ros1_controller))
 
     def _is_in_lost_group(self, parameter: str, root: str) -> bool:
-        """Return whether the group of a parameter was removed. A single removed value gets the default of the node."""
-        group = part_names(parameter)[-2]
+        """Return whether the group of a parameter was removed.
+
+        The node uses its default for a single removed value.
+        """
+        group = list_part_paths(parameter)[-2]
         return root in self._new_parts and group not in self._new_parts
 
-    def _is_controllers(self, parameter: str) -> bool:
+    def _belongs_to_controller(self, parameter: str) -> bool:
         """Return whether a parameter belongs to a controller."""
         node = _NODE.match(parameter)
         name = node["node"].rpartition(".")[2] if node else parameter.partition(".")[0]
@@ -120,13 +128,13 @@ class NameRules:
 
     def _has_node(self, parameter: str) -> bool:
         """Return whether the new version has other parameters of the same node."""
-        node = node_of_parameter(parameter)
+        node = find_node_name(parameter)
         return node is not None and any(matches_node(other, node) for other in self._new_nodes)
 
 
 def offers_frame(parameter: str) -> bool:
     """Return whether a parameter names a frame that a node publishes for other programs."""
-    return _FRAMES.search(parameter) is not None and not _USED_FRAMES.search(parameter)
+    return _FRAME_PARAMETER.search(parameter) is not None and not _USED_FRAME_PARAMETER.search(parameter)
 
 
 def is_parameter(name: str) -> bool:
@@ -134,57 +142,57 @@ def is_parameter(name: str) -> bool:
     return _NODE.match(name) is not None
 
 
-def node_of_parameter(name: str) -> str | None:
-    """Return the name of the node in the path of a parameter, or None for another path."""
+def find_node_name(name: str) -> str | None:
+    """Return the name of the node in the path of a parameter, or None for other paths."""
     match = _NODE.match(name)
     return None if match is None else match["node"]
 
 
-def has_other_type(old: YamlValue, new: YamlValue) -> bool:
+def has_different_type(old: YamlValue, new: YamlValue) -> bool:
     """Return whether two values differ in type. An empty value fits all types."""
     if old.is_list != new.is_list and None not in (old.type, new.type):
         return True
     return None not in (old.type, new.type) and old.type is not new.type
 
 
-def type_reason(old: YamlValue, new: YamlValue) -> Phrase | None:
-    """Return the reason why another type of a parameter is breaking, or None if the type is the same."""
-    if not has_other_type(old, new):
+def find_type_reason(old: YamlValue, new: YamlValue) -> Phrase | None:
+    """Return the reason why a different type is breaking; None if the type is the same."""
+    if not has_different_type(old, new):
         return None
     return phrase(
         "a node that declares the parameter as {old} does not accept {new}", old=old.type_name, new=new.type_name
     )
 
 
-def controller_reason(name: str) -> Phrase:
+def make_controller_reason(name: str) -> Phrase:
     """Return the reason why removing a controller is breaking."""
     return phrase("programs that load or command the controller '{name}' do not find it", name=name)
 
 
-def _ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
-    """Yield the paths of ROS 1 controllers among values: parts with a type outside of node parameters."""
+def _find_ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
+    """Yield the paths of ROS 1 controllers: parts with a type outside of node parameters."""
     for name, text in values.items():
         part, _, key = name.rpartition(".")
         is_controller = "controller" in f"{part} {text}".lower() and "[" not in part
-        if key == "type" and part and is_controller and _CLASS.fullmatch(text) and not _NODE.match(name):
+        if key == "type" and part and is_controller and _ROS1_CLASS.fullmatch(text) and not _NODE.match(name):
             yield part
 
 
-def _typed_controller(parameter: str, old: str, new: str) -> str | None:
-    """Return the name of the controller whose type a parameter sets, or None for another parameter."""
+def _find_typed_controller(parameter: str, old: str, new: str) -> str | None:
+    """Return the controller whose type a parameter sets; None for other parameters."""
     match = _CONTROLLER_TYPE.fullmatch(parameter) or _OWN_TYPE.fullmatch(parameter)
     if match is not None:
-        is_class = match.re is _CONTROLLER_TYPE or (_CLASS.fullmatch(old) and _CLASS.fullmatch(new))
+        is_class = match.re is _CONTROLLER_TYPE or (_ROS1_CLASS.fullmatch(old) and _ROS1_CLASS.fullmatch(new))
         return match["controller"] if is_class else None
-    part = next(_ros1_controllers({parameter: old}), None)
-    return _slash_separated(part) if part is not None and _CLASS.fullmatch(new) else None
+    part = next(_find_ros1_controllers({parameter: old}), None)
+    return _separate_by_slashes(part) if part is not None and _ROS1_CLASS.fullmatch(new) else None
 
 
-def _slash_separated(part: str) -> str:
+def _separate_by_slashes(part: str) -> str:
     return part.replace(".", "/")
 
 
-def _plugin_reason(names: Collection[str]) -> Phrase:
+def _make_plugin_reason(names: Collection[str]) -> Phrase:
     return phrase("programs that name the plugins {names} do not find them", names=quoted_names(sorted(names)))
 
 
@@ -199,16 +207,16 @@ def find_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
 def find_all_controllers(values: Mapping[str, YamlValue]) -> Iterator[str]:
     """Yield the names of the ROS 2 and ROS 1 controllers whose types a file sets."""
     yield from find_controllers(values)
-    yield from map(_slash_separated, _ros1_controllers({name: value.text for name, value in values.items()}))
+    yield from map(_separate_by_slashes, _find_ros1_controllers({name: value.text for name, value in values.items()}))
 
 
-def _name_items(text: str) -> set[str]:
+def _find_name_items(text: str) -> set[str]:
     """Return the items of a list or the value itself, without numbers and booleans."""
-    return {item for item in list_items(text) if item not in ("", EMPTY) and not _NUMBER_OR_TRUTH.fullmatch(item)}
+    return {item for item in list_items(text) if item not in ("", EMPTY) and not _NUMBER_OR_BOOLEAN.fullmatch(item)}
 
 
-def renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
-    """Return the reason why renaming or moving a part of the old file is breaking, or None if it is not.
+def find_part_renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
+    """Return the reason why renaming or moving a part is breaking; None if it is not.
 
     Args:
         part: the old path: a node, parameters of a node, or a controller of ROS 1.
@@ -217,37 +225,40 @@ def renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -
     """
     names = [
         name
-        for name in _ros1_controllers({name: value.text for name, value in values.items()})
+        for name in _find_ros1_controllers({name: value.text for name, value in values.items()})
         if name == part or name.startswith(f"{part}.")
     ]
-    names = [name for name in names if not may_be(f"{new_part}{name.removeprefix(part)}", name)]
+    names = [name for name in names if not can_evaluate_to(f"{new_part}{name.removeprefix(part)}", name)]
     if names:
-        return controller_reason(", ".join(map(_slash_separated, names)))
-    node, new_node = node_of_parameter(f"{part}."), node_of_parameter(f"{new_part}.")
-    if node is None or part_names(part)[:-1] == part_names(new_part)[:-1]:
-        return _renamed_node_reason(part, new_part, values)
+        return make_controller_reason(", ".join(map(_separate_by_slashes, names)))
+    node, new_node = find_node_name(f"{part}."), find_node_name(f"{new_part}.")
+    if node is None or list_part_paths(part)[:-1] == list_part_paths(new_part)[:-1]:
+        return _find_node_renaming_reason(part, new_part, values)
     if new_node is not None and matches_node(new_node, node):
         return phrase("values that are set under the old names have no effect any more")
     return phrase("the node '{name}' starts without these parameters", name=node)
 
 
-def _renamed_node_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
-    """Return the reason why renaming or moving node parameters is breaking, or None if it is not.
+def _find_node_renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
+    """Return the reason why renaming or moving node parameters is breaking.
 
-    It is not breaking if the new name matches the old node, too, or if the old name matches any node.
+    Returns None if the new name also matches the old node, or if the old name matches any node.
     """
-    inside = next((name for name in values if _NODE.match(name) and name.startswith(f"{part}.")), None)
-    match = None if inside is None else _NODE.match(inside)
-    if inside is None or match is None or len(match[0]) < len(part) or match["node"] in find_controllers(values):
+    parameter = next((name for name in values if _NODE.match(name) and name.startswith(f"{part}.")), None)
+    match = None if parameter is None else _NODE.match(parameter)
+    if parameter is None or match is None or len(match[0]) < len(part) or match["node"] in find_controllers(values):
         return None
-    new_node = node_of_parameter(f"{new_part}{inside.removeprefix(part)}")
-    if new_node is None or matches_node(new_node, match["node"]) or any(word in match["node"] for word in _ANY):
+    new_node = find_node_name(f"{new_part}{parameter.removeprefix(part)}")
+    if new_node is None or matches_node(new_node, match["node"]) or any(word in match["node"] for word in _WILDCARDS):
         return None
     return phrase("the node '{name}' starts without these parameters", name=match["node"])
 
 
 def matches_node(name: str, node: str) -> bool:
-    """Return whether a name in a parameter file, such as ``/**/amcl``, matches a node by the rules of rcl."""
+    """Return whether a name in a parameter file, such as ``/**/amcl``, matches a node.
+
+    The rules are those of rcl.
+    """
     words = [word for word in re.split(r"[./]", name) if word]
     pattern = "".join(
         r"(?:/[^/]+)*" if word == "**" else r"/[^/]+" if word == "*" else f"/{re.escape(word)}" for word in words
@@ -255,12 +266,15 @@ def matches_node(name: str, node: str) -> bool:
     return re.fullmatch(pattern, "/" + "/".join(word for word in re.split(r"[./]", node) if word)) is not None
 
 
-def may_be(text: str, name: str) -> bool:
-    """Return whether a text with substitutions, such as ``$(arg arm)_joint1``, can evaluate to a name."""
+def can_evaluate_to(text: str, name: str) -> bool:
+    """Return whether a text such as ``$(arg arm)_joint1`` can evaluate to a name."""
     pattern, count = _SUBSTITUTION.subn(".*", re.escape(text))
     return count > 0 and re.fullmatch(pattern, name) is not None
 
 
-def part_names(name: str) -> list[str]:
-    """Return the paths of the mappings and items around a value, the outermost first, then its own path."""
+def list_part_paths(name: str) -> list[str]:
+    """Return the paths of the mappings and items around a value, and its own path.
+
+    The outermost comes first.
+    """
     return [*(name[: match.start()] for match in _SEPARATOR.finditer(name)), name]

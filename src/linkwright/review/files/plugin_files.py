@@ -17,7 +17,7 @@ from linkwright.review.versions import Version, Versions
 
 _ROOTS = frozenset({"library", "class_libraries"})
 _UNKNOWN_EXPORT = re.compile(r"pluginlib_export_plugin_description_file\s*\([^)]*\$", re.IGNORECASE)
-_LOST = phrase("programs and configurations that load the class do not find it")
+_LOST_REASON = phrase("programs and configurations that load the class do not find it")
 
 
 @dataclass(frozen=True)
@@ -31,29 +31,29 @@ class _PluginClass:
     location: Location | None
 
 
-def plugin_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
+def compare_plugin_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
     """Yield the changed plugin descriptions with added, removed and changed classes.
 
-    Moving a class to another file is not a change.
+    Moving a class to a different file is not a change.
     """
-    old = _declared_classes(versions.old, [file.old_path for file in changed_files])
-    new = _declared_classes(versions.new, [file.new_path for file in changed_files])
+    old = _read_declared_classes(versions.old, [file.old_path for file in changed_files])
+    new = _read_declared_classes(versions.new, [file.new_path for file in changed_files])
     changes: dict[str, list[Change]] = {}
     names = PackageNames(find_renamed_packages(versions))
     renamed = _find_renamed_classes(old, new, names)
     for old_name, name in renamed.items():
         text = phrase("plugin class '{old}' renamed to '{new}'", old=old_name, new=name)
-        changes.setdefault(new[name].path, []).append(Change(text, Effect.BREAKING, _LOST, new[name].location))
+        changes.setdefault(new[name].path, []).append(Change(text, Effect.BREAKING, _LOST_REASON, new[name].location))
     old = {renamed.get(name, name): plugin for name, plugin in old.items()}
     for name, plugin in new.items():
-        for change in _find_changes(name, old.get(name), plugin, names):
+        for change in _compare_class(name, old.get(name), plugin, names):
             changes.setdefault(plugin.path, []).append(change)
     for name, plugin in old.items():
         if name not in new:
             text = phrase("plugin class '{name}' removed", name=name)
             change = Change(text, location=plugin.location)
             if _is_exported(versions.old, plugin.path):
-                change = replace(change, effect=Effect.BREAKING, reason=_LOST)
+                change = replace(change, effect=Effect.BREAKING, reason=_LOST_REASON)
             changes.setdefault(plugin.path, []).append(change)
     paths = {path: file for file in changed_files for path in (file.old_path, file.new_path) if path}
     for path in sorted(changes):
@@ -61,17 +61,17 @@ def plugin_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
         yield Subject(SubjectKind.PLUGINS, path, file.old_path, file.new_path, changes[path])
 
 
-def _declared_classes(version: Version, paths: Sequence[str | None]) -> Mapping[str, _PluginClass]:
+def _read_declared_classes(version: Version, paths: Sequence[str | None]) -> Mapping[str, _PluginClass]:
     """Return the classes that plugin descriptions declare, by the name that programs load."""
     classes: dict[str, _PluginClass] = {}
     for path in paths:
         if path is None or not path.endswith(".xml") or not version.file(path).is_file():
             continue
-        classes.update(_classes_of(version.file(path), path, is_old=version.is_old))
+        classes.update(_read_classes(version.file(path), path, is_old=version.is_old))
     return classes
 
 
-def _classes_of(file: Path, path: str, *, is_old: bool) -> Iterator[tuple[str, _PluginClass]]:
+def _read_classes(file: Path, path: str, *, is_old: bool) -> Iterator[tuple[str, _PluginClass]]:
     try:
         root = read_lenient_root(file)
     except LinkwrightError:
@@ -90,7 +90,10 @@ def _classes_of(file: Path, path: str, *, is_old: bool) -> Iterator[tuple[str, _
 
 
 def _is_exported(version: Version, path: str) -> bool:
-    """Return whether a package may export a plugin description. Programs do not find it without an export."""
+    """Return whether a package may export a plugin description.
+
+    Programs do not find a plugin description without an export.
+    """
     folders = (version.file(parent.as_posix()) for parent in PurePosixPath(path).parents)
     package = next((folder for folder in folders if (folder / MANIFEST).is_file()), None)
     if package is None:
@@ -111,18 +114,18 @@ def _find_renamed_classes(
     added = {name: plugin for name, plugin in new.items() if name not in old}
     renamed: dict[str, str] = {}
     for old_name, plugin in removed.items():
-        same_type = [
+        classes_of_type = [
             name for name, other in added.items() if plugin.type and other.type == names.rename_derived(plugin.type)
         ]
         derived = names.rename_derived(old_name)
-        new_name = derived if derived in added else same_type[0] if len(same_type) == 1 else None
+        new_name = derived if derived in added else classes_of_type[0] if len(classes_of_type) == 1 else None
         if new_name is not None:
             renamed[old_name] = new_name
             del added[new_name]
     return renamed
 
 
-def _find_changes(name: str, old: _PluginClass | None, new: _PluginClass, names: PackageNames) -> Iterator[Change]:
+def _compare_class(name: str, old: _PluginClass | None, new: _PluginClass, names: PackageNames) -> Iterator[Change]:
     if old is None:
         yield Change(phrase("plugin class '{name}' added", name=name), location=new.location)
         return
@@ -133,11 +136,14 @@ def _find_changes(name: str, old: _PluginClass | None, new: _PluginClass, names:
     if names.rename_derived(old.type) != new.type:
         text = phrase("plugin class '{name}': type {old} -> {new}", name=name, old=old.type, new=new.type)
         yield Change(text, location=new.location)
-    if _library_name(names.rename_derived(old.library)) != _library_name(new.library):
+    if _get_library_name(names.rename_derived(old.library)) != _get_library_name(new.library):
         text = phrase("plugin class '{name}': library {old} -> {new}", name=name, old=old.library, new=new.library)
         yield Change(text, location=new.location)
 
 
-def _library_name(path: str) -> str:
-    """Return the name of a library without folder, prefix and suffix. pluginlib adds these itself."""
+def _get_library_name(path: str) -> str:
+    """Return the name of a library without folder, prefix and suffix.
+
+    pluginlib adds these itself.
+    """
     return PurePosixPath(path).name.removeprefix("lib").removesuffix(".so")

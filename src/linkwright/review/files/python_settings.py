@@ -1,4 +1,4 @@
-"""Compare ``setup.cfg`` and ``pyproject.toml``: executables, other entry points and installed files."""
+"""Compare the entry points and installed files in ``setup.cfg`` and ``pyproject.toml``."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PYPROJECT = "pyproject.toml"
 _SCRIPT_FOLDERS = (("develop", "script_dir"), ("develop", "script-dir"), ("install", "install_scripts"),
                    ("install", "install-scripts"))  # fmt: skip
 """The settings of the folder into which executables are installed."""
-_SHOWN = ("name", "version", "license", "python_requires", "requires-python")
+_SHOWN_SETTINGS = ("name", "version", "license", "python_requires", "requires-python")
 
 
 def compare_setup_cfg_files(pair: FilePair) -> None:
@@ -44,14 +44,14 @@ def read_setup_cfg(version: Version, path: str) -> BuildFacts:
     except Error as error:
         raise UnreadableFileError(foreign(str(error).splitlines()[0])) from error
     sections: dict[str, dict[str, str]] = {name: dict(parser[name]) for name in parser.sections()}
-    facts = _empty_facts(path)
+    facts = _make_empty_facts(path)
     facts.project = sections.get("metadata", {}).get("name", "")
     for group, lines in sections.get("options.entry_points", {}).items():
-        facts.facts += _entry_points(group, (line.partition("=")[::2] for line in lines.splitlines()))
+        facts.facts += _make_entry_point_facts(group, (line.partition("=")[::2] for line in lines.splitlines()))
     for folder, lines in sections.get("options.data_files", {}).items():
         _add_files(facts, version, folder, lines.splitlines())
     settings = {**sections.get("metadata", {}), **sections.get("options", {})}
-    facts.facts += _setting_facts(settings)
+    facts.facts += _make_setting_facts(settings)
     for section, option in _SCRIPT_FOLDERS:
         value = sections.get(section, {}).get(option, "")
         if value:
@@ -70,19 +70,19 @@ def read_pyproject(version: Version, path: str) -> BuildFacts:
         document = parse_toml(version.file(path).read_text(encoding="utf-8", errors="replace"))
     except ValueError as error:
         raise UnreadableFileError(foreign(str(error))) from error
-    facts = _empty_facts(path)
+    facts = _make_empty_facts(path)
     project = _find_table(document, "project")
     facts.project = str(project.get("name", ""))
-    facts.facts += _entry_points(PROGRAM_GROUP, _find_table(project, "scripts").items())
+    facts.facts += _make_entry_point_facts(PROGRAM_GROUP, _find_table(project, "scripts").items())
     for group, entries in _find_table(project, "entry-points").items():
-        facts.facts += _entry_points(group, entries.items() if isinstance(entries, Mapping) else ())
+        facts.facts += _make_entry_point_facts(group, entries.items() if isinstance(entries, Mapping) else ())
     for folder, patterns in _find_table(document, "tool", "setuptools", "data-files").items():
         _add_files(facts, version, folder, patterns if isinstance(patterns, list) else ())
-    facts.facts += _setting_facts(project)
+    facts.facts += _make_setting_facts(project)
     return facts
 
 
-def _empty_facts(path: str) -> BuildFacts:
+def _make_empty_facts(path: str) -> BuildFacts:
     return BuildFacts(package=PurePosixPath(path).parent.as_posix().removeprefix("."))
 
 
@@ -93,7 +93,7 @@ def _find_table(document: Mapping[str, Any], *names: str) -> Mapping[str, Any]:
     return document
 
 
-def _entry_points(group: str, entries: Iterable[tuple[object, object]]) -> Iterator[Fact]:
+def _make_entry_point_facts(group: str, entries: Iterable[tuple[object, object]]) -> Iterator[Fact]:
     for entry, target in entries:
         name, function = str(entry).strip(), str(target).strip()
         if not name or not function:
@@ -104,8 +104,8 @@ def _entry_points(group: str, entries: Iterable[tuple[object, object]]) -> Itera
             yield Fact(FactKind.ENTRY_POINT, f"{group}: {name}", function)
 
 
-def _setting_facts(settings: Mapping[str, object]) -> Iterator[Fact]:
-    for name in _SHOWN:
+def _make_setting_facts(settings: Mapping[str, object]) -> Iterator[Fact]:
+    for name in _SHOWN_SETTINGS:
         value = settings.get(name)
         if isinstance(value, str) and value.strip():
             yield Fact(FactKind.SETTING, name, value.strip())

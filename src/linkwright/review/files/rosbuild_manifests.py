@@ -1,4 +1,4 @@
-"""Compare ``manifest.xml`` and ``stack.xml``, the manifests of rosbuild, the predecessor of catkin."""
+"""Compare the manifests of rosbuild, the predecessor of catkin."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _Items = dict[tuple[str, str], Element]
 """Elements by tag and name."""
 
 
-def rosbuild_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
+def compare_rosbuild_manifests(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[Subject]:
     """Yield the changed rosbuild manifests with their changes."""
     for file in changed_files:
         if PurePosixPath(file.path).name not in _FILES or file.is_submodule:
@@ -34,7 +34,7 @@ def rosbuild_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) 
 
 
 def _read(version: Version, path: str | None) -> Element | None:
-    """Return the root of a manifest, or None if the version lacks the file or it is not a manifest."""
+    """Return the root of a manifest; None if the file is absent or not a manifest."""
     if path is None or not version.file(path).is_file():
         return None
     try:
@@ -51,13 +51,13 @@ def _find_changes(versions: Versions, file: ChangedFile, old: Element | None, ne
         items = phrase("depends on {names}", names=joined_first(names, MAX_NAMES))
         yield Change(phrase("{change}: {items}", change=text, items=items) if names else text)
     elif old is not None and new is None and file.new_path is None:
-        yield from _removal_changes(versions, file.path, old)
+        yield from _describe_removal(versions, file.path, old)
     elif old is not None and new is not None:
         yield from _find_differences(file, old, new)
 
 
-def _removal_changes(versions: Versions, path: str, old: Element) -> Iterator[Change]:
-    """Yield the removal of a manifest, or the differences from the catkin manifest that replaces it."""
+def _describe_removal(versions: Versions, path: str, old: Element) -> Iterator[Change]:
+    """Yield the removal of a manifest, or its differences from the catkin manifest."""
     manifest = versions.new.file((PurePosixPath(path).parent / MANIFEST).as_posix())
     if old.tag == "stack":
         yield Change(phrase("stack removed"))
@@ -86,12 +86,12 @@ def _find_differences(file: ChangedFile, old: Element, new: Element) -> Iterator
         before, after = (", ".join(" ".join(part.text().split()) for part in root.elements(tag)) for root in (old, new))
         if before != after:
             text = phrase("{tag}: {old} -> {new}", tag=tag, old=before or "-", new=after or "-")
-            yield Change(text, location=_element_location(file, (new.first(tag) or new), is_old=False))
-    if _description_text(old) != _description_text(new):
-        yield Change(phrase("description changed"), location=_element_location(file, new, is_old=False))
+            yield Change(text, location=_find_location(file, (new.first(tag) or new), is_old=False))
+    if _read_description(old) != _read_description(new):
+        yield Change(phrase("description changed"), location=_find_location(file, new, is_old=False))
     old_items, new_items = ({**_read_dependencies(root), **_read_exports(root)} for root in (old, new))
-    yield from _lone_changes(file, new_items, old_items, is_added=True)
-    yield from _lone_changes(file, old_items, new_items, is_added=False)
+    yield from _find_unpaired_elements(file, new_items, old_items, is_added=True)
+    yield from _find_unpaired_elements(file, old_items, new_items, is_added=False)
 
 
 def _read_dependencies(root: Element) -> _Items:
@@ -113,26 +113,26 @@ def _read_exports(root: Element) -> _Items:
     }
 
 
-def _lone_changes(file: ChangedFile, items: _Items, others: _Items, *, is_added: bool) -> Iterator[Change]:
+def _find_unpaired_elements(file: ChangedFile, items: _Items, others: _Items, *, is_added: bool) -> Iterator[Change]:
     for tag in ("depend", "rosdep", "export"):
-        lone = [
+        unpaired = [
             (name, element)
             for (item_tag, name), element in items.items()
             if item_tag == tag and (item_tag, name) not in others
         ]
-        if not lone:
+        if not unpaired:
             continue
-        names = joined_first([name for name, _ in lone], MAX_NAMES)
-        location = _element_location(file, lone[0][1], is_old=not is_added)
+        names = joined_first([name for name, _ in unpaired], MAX_NAMES)
+        location = _find_location(file, unpaired[0][1], is_old=not is_added)
         if is_added:
             yield Change(phrase("{tags} added: {packages}", tags=tag, packages=names), location=location)
             continue
         text = phrase("{tags} removed: {packages}", tags=tag, packages=names)
-        reason = _removal_reason(tag, [element for _, element in lone])
+        reason = _find_removal_reason(tag, [element for _, element in unpaired])
         yield Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
 
 
-def _removal_reason(tag: str, elements: Sequence[Element]) -> Phrase | None:
+def _find_removal_reason(tag: str, elements: Sequence[Element]) -> Phrase | None:
     """Return the reason why removing elements is breaking, or None if it is not."""
     plugins = [element.tag for element in elements if tag == "export" and "plugin" in element.attributes]
     if plugins:
@@ -140,7 +140,7 @@ def _removal_reason(tag: str, elements: Sequence[Element]) -> Phrase | None:
     return None
 
 
-def _description_text(root: Element) -> str:
+def _read_description(root: Element) -> str:
     element = root.first("description")
     if element is None:
         return ""
@@ -148,7 +148,7 @@ def _description_text(root: Element) -> str:
     return " ".join([element.attributes.get("brief", ""), *texts])
 
 
-def _element_location(file: ChangedFile, element: Element, *, is_old: bool) -> Location | None:
+def _find_location(file: ChangedFile, element: Element, *, is_old: bool) -> Location | None:
     span = element.span()
     if span is None:
         return None

@@ -1,4 +1,4 @@
-"""Compare RViz configurations: displays with their topics, frames, tools, panels and the view."""
+"""Compare RViz configurations: displays, frames, tools, panels and the view."""
 
 from __future__ import annotations
 
@@ -15,11 +15,13 @@ from linkwright.review.files.yaml_values import compose_yaml, read_yaml_values
 from linkwright.review.versions import Version
 
 _MANAGER = "Visualization Manager"
-_GLOBAL = f"{_MANAGER}.Global Options."
-_VIEW = f"{_MANAGER}.Views.Current."
-_IGNORED = frozenset({"Class", "Name", "Value", "Displays", "Links", "Frames", "Tree", "Namespaces", "Status"})
+_GLOBAL_PREFIX = f"{_MANAGER}.Global Options."
+_VIEW_PREFIX = f"{_MANAGER}.Views.Current."
+_IGNORED_PROPERTIES = frozenset(
+    {"Class", "Name", "Value", "Displays", "Links", "Frames", "Tree", "Namespaces", "Status"}
+)
 """The properties of displays that are compared separately, or that RViz fills from received data."""
-_COMPUTED = frozenset({"Min Intensity", "Max Intensity", "Min Value", "Max Value", "Min Color", "Max Color"})
+_COMPUTED_PROPERTIES = frozenset({"Min Intensity", "Max Intensity", "Min Value", "Max Value", "Min Color", "Max Color"})
 _TOPIC = "Topic"
 _MAX_PROPERTIES = 4
 """The maximum number of properties of a display in a line."""
@@ -30,11 +32,11 @@ class _Item:
     """A display, tool or panel.
 
     Attributes:
-        name: its name, with the names of the groups around it.
-        class_name: its class.
-        properties: its properties by name.
-        line: its line, starting at 1.
-        column: its column, starting at 1.
+        name: the displayed name, after the names of the enclosing groups.
+        class_name: the plugin class, such as ``rviz_default_plugins/TF``.
+        properties: the compared properties by name.
+        line: the line in the file, starting at 1.
+        column: the column in the file, starting at 1.
     """
 
     name: str
@@ -100,27 +102,30 @@ def _find_child(node: yaml.Node | None, name: str) -> yaml.Node | None:
     return next((value for key, value in node.value if key.value == name), None)
 
 
-def _node_text(node: yaml.Node | None) -> str:
+def _get_text(node: yaml.Node | None) -> str:
     return str(node.value) if isinstance(node, yaml.ScalarNode) else ""
 
 
 def _read_items(node: yaml.Node | None, group: str) -> Iterator[_Item]:
     """Yield the items of a list, including the items of display groups."""
     for item in node.value if isinstance(node, yaml.SequenceNode) else ():
-        class_name = _node_text(_find_child(item, "Class"))
+        class_name = _get_text(_find_child(item, "Class"))
         if not class_name:
             continue
-        name = group + (_node_text(_find_child(item, "Name")) or class_name)
+        name = group + (_get_text(_find_child(item, "Name")) or class_name)
         properties = dict(_read_properties(item, ""))
         yield _Item(name, class_name, properties, item.start_mark.line + 1, item.start_mark.column + 1)
         yield from _read_items(_find_child(item, "Displays"), f"{name}/")
 
 
 def _read_properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
-    """Yield the properties of an item. A topic is a text in old files and a group of properties in new ones."""
+    """Yield the properties of an item.
+
+    A topic is a text in old files and a group of properties in new ones.
+    """
     for key, value in node.value:
         name = str(key.value)
-        if name in _COMPUTED or (not path and name in _IGNORED):
+        if name in _COMPUTED_PROPERTIES or (not path and name in _IGNORED_PROPERTIES):
             continue
         full_name = path if path and name == "Value" else f"{path} {name}".strip()
         if isinstance(value, yaml.MappingNode):
@@ -132,12 +137,14 @@ def _read_properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
 def _compare_values(pair: FilePair, old: Mapping[str, str], new: Mapping[str, str]) -> None:
     for name in dict.fromkeys([*new, *old]):
         before, after = old.get(name), new.get(name)
-        if name.startswith(_GLOBAL) and before != after:
-            option = name.removeprefix(_GLOBAL)
+        if name.startswith(_GLOBAL_PREFIX) and before != after:
+            option = name.removeprefix(_GLOBAL_PREFIX)
             pair.add(phrase("{parameter} {old} -> {new}", parameter=option, old=before or "-", new=after or "-"), None)
-    old_view, new_view = ({name: values[name] for name in values if name.startswith(_VIEW)} for values in (old, new))
+    old_view, new_view = (
+        {name: values[name] for name in values if name.startswith(_VIEW_PREFIX)} for values in (old, new)
+    )
     if old_view != new_view:
-        classes = [view.get(f"{_VIEW}Class", "-") for view in (old_view, new_view)]
+        classes = [view.get(f"{_VIEW_PREFIX}Class", "-") for view in (old_view, new_view)]
         text = phrase("view changed")
         if classes[0] != classes[1]:
             text = phrase("view {old} -> {new}", old=classes[0], new=classes[1])
@@ -145,36 +152,36 @@ def _compare_values(pair: FilePair, old: Mapping[str, str], new: Mapping[str, st
 
 
 def _compare_displays(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item]) -> None:
-    old_rest, new_rest = list(old), list(new)
-    for before, after in list(_take_matches(old_rest, new_rest)):
-        for text in _display_changes(before, after):
-            pair.add(text, _item_location(pair, after))
-    for display in new_rest:
+    unmatched_old, unmatched_new = list(old), list(new)
+    for before, after in list(_take_matching_pairs(unmatched_old, unmatched_new)):
+        for text in _compare_display(before, after):
+            pair.add(text, _get_location(pair, after))
+    for display in unmatched_new:
         text = phrase("display '{name}' of class '{type}' added", name=display.name, type=display.class_name)
         if display.topic:
             text = phrase("{change}: topic {topic}", change=text, topic=display.topic)
-        pair.add(text, _item_location(pair, display))
-    for display in old_rest:
+        pair.add(text, _get_location(pair, display))
+    for display in unmatched_old:
         text = phrase("display '{name}' of class '{type}' removed", name=display.name, type=display.class_name)
         if display.topic:
             text = phrase("{change}: topic {topic}", change=text, topic=display.topic)
-        pair.add(text, _item_location(pair, display, is_old=True))
+        pair.add(text, _get_location(pair, display, is_old=True))
 
 
-def _take_matches(old: list[_Item], new: list[_Item]) -> Iterator[tuple[_Item, _Item]]:
+def _take_matching_pairs(old: list[_Item], new: list[_Item]) -> Iterator[tuple[_Item, _Item]]:
     """Remove the matching displays from both lists, and yield them as pairs."""
     for keys in (("name", "class_name", "topic"), ("name", "class_name"), ("class_name", "topic"), ("name",)):
         for after in list(new):
             key = [getattr(after, name) for name in keys]
-            same = (display for display in old if [getattr(display, name) for name in keys] == key)
-            before = next(same, None) if all(key) or "name" in keys else None
+            matching = (display for display in old if [getattr(display, name) for name in keys] == key)
+            before = next(matching, None) if all(key) or "name" in keys else None
             if before is not None:
                 old.remove(before)
                 new.remove(after)
                 yield before, after
 
 
-def _display_changes(old: _Item, new: _Item) -> Iterator[Phrase]:
+def _compare_display(old: _Item, new: _Item) -> Iterator[Phrase]:
     if old.name != new.name:
         yield phrase("display '{old}' renamed to '{name}'", old=old.name, name=new.name)
     if old.class_name != new.class_name:
@@ -192,9 +199,9 @@ def _display_changes(old: _Item, new: _Item) -> Iterator[Phrase]:
     if not changes:
         return
     text = phrase("display '{name}': {changes}", name=new.name, changes=joined(changes[:_MAX_PROPERTIES]))
-    rest = len(changes) - _MAX_PROPERTIES
-    if rest > 0:
-        text = counted("{change} and {count} more value", "{change} and {count} more values", rest, change=text)
+    hidden_count = len(changes) - _MAX_PROPERTIES
+    if hidden_count > 0:
+        text = counted("{change} and {count} more value", "{change} and {count} more values", hidden_count, change=text)
     yield text
 
 
@@ -204,17 +211,17 @@ def _compare_classes(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item],
     removed = [item for name, item in old_classes.items() if name not in new_classes]
     if added:
         names = quoted_names([item.class_name for item in added])
-        pair.add(phrase("{kind} added: {names}", kind=title, names=names), _item_location(pair, added[0]))
+        pair.add(phrase("{kind} added: {names}", kind=title, names=names), _get_location(pair, added[0]))
     if removed:
         names = quoted_names([item.class_name for item in removed])
         text = phrase("{kind} removed: {names}", kind=title, names=names)
-        pair.add(text, _item_location(pair, removed[0], is_old=True))
+        pair.add(text, _get_location(pair, removed[0], is_old=True))
     for name, item in new_classes.items():
         before = old_classes.get(name)
         if before is not None and before.topic != item.topic:
             text = phrase("'{name}': topic {old} -> {new}", name=name, old=before.topic or "-", new=item.topic or "-")
-            pair.add(text, _item_location(pair, item))
+            pair.add(text, _get_location(pair, item))
 
 
-def _item_location(pair: FilePair, item: _Item, *, is_old: bool = False) -> Location:
+def _get_location(pair: FilePair, item: _Item, *, is_old: bool = False) -> Location:
     return Location(pair.old_path if is_old else pair.new_path, item.line, item.column, is_old)

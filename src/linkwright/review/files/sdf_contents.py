@@ -13,14 +13,14 @@ from linkwright.xmltree import Element
 
 _MAX_VALUES_OF_PLUGIN = 4
 """The maximum number of values of each plugin or sensor in the line about an added world or model."""
-_NAMED_BY_CHILD = "include"
+_INCLUDE = "include"
 """The tag of elements that have their name, or else their URI, as a child."""
 
 
-def names_in(element: Element) -> Iterator[Phrase]:
-    """Yield the models of a world, or the links and joints of a model, and all plugins and sensors."""
+def summarize_element(element: Element) -> Iterator[Phrase]:
+    """Yield the models of a world or the links and joints of a model, plugins and sensors."""
     names = {
-        tag: [_element_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")
+        tag: [_get_name(child) for child in element.elements(tag)] for tag in ("model", "include", "link", "joint")
     }
     models = [*names["model"], *names["include"]]
     if models:
@@ -32,7 +32,7 @@ def names_in(element: Element) -> Iterator[Phrase]:
     yield from plugin_parts(element, _MAX_VALUES_OF_PLUGIN)
 
 
-def shapes_and_mass(model: Element) -> Iterator[Phrase]:
+def summarize_shapes_and_mass(model: Element) -> Iterator[Phrase]:
     """Yield the shapes of a model, and the total mass of the links that have a mass."""
     shapes: Counter[tuple[str, str]] = Counter()
     for element in model.walk():
@@ -60,37 +60,40 @@ def shapes_and_mass(model: Element) -> Iterator[Phrase]:
         yield phrase("mass {mass:.4g} kg", mass=mass)
 
 
-def _element_name(element: Element) -> str:
-    """Return the name of an element, or the last part of the URI of an included model without a name."""
+def _get_name(element: Element) -> str:
+    """Return the name of an element; the last part of the URI for an unnamed include."""
     texts = (element.first(tag) for tag in ("name", "uri"))
     included = next((text.text().strip().rstrip("/") for text in texts if text is not None), "")
     return element.attributes.get("name") or included.rpartition("/")[2]
 
 
-def all_content(element: Element) -> str:
+def join_contents(element: Element) -> str:
     """Return the attributes and texts of an element and all its descendants, without names."""
     return " ".join(filter(None, (f"{child.tag} {own_content(child)}" for child in element.walk())))
 
 
-def added_text(path: str, element: Element) -> Phrase:
+def format_added_element(path: str, element: Element) -> Phrase:
     """Return the line about an added element, with its values.
 
     Args:
         path: the path of the element, with the names of elements that were added with the same contents.
         element: the XML element.
     """
-    contents = joined(names) if (names := list(names_in(element))) else None
+    contents = joined(names) if (names := list(summarize_element(element))) else None
     if contents is None:
-        element, path = _only_descendant(element, path)
+        element, path = _find_only_descendant(element, path)
         contents = contents_text(element)
     text = phrase("{element} added", element=f"{path} {own_content(element)}".strip())
     return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
 
 
-def _only_descendant(element: Element, path: str) -> tuple[Element, str]:
-    """Return an element, or for a nameless one the first descendant with a value or several children, with its path."""
+def _find_only_descendant(element: Element, path: str) -> tuple[Element, str]:
+    """Return the element that has the content of an element, with its path.
+
+    For a nameless element without values, this is the first descendant with a value or several children.
+    """
     children = list(element.elements())
-    while len(children) == 1 and not (element.attributes or element.text().strip() or element.tag == _NAMED_BY_CHILD):
+    while len(children) == 1 and not (element.attributes or element.text().strip() or element.tag == _INCLUDE):
         element = children[0]
         path = " ".join(filter(None, (path, element.tag, element.attributes.get("name"))))
         children = list(element.elements())

@@ -19,7 +19,7 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.worlds import Sdf
 
 
-def model_figures(old: Sdf, new: Sdf, scenes: Sequence[Scene]) -> Iterator[Figure]:
+def compare_model_figures(old: Sdf, new: Sdf, scenes: Sequence[Scene]) -> Iterator[Figure]:
     """Yield the quantities that differ between the models of two files; none for worlds.
 
     Args:
@@ -36,7 +36,7 @@ def model_figures(old: Sdf, new: Sdf, scenes: Sequence[Scene]) -> Iterator[Figur
     for name, unit, measure in _QUANTITIES:
         yield from figure_of(name, unit, *map(measure, measures))
     if scenes:
-        yield from figure_of(phrase("size"), "m", *map(_scene_size, scenes))
+        yield from figure_of(phrase("size"), "m", *map(_measure_scene, scenes))
 
 
 class _Measures:
@@ -52,41 +52,41 @@ class _Measures:
 
     def __init__(self, models: Sequence[Model]) -> None:
         links = [link for model in models for link in place_links(model, Frames(model), IDENTITY, model.name)]
-        joints = [joint for model in models for joint in _joint_mobility(model)]
+        joints = [joint for model in models for joint in _iterate_joint_mobility(model)]
         self.links = len(links)
         self.joints = len(joints)
         self.moving_joints = joints.count(True)
         inertials = [(link, link.link.inertial or Inertial()) for link in links if not link.static]
         self.mass_properties = None
         if not any(inertial.auto for _, inertial in inertials):
-            self.mass_properties = combine(_mass_properties(*pair) for pair in inertials)
+            self.mass_properties = combine(_compute_mass_properties(*pair) for pair in inertials)
 
 
-def _joint_mobility(model: Model) -> Iterator[bool]:
+def _iterate_joint_mobility(model: Model) -> Iterator[bool]:
     """Yield whether each joint of a model and of its nested models moves."""
     yield from (joint.type != "fixed" for joint in model.joints)
     for nested_model in model.models:
-        yield from _joint_mobility(nested_model)
+        yield from _iterate_joint_mobility(nested_model)
 
 
-def _mass_properties(placed: PlacedLink, inertial: Inertial) -> MassProperties:
+def _compute_mass_properties(placed: PlacedLink, inertial: Inertial) -> MassProperties:
     i = inertial.inertia
     tensor = np.array([[i.ixx, i.ixy, i.ixz], [i.ixy, i.iyy, i.iyz], [i.ixz, i.iyz, i.izz]])
-    own = MassProperties(inertial.mass, inertia=tensor)
-    in_link = pose_of(placed.frames.in_link(inertial.pose, placed.link.name))
-    return own.moved(in_link).moved(pose_of(placed.pose))
+    in_inertial_frame = MassProperties(inertial.mass, inertia=tensor)
+    inertial_to_link = pose_of(placed.frames.in_link(inertial.pose, placed.link.name))
+    return in_inertial_frame.moved(inertial_to_link).moved(pose_of(placed.pose))
 
 
-def _total_mass(measures: _Measures) -> float | None:
+def _get_total_mass(measures: _Measures) -> float | None:
     return None if measures.mass_properties is None else measures.mass_properties.mass
 
 
-def _center_of_mass(measures: _Measures) -> Array | None:
+def _get_center_of_mass(measures: _Measures) -> Array | None:
     return None if measures.mass_properties is None else measures.mass_properties.center
 
 
-def _scene_size(scene: Scene) -> Array | None:
-    """Return the lengths of the box around all visuals in m, shape (3,); None if some cannot be drawn."""
+def _measure_scene(scene: Scene) -> Array | None:
+    """Return the size of all visuals in m, shape (3,); None if some cannot be drawn."""
     if scene.problems or not len(scene.mesh.points):
         return None
     size: Array = np.ptp(scene.mesh.points, axis=0)
@@ -97,7 +97,7 @@ _QUANTITIES: tuple[tuple[Phrase, str, Callable[[_Measures], object]], ...] = (
     (phrase("links"), "", lambda measures: measures.links),
     (phrase("joints"), "", lambda measures: measures.joints),
     (phrase("moving joints"), "", lambda measures: measures.moving_joints),
-    (phrase("mass"), "kg", _total_mass),
-    (phrase("center of mass"), "m", _center_of_mass),
+    (phrase("mass"), "kg", _get_total_mass),
+    (phrase("center of mass"), "m", _get_center_of_mass),
 )
 """The quantities: their names, their units, and the functions that measure them."""

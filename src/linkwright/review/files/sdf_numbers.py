@@ -1,4 +1,4 @@
-"""Filter and join changed SDF values: values that are equal but written differently, and inertials."""
+"""Drop changed SDF values that are equal but written differently, and join inertials."""
 
 from __future__ import annotations
 
@@ -14,28 +14,30 @@ from linkwright.diagnostics import Phrase, joined, phrase
 _INERTIAL = re.compile(r"(?P<inertial>(?:.* )?inertial) (?P<value>mass|pose|inertia i[xyz]{2})")
 """The path of a value of an inertial."""
 _PLUGIN = re.compile(r"(^| )plugin ")
-_SAME_TRUTHS = ({"1", "true"}, {"0", "false"})
+_EQUAL_BOOLEANS = ({"1", "true"}, {"0", "false"})
 _FRAME = re.compile(r"@(frame|relative_to)$")
 """The attribute of a pose that names its frame."""
 _MOMENTS = frozenset({"ixx", "iyy", "izz"})
-_ROUNDING = 1e-6
+_MAX_RELATIVE_DIFFERENCE = 1e-6
 """The maximum difference of two equal values, relative to the largest number of a value."""
-_NOTHING = 1e-15
+_MAX_ABSOLUTE_DIFFERENCE = 1e-15
 """The maximum absolute difference of equal numbers."""
-_SAME_RATIO = 1e-2
+_MAX_RATIO_DIFFERENCE = 1e-2
 """The maximum relative difference of the ratios of the moments of inertia of a scaled tensor."""
 _MIN_DIGITS, _MAX_DIGITS = 4, 17
-_POSE = 6
-"""The number of numbers of a pose."""
-_POSE_PARTS = slice(0, 3), slice(3, _POSE)
+_POSE_LENGTH = 6
+"""The number of values in a pose."""
+_POSE_PARTS = slice(0, 3), slice(3, _POSE_LENGTH)
 """The position and the rotation in a pose."""
-_FEW = 2
+_MAX_SHOWN_ENTRIES = 2
 """The maximum number of changed tensor entries that are shown with both values."""
 
 
 @dataclass(frozen=True, slots=True)
 class InertialDifference(Difference):
-    """The differences of several values of the inertial of a link. The location is that of the first difference.
+    """The differences between several values of the inertial of a link.
+
+    The location is that of the first difference.
 
     Attributes:
         values: the differences by the name of the value, such as ``mass``, ``pose`` or ``ixx``.
@@ -43,35 +45,40 @@ class InertialDifference(Difference):
 
     values: tuple[tuple[str, Difference], ...] = ()
 
-    def values_text(self) -> Phrase:
+    def format_values(self) -> Phrase:
         """Return the differences in one line."""
         changed = {name: (difference.old or "", difference.new or "") for name, difference in self.values}
         tensor = {name: changed.pop(name) for name in tuple(changed) if name.startswith("i")}
         texts: list[Phrase | str] = []
         if "mass" in changed:
             texts.append("mass {} -> {} kg".format(*_shorten_numbers(*changed["mass"])))
-        texts += _pose_texts(*changed["pose"]) if "pose" in changed else []
-        texts += _tensor_texts(tensor) if tensor else []
+        texts += _format_pose(*changed["pose"]) if "pose" in changed else []
+        texts += _format_tensor(tensor) if tensor else []
         return joined(texts)
 
 
-def without_rounding(differences: Iterable[Difference]) -> Iterator[Difference]:
+def drop_rounding(differences: Iterable[Difference]) -> Iterator[Difference]:
     """Yield the differences except numbers that differ only by rounding."""
     return (difference for difference in differences if not _is_rounding(difference))
 
 
-def without_same_values(differences: Iterable[Difference]) -> Iterator[Difference]:
-    """Yield the differences except equal values, such as ``1`` and ``true``, or an empty and a missing frame."""
-    return (difference for difference in differences if not (_is_same_truth(difference) or _is_empty_frame(difference)))
+def drop_equal_values(differences: Iterable[Difference]) -> Iterator[Difference]:
+    """Yield the differences between values with different meanings.
+
+    ``1`` and ``true`` are equal, and so are an empty and a missing frame.
+    """
+    return (
+        difference for difference in differences if not (_is_equal_boolean(difference) or _is_empty_frame(difference))
+    )
 
 
-def with_inertials(differences: Iterable[Difference]) -> Iterator[Difference]:
+def join_inertials(differences: Iterable[Difference]) -> Iterator[Difference]:
     """Yield the differences, with the differences of the inertial of a link joined into one."""
-    for inertial, group in groupby(differences, _inertial_of):
+    for inertial, group in groupby(differences, _find_inertial):
         if not inertial:
             yield from group
             continue
-        values = tuple(_without_tiny_products({_value_name(value): value for value in group}).items())
+        values = tuple(_drop_tiny_products({_get_value_name(value): value for value in group}).items())
         if values:
             first = values[0][1]
             yield InertialDifference(
@@ -85,20 +92,20 @@ def with_inertials(differences: Iterable[Difference]) -> Iterator[Difference]:
             )
 
 
-def _inertial_of(difference: Difference) -> str:
-    """Return the path of the inertial that contains a changed value; empty for other differences."""
+def _find_inertial(difference: Difference) -> str:
+    """Return the path of the inertial of a changed value; empty for other differences."""
     match = _INERTIAL.fullmatch(f"{difference.name} {difference.property}".strip())
     count = len(_parse_numbers(difference.old))
-    is_readable = count in (1, _POSE) and count == len(_parse_numbers(difference.new))
+    is_readable = count in (1, _POSE_LENGTH) and count == len(_parse_numbers(difference.new))
     return match["inertial"] if match is not None and is_readable and difference.kind == "changed" else ""
 
 
-def _value_name(difference: Difference) -> str:
+def _get_value_name(difference: Difference) -> str:
     return difference.property.rpartition(" ")[2]
 
 
 def _parse_numbers(text: str | None) -> list[float]:
-    """Return the numbers of a text, or none if it contains other words."""
+    """Return the numbers in a text; an empty list if it contains other words."""
     try:
         numbers = [float(word) for word in (text or "").split()]
     except ValueError:
@@ -112,16 +119,19 @@ def _is_rounding(difference: Difference) -> bool:
     if difference.kind != "changed" or not old or len(old) != len(new):
         return False
     if not {".", "e", "E"} & set(f"{difference.old}{difference.new}"):
-        return False  # numbers of a counter, such as a seed
-    limit = max(_NOTHING, _ROUNDING * max(map(abs, (*old, *new))))
+        return False  # integers, such as a seed
+    limit = max(_MAX_ABSOLUTE_DIFFERENCE, _MAX_RELATIVE_DIFFERENCE * max(map(abs, (*old, *new))))
     return all(abs(first - second) <= limit for first, second in zip(old, new, strict=True))
 
 
-def _is_same_truth(difference: Difference) -> bool:
-    """Return whether the values are equal booleans. A parameter of a plugin is not one, because it can be a text."""
+def _is_equal_boolean(difference: Difference) -> bool:
+    """Return whether the values are equal booleans.
+
+    A plugin parameter is not a boolean, because it can be a text.
+    """
     values = {difference.old, difference.new}
     is_of_plugin = _PLUGIN.search(f"{difference.name} {difference.property}") is not None
-    return difference.kind == "changed" and values in _SAME_TRUTHS and not is_of_plugin
+    return difference.kind == "changed" and values in _EQUAL_BOOLEANS and not is_of_plugin
 
 
 def _is_empty_frame(difference: Difference) -> bool:
@@ -129,18 +139,21 @@ def _is_empty_frame(difference: Difference) -> bool:
     return difference.element is None and _FRAME.search(difference.property) is not None and values == {""}
 
 
-def _without_tiny_products(values: dict[str, Difference]) -> dict[str, Difference]:
-    """Return the values without products of inertia that change little compared with the moments."""
+def _drop_tiny_products(values: dict[str, Difference]) -> dict[str, Difference]:
+    """Return the values without products of inertia that hardly change.
+
+    Changes are compared with the moments of inertia.
+    """
     moments = [abs(number) for name in _MOMENTS & values.keys() for number in _parse_numbers(values[name].old)]
-    limit = _ROUNDING * max(moments, default=0.0)
+    limit = _MAX_RELATIVE_DIFFERENCE * max(moments, default=0.0)
     return {
         name: value
         for name, value in values.items()
-        if not (name.startswith("i") and name not in _MOMENTS and _change_size(value) <= limit)
+        if not (name.startswith("i") and name not in _MOMENTS and _compute_change_size(value) <= limit)
     }
 
 
-def _change_size(difference: Difference) -> float:
+def _compute_change_size(difference: Difference) -> float:
     (old,), (new,) = _parse_numbers(difference.old), _parse_numbers(difference.new)
     return abs(new - old)
 
@@ -157,27 +170,27 @@ def _shorten_numbers(old: str, new: str) -> tuple[str, str]:
     return texts[0], texts[1]
 
 
-def _pose_texts(old: str, new: str) -> Iterator[Phrase | str]:
+def _format_pose(old: str, new: str) -> Iterator[Phrase | str]:
     first, second = old.split(), new.split()
-    center, axes = ([_parse_numbers(" ".join(words[part])) for words in (first, second)] for part in _POSE_PARTS)
-    if center[0] != center[1]:
-        text = "center {} -> {} m".format(*(" ".join(f"{number:.6g}" for number in numbers) for numbers in center))
-        yield phrase("{change} (moved by {distance:.4g} m)", change=text, distance=math.dist(*center))
-    if axes[0] != axes[1]:
+    centers, rotations = ([_parse_numbers(" ".join(words[part])) for words in (first, second)] for part in _POSE_PARTS)
+    if centers[0] != centers[1]:
+        text = "center {} -> {} m".format(*(" ".join(f"{number:.6g}" for number in numbers) for numbers in centers))
+        yield phrase("{change} (moved by {distance:.4g} m)", change=text, distance=math.dist(*centers))
+    if rotations[0] != rotations[1]:
         yield phrase("axes {old} -> {new}", old=" ".join(first[_POSE_PARTS[1]]), new=" ".join(second[_POSE_PARTS[1]]))
 
 
-def _tensor_texts(entries: Mapping[str, tuple[str, str]]) -> Iterator[Phrase | str]:
+def _format_tensor(entries: Mapping[str, tuple[str, str]]) -> Iterator[Phrase | str]:
     numbers = {name: (float(old), float(new)) for name, (old, new) in entries.items()}
     moments = {name: pair for name, pair in numbers.items() if name in _MOMENTS}
-    if len(entries) <= _FEW or not moments or not all(old for old, _ in moments.values()):
+    if len(entries) <= _MAX_SHOWN_ENTRIES or not moments or not all(old for old, _ in moments.values()):
         for name, (old, new) in entries.items():
             yield "{} {} -> {} kg m2".format(name, *_shorten_numbers(old, new))
         return
     largest = max(abs(old) for old, _ in moments.values())
     ratio = max(new / old for old, new in moments.values())
     if len(moments) == len(_MOMENTS) and all(
-        abs(new - ratio * old) <= _SAME_RATIO * largest for old, new in numbers.values()
+        abs(new - ratio * old) <= _MAX_RATIO_DIFFERENCE * largest for old, new in numbers.values()
     ):
         yield phrase("inertia {ratio:.4g} times as large", ratio=ratio)
         return

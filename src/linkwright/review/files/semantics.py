@@ -1,4 +1,4 @@
-"""Compare semantic descriptions (SRDF): groups, states, end effectors and disabled collisions."""
+"""Compare semantic descriptions (SRDF): groups, states, end effectors and collisions."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from linkwright.review.lenient_xml import read_lenient_root
 from linkwright.review.versions import Version
 from linkwright.xmltree import Element
 
-_NAMED = ("group", "group_state", "end_effector", "virtual_joint", "passive_joint")
-_PAIRS = ("disable_collisions", "enable_collisions")
-_JOINT = "joint "
+_NAMED_TAGS = ("group", "group_state", "end_effector", "virtual_joint", "passive_joint")
+_PAIR_TAGS = ("disable_collisions", "enable_collisions")
+_JOINT_PREFIX = "joint "
 """The start of a member of a group that is a joint."""
 _JOINT_TAG = re.compile(r"<joint\s[^<>]*>")
 _FIXED = re.compile(r"\stype\s*=\s*[\"']fixed[\"']")
@@ -54,34 +54,36 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
     """Compare two semantic descriptions by their root elements."""
     old, new = ({(entry.tag, entry.name): entry for entry in _read_entries(root)} for root in (old_root, new_root))
     renamed = dict(_find_renamed(old, new))
-    passive = {name for tag, name in new if tag == "passive_joint"}
+    passive_joints = {name for tag, name in new if tag == "passive_joint"}
     for key, entry in new.items():
         if key in old:
-            _compare_entries(pair, old[key], entry, passive)
+            _compare_entries(pair, old[key], entry, passive_joints)
         elif key not in renamed.values():
-            pair.add(phrase("{entry} added", entry=_entry_title(entry)), pair.location(entry.element.span()))
+            pair.add(phrase("{entry} added", entry=_format_title(entry)), pair.location(entry.element.span()))
     for key, entry in old.items():
         if key in renamed:
-            text = phrase("{entry} renamed to '{name}'", entry=_entry_title(entry), name=new[renamed[key]].name)
+            text = phrase("{entry} renamed to '{name}'", entry=_format_title(entry), name=new[renamed[key]].name)
             location = pair.location(new[renamed[key]].element.span())
-            pair.add(text, location, removal_reason(entry.tag, entry.name))
+            pair.add(text, location, find_removal_reason(entry.tag, entry.name))
         elif key not in new:
             location = pair.location(entry.element.span(), is_old=True)
             pair.add(
-                phrase("{entry} removed", entry=_entry_title(entry)), location, removal_reason(entry.tag, entry.name)
+                phrase("{entry} removed", entry=_format_title(entry)),
+                location,
+                find_removal_reason(entry.tag, entry.name),
             )
-    for tag in _PAIRS:
-        _compare_pairs(pair, tag, *(_elements_by_pair(root, tag) for root in (old_root, new_root)))
+    for tag in _PAIR_TAGS:
+        _compare_pairs(pair, tag, *(_group_by_pair(root, tag) for root in (old_root, new_root)))
 
 
 def semantic_contents(version: Version, path: str) -> Phrase | None:
-    """Return the groups, states and other named elements of a semantic description, or None if there are none."""
-    titles = [_entry_title(entry) for entry in _read_entries(read_lenient_root(version.file(path)))]
+    """Return the named elements of a semantic description; None if there are none."""
+    titles = [_format_title(entry) for entry in _read_entries(read_lenient_root(version.file(path)))]
     return joined_first(titles, MAX_NAMES) if titles else None
 
 
-def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
-    """Return the pairs of links whose collisions the semantic descriptions below a folder disable.
+def find_disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
+    """Return the pairs of links whose collisions the files below a folder disable.
 
     Xacro expressions in the names of links, such as prefixes, count as empty.
     """
@@ -96,8 +98,8 @@ def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
     return frozenset(pairs)
 
 
-def removal_reason(tag: str, name: str) -> Phrase | None:
-    """Return the reason why removing an element of a semantic description is breaking, or None if it is not."""
+def find_removal_reason(tag: str, name: str) -> Phrase | None:
+    """Return the reason why removing an element is breaking; None if it is not."""
     if tag == "group":
         return phrase("programs that plan for the group '{name}' do not find it", name=name)
     if tag == "group_state":
@@ -110,19 +112,19 @@ def removal_reason(tag: str, name: str) -> Phrase | None:
 def _read_entries(root: Element) -> Iterator[_Entry]:
     for element in root.elements():
         name = element.attributes.get("name", "")
-        if element.tag not in _NAMED:
+        if element.tag not in _NAMED_TAGS:
             continue
         if element.tag == "group_state":
             name = f"{element.attributes.get('group', '')}/{name}"
             values = {part.attributes.get("name", ""): part.attributes.get("value", "") for part in element.elements()}
         elif element.tag == "group":
-            values = {_member_text(part): "" for part in element.elements()}
+            values = {_format_member(part): "" for part in element.elements()}
         else:
             values = {key: value for key, value in element.attributes.items() if key != "name"}
         yield _Entry(element.tag, name, values, element)
 
 
-def _member_text(element: Element) -> str:
+def _format_member(element: Element) -> str:
     """Return a member of a group in one line, such as ``chain base tip``."""
     return " ".join([element.tag, *element.attributes.values()])
 
@@ -135,21 +137,21 @@ def _find_renamed(
     for key, entry in old.items():
         if key in new or not entry.values:
             continue
-        match = next((other for other in added if _is_same(entry, new[other])), None)
+        match = next((other for other in added if _have_equal_values(entry, new[other])), None)
         if match is not None:
             added.remove(match)
             yield key, match
 
 
-def _is_same(old: _Entry, new: _Entry) -> bool:
+def _have_equal_values(old: _Entry, new: _Entry) -> bool:
     return old.tag == new.tag and dict(old.values) == dict(new.values)
 
 
-def _entry_title(entry: _Entry) -> Phrase:
+def _format_title(entry: _Entry) -> Phrase:
     return phrase("{tag} '{name}'", tag=term(entry.tag), name=entry.name)
 
 
-def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive: Collection[str]) -> None:
+def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive_joints: Collection[str]) -> None:
     changes: list[str] = []
     for name in dict.fromkeys([*new.values, *old.values]):
         before, after = old.values.get(name), new.values.get(name)
@@ -160,21 +162,31 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive: Collecti
         elif not _are_equal(before, after):
             changes.append(f"{name} {before} -> {after}")
     if changes:
-        text = phrase("{entry}: {changes}", entry=_entry_title(new), changes=joined_first(changes, MAX_NAMES))
-        pair.add(text, pair.location(new.element.span()), _lost_joints_reason(pair.versions.old, old, new, passive))
+        text = phrase("{entry}: {changes}", entry=_format_title(new), changes=joined_first(changes, MAX_NAMES))
+        pair.add(
+            text,
+            pair.location(new.element.span()),
+            _find_lost_joints_reason(pair.versions.old, old, new, passive_joints),
+        )
 
 
-def _lost_joints_reason(version: Version, old: _Entry, new: _Entry, passive: Collection[str]) -> Phrase | None:
-    """Return the reason why other joints in a group are breaking, or None if they are not.
+def _find_lost_joints_reason(
+    version: Version, old: _Entry, new: _Entry, passive_joints: Collection[str]
+) -> Phrase | None:
+    """Return the reason why lost joints of a group are breaking; None if they are not.
 
     A group defined by a chain, links or other groups can still contain the joints. Programs do not
     move fixed and passive joints.
     """
     added = [member for member in new.values if member not in old.values]
-    lost = [name.removeprefix(_JOINT) for name in old.values if name.startswith(_JOINT) and name not in new.values]
+    lost = [
+        name.removeprefix(_JOINT_PREFIX)
+        for name in old.values
+        if name.startswith(_JOINT_PREFIX) and name not in new.values
+    ]
     if old.tag != "group" or not lost or not all(map(_is_literal_joint, added)):
         return None
-    fixed = {*passive, *_fixed_joints(version)}
+    fixed = {*passive_joints, *_find_fixed_joints(version)}
     lost = [name for name in lost if name not in fixed]
     return None if not lost else counted(
         "programs that move the joint {names} of the group '{group}' do not find it",
@@ -184,11 +196,11 @@ def _lost_joints_reason(version: Version, old: _Entry, new: _Entry, passive: Col
 
 
 def _is_literal_joint(member: str) -> bool:
-    return member.startswith(_JOINT) and not _EXPRESSION.search(member)
+    return member.startswith(_JOINT_PREFIX) and not _EXPRESSION.search(member)
 
 
-def _fixed_joints(version: Version) -> set[str]:
-    """Return the names, as written in the file, of the fixed joints in the descriptions of a version."""
+def _find_fixed_joints(version: Version) -> set[str]:
+    """Return the fixed joints in the descriptions of a version, as written in the files."""
     texts = (version.text(path) for path in version.paths((".urdf", ".xacro")))
     tags = (match[0] for text in texts for match in _JOINT_TAG.finditer(text))
     return {name[1] for tag in tags if _FIXED.search(tag) and (name := _NAME.search(tag))}
@@ -202,7 +214,7 @@ def _are_equal(old: str, new: str) -> bool:
         return False
 
 
-def _elements_by_pair(root: Element, tag: str) -> dict[tuple[str, ...], Element]:
+def _group_by_pair(root: Element, tag: str) -> dict[tuple[str, ...], Element]:
     """Return the elements about pairs of links, by the sorted names of the links."""
     return {
         tuple(sorted((element.attributes.get("link1", ""), element.attributes.get("link2", "")))): element

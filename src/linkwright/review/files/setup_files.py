@@ -1,4 +1,4 @@
-"""Compare ``setup.py`` files: executables, other entry points, and the files that a package installs."""
+"""Compare the entry points and the installed files in ``setup.py`` files."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, comp
 from linkwright.review.versions import Version
 
 SETUP_FILE = "setup.py"
-_FIND = "find_packages"
-_COMPARED = frozenset({"entry_points", "data_files", "packages"})
-_SHOWN = frozenset({"name", "version", "python_requires", "license"})
+_FIND_PACKAGES = "find_packages"
+_COMPARED_ARGUMENTS = frozenset({"entry_points", "data_files", "packages"})
+_SHOWN_ARGUMENTS = frozenset({"name", "version", "python_requires", "license"})
 """The arguments of ``setup`` whose string values are shown."""
 
 
@@ -66,16 +66,16 @@ def read_setup_facts(version: Version, path: str) -> BuildFacts:
         for program in setup.entry_points
     ]
     facts.facts += [Fact(FactKind.MODULE, name, span=span) for name, span in setup.packages or ()]
-    facts.facts += _other_packages(PythonFile(source), file.parent)
+    facts.facts += _find_other_packages(PythonFile(source), file.parent)
     _read_call(facts, setup, PythonFile(source))
     return facts
 
 
-def _other_packages(python: PythonFile, folder: Path) -> Iterator[Fact]:
+def _find_other_packages(python: PythonFile, folder: Path) -> Iterator[Fact]:
     """Yield the Python packages that ``find_packages`` finds, or that catkin installs."""
-    for call in python.calls(_FIND):
+    for call in python.calls(_FIND_PACKAGES):
         excluded = [python.text(item) for item in getattr(argument_of(call, "exclude"), "elts", ())]
-        for name in _packages_below(folder, ""):
+        for name in _find_packages_below(folder, ""):
             if not any(fnmatchcase(name, pattern) for pattern in excluded if pattern is not None):
                 yield Fact(FactKind.MODULE, name, span=python.span(call))
     for call in python.calls("generate_distutils_setup"):
@@ -86,19 +86,19 @@ def _other_packages(python: PythonFile, folder: Path) -> Iterator[Fact]:
                 yield Fact(FactKind.MODULE, package, span=python.span(item))
 
 
-def _packages_below(folder: Path, prefix: str) -> Iterator[str]:
-    """Yield the names of the Python packages in a folder, also of those in other packages, except tests."""
+def _find_packages_below(folder: Path, prefix: str) -> Iterator[str]:
+    """Yield the names of the Python packages in a folder, including nested ones, except tests."""
     for file in sorted(folder.glob("*/__init__.py")):
         name = f"{prefix}{file.parent.name}"
         if not name.startswith("test"):
             yield name
-            yield from _packages_below(file.parent, f"{name}.")
+            yield from _find_packages_below(file.parent, f"{name}.")
 
 
-def _is_found(python: PythonFile, node: ast.expr) -> bool:
+def _finds_packages(python: PythonFile, node: ast.expr) -> bool:
     """Return whether an expression is a call of ``find_packages`` for the folder of the file."""
     call = python.resolved(node)
-    if not isinstance(call, ast.Call) or called_name(call).rpartition(".")[2] != _FIND or call.args:
+    if not isinstance(call, ast.Call) or called_name(call).rpartition(".")[2] != _FIND_PACKAGES or call.args:
         return False
     excluded = argument_of(call, "exclude")
     is_literal = excluded is None or (
@@ -111,19 +111,19 @@ def _read_call(facts: BuildFacts, setup: SetupFile, python: PythonFile) -> None:
     call = next(python.calls("setup"), None)
     if call is None:
         return
-    facts.facts += _entry_points(python, argument_of(call, "entry_points"))
+    facts.facts += _read_entry_points(python, argument_of(call, "entry_points"))
     for keyword in call.keywords:
-        is_known = keyword.arg != "packages" or setup.packages is not None or _is_found(python, keyword.value)
-        if keyword.arg in _COMPARED and is_known:
+        is_known = keyword.arg != "packages" or setup.packages is not None or _finds_packages(python, keyword.value)
+        if keyword.arg in _COMPARED_ARGUMENTS and is_known:
             continue
         text = python.text(keyword.value)
-        if keyword.arg in _SHOWN and text is not None:
+        if keyword.arg in _SHOWN_ARGUMENTS and text is not None:
             facts.facts.append(Fact(FactKind.SETTING, keyword.arg or "", text, python.span(keyword.value)))
         else:
-            facts.rest.append((keyword.arg or "**", " ".join(ast.unparse(keyword.value).split())))
+            facts.other_commands.append((keyword.arg or "**", " ".join(ast.unparse(keyword.value).split())))
 
 
-def _entry_points(python: PythonFile, node: ast.expr | None) -> Iterator[Fact]:
+def _read_entry_points(python: PythonFile, node: ast.expr | None) -> Iterator[Fact]:
     """Yield the entry points of all groups except the executables."""
     entries = None if node is None else python.resolved(node)
     if not isinstance(entries, ast.Dict):

@@ -20,7 +20,7 @@ _ANY_MACRO = re.compile(r"\{%[-+]?\s*macro\b")
 _EXPRESSION = re.compile(r"\{\{(?P<content>.*?)\}\}", re.DOTALL)
 _DECLARATION = re.compile(r"<\?xml\b[^>]*>")
 _STRING = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?P<text>[^\"'\\]*)\"")
-_ESCAPED = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"}
+_ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"}
 _ROOTS = ("sdf", "gazebo")
 """The root tags of SDF files. The second tag is from versions before the name SDF."""
 
@@ -30,7 +30,7 @@ def is_template(path: str) -> bool:
     return PurePosixPath(path).name.endswith(TEMPLATE_SUFFIXES)
 
 
-def template_elements(file: str) -> list[Element]:
+def read_template(file: str) -> list[Element]:
     """Return the elements of a template. Expressions remain as text.
 
     The result has the elements of all branches. A macro is an element ``<macro name="..." parameters="...">`` around
@@ -41,32 +41,32 @@ def template_elements(file: str) -> list[Element]:
         LinkwrightError: the template is not XML without its statements, or the file cannot be read.
     """
     text = read_bytes(file).decode("utf-8", errors="replace")
-    text = _EXPRESSION.sub(_escape_expression, _DECLARATION.sub(_blank, _with_elements(text)))
+    text = _EXPRESSION.sub(_escape_expression, _DECLARATION.sub(_blank_out, _replace_statements(text)))
     try:
         roots = list(parse_as_gazebo(f"<template>{text}</template>", file)[0].root.elements())
     except LinkwrightError:
         roots = [parse_as_gazebo(text, file)[0].root]
-    return [child for element in roots for child in _without_root(element)]
+    return [child for element in roots for child in _unwrap_root(element)]
 
 
-def is_same_name_possible(old: str | None, new: str | None) -> bool:
-    """Return whether a text and an expression, one replacing the other, can have the same value."""
+def may_be_equal(old: str | None, new: str | None) -> bool:
+    """Return whether an expression that replaces a text, or vice versa, can equal it."""
     return old is not None and new is not None and old.count("{{") != new.count("{{")
 
 
-def _without_root(element: Element) -> Iterator[Element]:
+def _unwrap_root(element: Element) -> Iterator[Element]:
     yield from element.elements() if element.tag in _ROOTS else (element,)
 
 
-def _with_elements(text: str) -> str:
-    """Return a template with elements in place of macros and set variables, without the other statements.
+def _replace_statements(text: str) -> str:
+    """Return a template with elements instead of macros and set variables.
 
-    Statements in tags and comments are left out.
+    Other statements are blanked out, and so are statements in tags and comments.
     """
-    markup = _EXPRESSION.sub(_blank, _STATEMENT.sub(_blank, text))
+    markup = _EXPRESSION.sub(_blank_out, _STATEMENT.sub(_blank_out, text))
     open_macros: list[bool] = []
 
-    def element(match: re.Match[str]) -> str:
+    def replace_statement(match: re.Match[str]) -> str:
         statement = match[0]
         is_between_tags = markup.rfind("<", 0, match.start()) <= markup.rfind(">", 0, match.start())
         result = ""
@@ -76,27 +76,27 @@ def _with_elements(text: str) -> str:
             macro = _MACRO.fullmatch(statement) if is_between_tags else None
             open_macros.append(macro is not None)
             if macro is not None:
-                parameters = _escape(_with_single_quotes(" ".join(macro["parameters"].split())))
+                parameters = _escape(_use_single_quotes(" ".join(macro["parameters"].split())))
                 result = f'<macro name="{macro["name"]}" parameters="{parameters}">'
         elif is_between_tags and (variable := _SET.fullmatch(statement)):
-            result = f'<set name="{variable["name"]}">{_escape(_with_single_quotes(variable["value"]))}</set>'
-        return result + "\n" * (statement.count("\n") - result.count("\n")) if result else _blank(match)
+            result = f'<set name="{variable["name"]}">{_escape(_use_single_quotes(variable["value"]))}</set>'
+        return result + "\n" * (statement.count("\n") - result.count("\n")) if result else _blank_out(match)
 
-    return _STATEMENT.sub(element, text)
+    return _STATEMENT.sub(replace_statement, text)
 
 
-def _with_single_quotes(expression: str) -> str:
+def _use_single_quotes(expression: str) -> str:
     """Return an expression with single quotes around its strings."""
     return _STRING.sub(lambda match: match[0] if match["text"] is None else f"'{match['text']}'", expression)
 
 
-def _blank(match: re.Match[str]) -> str:
+def _blank_out(match: re.Match[str]) -> str:
     return re.sub(r"[^\n]", " ", match[0])
 
 
 def _escape_expression(match: re.Match[str]) -> str:
-    return f"{{{{{_escape(_with_single_quotes(match['content']))}}}}}"
+    return f"{{{{{_escape(_use_single_quotes(match['content']))}}}}}"
 
 
 def _escape(text: str) -> str:
-    return "".join(_ESCAPED.get(character, character) for character in text)
+    return "".join(_ESCAPES.get(character, character) for character in text)

@@ -1,4 +1,4 @@
-"""Merge changed values: equal changes into one line, and many changes of a list into a summary."""
+"""Merge equal changed values, and summarize many changes in a list."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
 """The path of a list item without a name."""
 _NAME = re.compile(r"[~/]?[A-Za-z_][\w./:-]*")
 """A value that is the name of a topic, a frame or a file, for example."""
-_MIN_ALIKE = 4
+_MIN_SIBLINGS = 4
 """The minimum number of sibling parts that gain or lose values with the same name in one line."""
 _MAX_ITEM_CHANGES = 6
 """The maximum number of changed list items that are shown separately."""
@@ -55,7 +55,7 @@ class ValueChange:
 
     @property
     def key(self) -> Hashable:
-        """A key that is equal for equal changes of values with the same name in different parts.
+        """A key that is equal for equal changes to values with the same name in different parts.
 
         Names with the same edit, such as a new prefix of topics, are equal changes.
         """
@@ -66,12 +66,15 @@ class ValueChange:
         return leaf, self.kind, self.values, None if self.reason is None else str(self.reason)
 
     @property
-    def place(self) -> Hashable | None:
-        """A key that is equal for values with the same name which sibling parts add or remove; None for others."""
-        outer, *rest = self.name.rsplit(".", 2)
-        if self.kind == "changed" or len(rest) < 2:
+    def sibling_key(self) -> Hashable | None:
+        """A key that is equal for values of one name that sibling parts add or remove.
+
+        None for other values.
+        """
+        parent, *inner_names = self.name.rsplit(".", 2)
+        if self.kind == "changed" or len(inner_names) < 2:
             return None
-        return self.kind, outer, rest[1], None if self.reason is None else str(self.reason)
+        return self.kind, parent, inner_names[1], None if self.reason is None else str(self.reason)
 
     @property
     def _edit(self) -> Hashable | None:
@@ -84,7 +87,10 @@ class ValueChange:
 
 
 def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
-    """Yield the changes of a file. Breaking changes stay separate; equal changes and long lists are merged."""
+    """Yield the changes in a file, with equal changes and long lists merged.
+
+    Breaking changes are not merged into summaries of lists.
+    """
     lists: dict[str, list[ValueChange]] = {}
     groups: dict[Hashable, list[ValueChange]] = {}
     for change in changes:
@@ -93,18 +99,20 @@ def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
             lists.setdefault(item["list"], []).append(change)
         else:
             groups.setdefault(change.key, []).append(change)
-    alike: dict[Hashable, list[ValueChange]] = {}
+    sibling_groups: dict[Hashable, list[ValueChange]] = {}
     for group in groups.values():
-        alike.setdefault(group[0].place, []).extend(group)
+        sibling_groups.setdefault(group[0].sibling_key, []).extend(group)
     for group in groups.values():
-        others = alike[group[0].place]
-        if group[0].place is None or len({change.key for change in others}) < _MIN_ALIKE:
+        siblings = sibling_groups[group[0].sibling_key]
+        if group[0].sibling_key is None or len({change.key for change in siblings}) < _MIN_SIBLINGS:
             yield _merge_group(group)
-        elif group[0] is others[0]:
-            yield _without_values(others)
+        elif group[0] is siblings[0]:
+            yield _merge_siblings(siblings)
     for name, group in lists.items():
         yield from (
-            [_merge_group([change]) for change in group] if len(group) <= _MAX_ITEM_CHANGES else [_summary(name, group)]
+            [_merge_group([change]) for change in group]
+            if len(group) <= _MAX_ITEM_CHANGES
+            else [_summarize_list(name, group)]
         )
 
 
@@ -118,7 +126,7 @@ def _merge_group(group: Sequence[ValueChange]) -> Change:
     return Change(first.sentence, effect, reason, first.location, (), names, locations)
 
 
-def _without_values(group: Sequence[ValueChange]) -> Change:
+def _merge_siblings(group: Sequence[ValueChange]) -> Change:
     first = group[0]
     text = phrase("{parameter} removed", parameter=first.name)
     if first.kind == "added":
@@ -128,17 +136,17 @@ def _without_values(group: Sequence[ValueChange]) -> Change:
     return Change(text, effect, first.reason, first.location, (), names, locations)
 
 
-def _summary(name: str, group: Sequence[ValueChange]) -> Change:
+def _summarize_list(name: str, group: Sequence[ValueChange]) -> Change:
     counts = [sum(change.kind == kind for change in group) for kind in ("changed", "added", "removed")]
     texts = (
         counted("{count} value changed", "{count} values changed", counts[0]),
         counted("{count} part added", "{count} parts added", counts[1]),
         counted("{count} part removed", "{count} parts removed", counts[2]),
     )
-    listed = joined([text for text, count in zip(texts, counts, strict=True) if count])
+    counts_text = joined([text for text, count in zip(texts, counts, strict=True) if count])
     items = [str(replace(change, name=change.name.removeprefix(name)).sentence) for change in group]
-    shown = joined(items[:MAX_NAMES], "; ")
+    items_text = joined(items[:MAX_NAMES], "; ")
     if len(items) > MAX_NAMES:
-        shown = phrase("{names} and {count} more", names=shown, count=len(items) - MAX_NAMES)
-    text = phrase("list {name}: {changes}: {items}", name=name, changes=listed, items=shown)
+        items_text = phrase("{names} and {count} more", names=items_text, count=len(items) - MAX_NAMES)
+    text = phrase("list {name}: {changes}: {items}", name=name, changes=counts_text, items=items_text)
     return Change(text, location=group[0].location)

@@ -14,16 +14,21 @@ from linkwright.review.changes import Change, Location
 from linkwright.review.drawings.scene_images import read_worlds, world_images, world_scenes
 from linkwright.review.element_values import own_content
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.merged_paths import MergedPaths, differing_parts, path_pattern
-from linkwright.review.files.sdf_contents import added_text, all_content, names_in, shapes_and_mass
-from linkwright.review.files.sdf_figures import model_figures
+from linkwright.review.files.merged_paths import MergedPaths, to_path_pattern, trim_common_words
+from linkwright.review.files.sdf_contents import (
+    format_added_element,
+    join_contents,
+    summarize_element,
+    summarize_shapes_and_mass,
+)
+from linkwright.review.files.sdf_figures import compare_model_figures
 from linkwright.review.files.sdf_numbers import (
     InertialDifference,
-    with_inertials,
-    without_rounding,
-    without_same_values,
+    drop_equal_values,
+    drop_rounding,
+    join_inertials,
 )
-from linkwright.review.files.templates import is_same_name_possible, is_template, template_elements
+from linkwright.review.files.templates import is_template, may_be_equal, read_template
 from linkwright.review.left_names import find_left_names
 from linkwright.review.names_in_plugins import path_of_renamed
 from linkwright.review.plugins import added_topics, contents_text, is_added, is_removed, missing_topics_reason
@@ -33,18 +38,18 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
 
-_NAMED = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|sensor|frame) (?P<name>\S+)")
+_NAMED_ELEMENT = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|sensor|frame) (?P<name>\S+)")
 """The path of an element whose name programs and other models use."""
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
 _SET_VARIABLE = re.compile(r"(?:^|.* )set [\w.]+(?: \d+)?")
 """The path of a variable that a template sets. Its name does not show the use of the value."""
-_UNSEEN = frozenset(
+_INVISIBLE_TAGS = frozenset(
     {"collision", "inertial", "plugin", "sensor", "physics", "axis", "light", "gravity", "scene", "gui", "static"}
 )
 """The tags of elements that images do not show, with their contents."""
-_MIN_ALIKE = 3
-"""The minimum number of equal changes of elements at different places that are summarized in one line."""
+_MIN_EQUAL_CHANGES = 3
+"""The minimum number of equal changes to different elements that are summarized in one line."""
 
 
 def compare_worlds(pair: FilePair) -> None:
@@ -52,24 +57,24 @@ def compare_worlds(pair: FilePair) -> None:
     elements = pair.read(_read_elements)
     if elements is None:
         return
-    changed = without_same_values(ElementComparison().child_differences(*elements))
-    found = list(with_inertials(without_rounding(changed)))
-    added = added_topics(found)
-    differences = merge_replaced_plugins(found)
-    changes = [_WorldChange(difference, _breaking_reason(difference, added)) for difference in differences]
-    alone: list[_WorldChange] = []
-    for group in _group_alike(changes):
-        parts = differing_parts([change.path for change in group])
-        if len(group) < _MIN_ALIKE or not any(" " in part for part in parts):
-            alone += group
+    changed = drop_equal_values(ElementComparison().child_differences(*elements))
+    joined_differences = list(join_inertials(drop_rounding(changed)))
+    topics = added_topics(joined_differences)
+    differences = merge_replaced_plugins(joined_differences)
+    changes = [_WorldChange(difference, _find_breaking_reason(difference, topics)) for difference in differences]
+    separate: list[_WorldChange] = []
+    for group in _group_equal_changes(changes):
+        parts = trim_common_words([change.path for change in group])
+        if len(group) < _MIN_EQUAL_CHANGES or not any(" " in part for part in parts):
+            separate += group
             continue
         locations = tuple(location for change in group[1:] if (location := change.location(pair)) is not None)
         first = group[0]
-        text = _difference_sentence(first.difference, first.path)
+        text = _describe_difference(first.difference, first.path)
         pair.changes.append(
             Change(text, location=first.location(pair), other_names=tuple(parts[1:]), other_locations=locations)
         )
-    _report_separately(pair, alone)
+    _report_separately(pair, separate)
     pair.changes += _find_left_names(pair, *elements)
     if differences and not is_template(pair.new_path):
         _report_scenes(pair, may_be_visible=any(map(_may_be_visible, differences)))
@@ -80,18 +85,18 @@ def _find_left_names(pair: FilePair, old: Sequence[Element], new: Sequence[Eleme
 
     The name may exist in a model that only the new version includes.
     """
-    old_links, old_joints, old_models = (_names_of_tag(old, tag) for tag in ("link", "joint", "include"))
-    new_links, new_joints, new_models = (_names_of_tag(new, tag) for tag in ("link", "joint", "include"))
+    old_links, old_joints, old_models = (_find_names(old, tag) for tag in ("link", "joint", "include"))
+    new_links, new_joints, new_models = (_find_names(new, tag) for tag in ("link", "joint", "include"))
     if new_models <= old_models:
         yield from find_left_names(new, old_links - new_links, old_joints - new_joints, pair.location)
 
 
-def _names_of_tag(elements: Sequence[Element], tag: str) -> set[str]:
+def _find_names(elements: Sequence[Element], tag: str) -> set[str]:
     """Return the names of all elements with a tag, or the URIs of included models."""
-    found = (descendant for element in elements for descendant in element.walk() if descendant.tag == tag)
+    tagged = (descendant for element in elements for descendant in element.walk() if descendant.tag == tag)
     if tag == "include":
-        return {uri.text().strip() for include in found for uri in include.elements("uri")}
-    return {named.attributes["name"] for named in found if "name" in named.attributes}
+        return {uri.text().strip() for include in tagged for uri in include.elements("uri")}
+    return {named.attributes["name"] for named in tagged if "name" in named.attributes}
 
 
 def _report_scenes(pair: FilePair, *, may_be_visible: bool) -> None:
@@ -101,28 +106,31 @@ def _report_scenes(pair: FilePair, *, may_be_visible: bool) -> None:
         return
     is_drawn = may_be_visible and (pair.drawings.images or not any(world.worlds for world in worlds))
     scenes = (world_scenes(pair, worlds) if is_drawn else None) or ()
-    pair.figures += model_figures(*worlds, scenes)
+    pair.figures += compare_model_figures(*worlds, scenes)
     if pair.drawings.images and scenes:
         pair.images += world_images(*scenes)
 
 
 def _may_be_visible(difference: Difference) -> bool:
     """Return whether images can show a difference."""
-    path = path_pattern(f"{difference.name} {difference.property}".strip())
-    return _UNSEEN.isdisjoint(path)
+    path = to_path_pattern(f"{difference.name} {difference.property}".strip())
+    return _INVISIBLE_TAGS.isdisjoint(path)
 
 
 def world_contents(version: Version, path: str) -> Phrase | None:
-    """Return the models of a world, or the links and joints of a model, with plugins and sensors; None if empty."""
+    """Return the models of a world or the links and joints of a model; None if empty.
+
+    Plugins and sensors are also listed.
+    """
     elements = _read_elements(version.file(path))
-    parts = [part for element in elements for part in names_in(element)]
+    parts = [part for element in elements for part in summarize_element(element)]
     if _is_model(elements):
-        parts += [part for element in elements for part in shapes_and_mass(element)]
+        parts += [part for element in elements for part in summarize_shapes_and_mass(element)]
     return joined(parts) if parts else None
 
 
 def is_model(version: Version, path: str) -> bool:
-    """Return whether an SDF file has models and no world. Returns False if the file cannot be read."""
+    """Return whether an SDF file has models and no world; False if it cannot be read."""
     try:
         return _is_model(_read_elements(version.file(path)))
     except (LinkwrightError, OSError, ValueError, RecursionError):
@@ -147,54 +155,54 @@ class _WorldChange:
 
     @property
     def kind(self) -> Hashable:
-        """A key that is equal for equal changes of several elements."""
+        """A key that is equal for equal changes to several elements."""
         difference = self.difference
         content = "" if difference.element is None else own_content(difference.element)
         if difference.element is not None and (is_added(difference) or is_removed(difference)):
-            content = all_content(difference.element)
-        values = str(difference.values_text()) if isinstance(difference, InertialDifference) else ""
+            content = join_contents(difference.element)
+        values = str(difference.format_values()) if isinstance(difference, InertialDifference) else ""
         reason = None if self.reason is None else str(self.reason)
         return difference.kind, difference.old, difference.new, content, values, reason
 
     @property
     def is_renamed(self) -> bool:
-        """Whether the change is a change of a name."""
+        """Whether the change is a new name."""
         return path_of_renamed(self.difference, self.path) is not None
 
     def location(self, pair: FilePair) -> Location | None:
         """Return the location in the new world, or in the old world for a removed element."""
-        place = self.difference.new_place or self.difference.old_place
-        return None if place is None else pair.location(place.span, is_old=self.difference.new_place is None)
+        location = self.difference.new_place or self.difference.old_place
+        return None if location is None else pair.location(location.span, is_old=self.difference.new_place is None)
 
 
-def _group_alike(changes: Sequence[_WorldChange]) -> Iterator[list[_WorldChange]]:
+def _group_equal_changes(changes: Sequence[_WorldChange]) -> Iterator[list[_WorldChange]]:
     """Yield groups of changes that are equal except for the names of the elements."""
     groups: dict[Hashable, list[_WorldChange]] = {}
     for number, change in enumerate(changes):
         is_alone = change.reason is not None or change.is_renamed
-        groups.setdefault(number if is_alone else (path_pattern(change.path), change.kind), []).append(change)
+        groups.setdefault(number if is_alone else (to_path_pattern(change.path), change.kind), []).append(change)
     yield from groups.values()
 
 
 def _report_separately(pair: FilePair, changes: Sequence[_WorldChange]) -> None:
     """Report changes. Equal changes whose paths differ in one word are reported as one."""
     merged = MergedPaths()
-    firsts: list[_WorldChange] = []
+    first_changes: list[_WorldChange] = []
     for change in changes:
-        if merged.add(change.path, id(change) if change.is_renamed else change.kind) == len(firsts):
-            firsts.append(change)
-    for path, change in zip(merged.paths, firsts, strict=True):
-        pair.add(_difference_sentence(change.difference, path), change.location(pair), change.reason)
+        if merged.add(change.path, id(change) if change.is_renamed else change.kind) == len(first_changes):
+            first_changes.append(change)
+    for path, change in zip(merged.paths, first_changes, strict=True):
+        pair.add(_describe_difference(change.difference, path), change.location(pair), change.reason)
 
 
 def _read_elements(file: Path) -> list[Element]:
     if is_template(file.name):
-        return template_elements(str(file))
+        return read_template(str(file))
     document, _ = parse_as_gazebo(read_bytes(file), str(file))
     return list(document.root.elements())
 
 
-def _difference_sentence(difference: Difference, name: str) -> Phrase:
+def _describe_difference(difference: Difference, name: str) -> Phrase:
     """Return a difference in one line.
 
     Args:
@@ -207,10 +215,10 @@ def _difference_sentence(difference: Difference, name: str) -> Phrase:
     if isinstance(difference, PluginReplacement):
         return phrase("{entry}: {change}", entry=name, change=difference.text)
     if isinstance(difference, InertialDifference):
-        return phrase("{element}: {values}", element=name, values=difference.values_text())
+        return phrase("{element}: {values}", element=name, values=difference.format_values())
     if is_added(difference):
         if difference.element is not None:
-            return added_text(name, difference.element)
+            return format_added_element(name, difference.element)
         return phrase("{element} added", element=f"{name} {difference.new or ''}".strip())
     if not is_removed(difference):
         empty = phrase("(empty)")
@@ -223,17 +231,17 @@ def _difference_sentence(difference: Difference, name: str) -> Phrase:
     return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
 
 
-def _breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
-    """Return the reason why a difference breaks programs that use the world, or None if it does not."""
+def _find_breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
+    """Return the reason why a difference breaks users of the world; None if it does not."""
     path = f"{difference.name} {difference.property}".strip()
     is_macro = difference.element is not None and difference.element.tag == "macro"
-    if is_macro or _SET_VARIABLE.fullmatch(path) or is_same_name_possible(difference.old, difference.new):
+    if is_macro or _SET_VARIABLE.fullmatch(path) or may_be_equal(difference.old, difference.new):
         return None
-    named = _NAMED.fullmatch(path_of_renamed(difference, path) or (path if is_removed(difference) else ""))
+    named = _NAMED_ELEMENT.fullmatch(path_of_renamed(difference, path) or (path if is_removed(difference) else ""))
     if named is not None and not (named["tag"] == "include" and "/" in named["name"]):
-        return _name_reason(named["tag"], named["name"])
+        return _make_name_reason(named["tag"], named["name"])
     if _INCLUDED_NAME.fullmatch(path) and difference.old:
-        return _name_reason("include", difference.old)
+        return _make_name_reason("include", difference.old)
     if isinstance(difference, PluginReplacement) or (is_removed(difference) and difference.element is not None):
         reason = missing_topics_reason(difference, added)
         if reason is not None:
@@ -242,7 +250,7 @@ def _breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | 
     return plugin_name_reason(difference) if is_used else None
 
 
-def _name_reason(tag: str, name: str) -> Phrase:
+def _make_name_reason(tag: str, name: str) -> Phrase:
     if tag == "world":
         return world_reason(name)
     if tag in ("link", "frame"):

@@ -1,4 +1,4 @@
-"""Resolve includes of YAML files: as items of lists, as keys of mappings, or by the tag ``!include``."""
+"""Resolve includes of YAML files: list items, mapping keys, or the tag ``!include``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import yaml
 from linkwright.diagnostics import phrase, quoted_names
 from linkwright.review.changes import Location
 from linkwright.review.file_pair import FilePair, LimitError, UnreadableFileError
-from linkwright.review.files.yaml_values import compose_yaml, yaml_values
+from linkwright.review.files.yaml_values import collect_values, compose_yaml
 
 _INCLUDE_KEYS = ("include", "$include")
 _TAG = "!include"
@@ -22,26 +22,27 @@ _MAX_INCLUDES = 200
 _MAX_BYTES = 1 << 20
 
 
-def with_includes(pair: FilePair, old: yaml.Node, new: yaml.Node) -> tuple[yaml.Node, yaml.Node]:
-    """Report files that only one of two documents includes, and return both documents with their contents.
+def resolve_includes(pair: FilePair, old: yaml.Node, new: yaml.Node) -> tuple[yaml.Node, yaml.Node]:
+    """Return two documents with the included files that differ, which are reported.
 
-    A value that moves into an included file is then unchanged. Documents with too many values stay as they are.
+    A value that moves into an included file is then unchanged. Files that both documents include are not resolved.
+    Documents with too many values are returned unchanged.
     """
     readers = _Includes(pair.old_file, pair.versions.old.root), _Includes(pair.new_file, pair.versions.new.root)
-    marks = [dict(reader.names(root)) for reader, root in zip(readers, (old, new), strict=True)]
-    added, removed = ([name for name in own if name not in other] for own, other in (marks[::-1], marks))
+    positions = [dict(reader.names(root)) for reader, root in zip(readers, (old, new), strict=True)]
+    added, removed = ([name for name in own if name not in other] for own, other in (positions[::-1], positions))
     if added:
-        line, column = marks[1][added[0]]
+        line, column = positions[1][added[0]]
         text = phrase("included files added: {names}", names=quoted_names(added))
         pair.add(text, Location(pair.new_path, line, column))
     if removed:
-        line, column = marks[0][removed[0]]
+        line, column = positions[0][removed[0]]
         text = phrase("included files removed: {names}", names=quoted_names(removed))
         pair.add(text, Location(pair.old_path, line, column, is_old=True))
     expanded = readers[0].expand(old, removed), readers[1].expand(new, added)
     try:
         for root in expanded if added or removed else ():
-            yaml_values(root, {})
+            collect_values(root, {})
     except LimitError:
         return old, new
     return expanded
@@ -52,8 +53,8 @@ class _Includes:
     """The files that a YAML file of a version includes.
 
     Attributes:
-        file: the file.
-        root: the root of the version.
+        file: the YAML file with the includes.
+        root: the root folder of the version.
         counter: counts the includes that were read.
     """
 
@@ -63,12 +64,12 @@ class _Includes:
 
     def names(self, node: yaml.Node) -> Iterator[tuple[str, tuple[int, int]]]:
         """Yield the names of the existing included files, with line and column."""
-        name = self._name(node)
+        name = self._find_included_name(node)
         if name is not None:
             yield name, (node.start_mark.line + 1, node.start_mark.column + 1)
         elif isinstance(node, yaml.MappingNode):
             for key, value in node.value:
-                included = self._included_by_key(key, value)
+                included = self._find_included_by_key(key, value)
                 if included is not None:
                     yield included, (key.start_mark.line + 1, key.start_mark.column + 1)
                 else:
@@ -81,13 +82,13 @@ class _Includes:
         """Return a node with the contents of some of the included files."""
         if not names or depth > _MAX_DEPTH:
             return node
-        name = self._name(node)
+        name = self._find_included_name(node)
         if name in names:
             return self._read_content(name or "", node, depth) or node
         if isinstance(node, yaml.MappingNode):
             items: list[tuple[yaml.Node, yaml.Node]] = []
             for key, value in node.value:
-                included = self._included_by_key(key, value)
+                included = self._find_included_by_key(key, value)
                 content = self._read_content(included, key, depth) if included in names and included else None
                 if isinstance(content, yaml.MappingNode):
                     items += content.value
@@ -98,32 +99,36 @@ class _Includes:
             values: list[yaml.Node] = []
             for item in node.value:
                 content = self.expand(item, names, depth)
-                is_list = content is not item and self._name(item) in names and isinstance(content, yaml.SequenceNode)
+                is_list = (
+                    content is not item
+                    and self._find_included_name(item) in names
+                    and isinstance(content, yaml.SequenceNode)
+                )
                 values += content.value if is_list else [content]
             return yaml.SequenceNode(node.tag, values, node.start_mark, node.end_mark, node.flow_style)
         return node
 
-    def _name(self, node: yaml.Node) -> str | None:
-        """Return the name of the file that a node includes as a whole, or None for another node."""
+    def _find_included_name(self, node: yaml.Node) -> str | None:
+        """Return the name of the file that a node includes as a whole, or None for other nodes."""
         if isinstance(node, yaml.ScalarNode):
-            return self._existing_file(str(node.value)) if node.tag == _TAG else None
+            return self._find_existing_file(str(node.value)) if node.tag == _TAG else None
         if isinstance(node, yaml.MappingNode) and len(node.value) == 1:
-            return self._included_by_key(*node.value[0])
+            return self._find_included_by_key(*node.value[0])
         return None
 
-    def _included_by_key(self, key: yaml.Node, value: yaml.Node) -> str | None:
+    def _find_included_by_key(self, key: yaml.Node, value: yaml.Node) -> str | None:
         is_include = (
             isinstance(key, yaml.ScalarNode) and key.value in _INCLUDE_KEYS and isinstance(value, yaml.ScalarNode)
         )
-        return self._existing_file(str(value.value)) if is_include else None
+        return self._find_existing_file(str(value.value)) if is_include else None
 
-    def _existing_file(self, name: str) -> str | None:
+    def _find_existing_file(self, name: str) -> str | None:
         file = self.file.parent / name
         is_inside = bool(name) and file.is_file() and file.resolve().is_relative_to(self.root.resolve())
         return name if is_inside and file.stat().st_size <= _MAX_BYTES else None
 
-    def _read_content(self, name: str, place: yaml.Node, depth: int) -> yaml.Node | None:
-        """Return the content of an included file at the place of its include.
+    def _read_content(self, name: str, include: yaml.Node, depth: int) -> yaml.Node | None:
+        """Return the content of an included file, with the location of the include.
 
         Returns None if the file cannot be read, or if too many were read.
         """
@@ -137,17 +142,17 @@ class _Includes:
         if root is None:
             return None
         inner = _Includes(file, self.root, self.counter)
-        root = inner.expand(root, [inside for inside, _ in inner.names(root)], depth + 1)
-        _move_to_place(root, place)
+        root = inner.expand(root, [inner_name for inner_name, _ in inner.names(root)], depth + 1)
+        _move_to_include(root, include)
         return root
 
 
-def _move_to_place(node: yaml.Node, place: yaml.Node) -> None:
+def _move_to_include(node: yaml.Node, include: yaml.Node) -> None:
     """Set the location of a node and all its descendants to the location of the include."""
     pending = [node]
     while pending:
         current = pending.pop()
-        current.start_mark = place.start_mark
+        current.start_mark = include.start_mark
         if isinstance(current, yaml.MappingNode):
             pending += [part for pair in current.value for part in pair]
         elif isinstance(current, yaml.SequenceNode):

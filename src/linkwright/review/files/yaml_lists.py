@@ -1,4 +1,7 @@
-"""Match list items of two YAML documents, so that an inserted item does not shift the following items."""
+"""Match the list items of two YAML documents.
+
+An inserted item does not shift the following items.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from difflib import SequenceMatcher
 
 import yaml
 
-from linkwright.review.files.yaml_values import is_structured_list, name_of_item
+from linkwright.review.files.yaml_values import find_item_name, is_structured_list
 
 _MAX_COMPARISONS = 1_000_000
 """The maximum product of the lengths of two lists whose items are aligned."""
@@ -19,7 +22,7 @@ _MAX_DEPTH = 4
 """The maximum depth in an item at which values are compared one by one."""
 
 
-def item_labels(old: yaml.Node, new: yaml.Node) -> dict[int, str]:
+def find_item_labels(old: yaml.Node, new: yaml.Node) -> dict[int, str]:
     """Return labels for the items of lists that have no name, by the identity of the item.
 
     Matched items have the same label: the number of the new item.
@@ -47,9 +50,9 @@ def _match_items(
     old: yaml.Node, new: yaml.Node, labels: dict[int, str], texts: dict[int, str]
 ) -> list[tuple[yaml.Node, yaml.Node]]:
     """Label the items of two lists, and return the matched items that differ."""
-    old_names = {name: item for item in old.value if (name := name_of_item(item)) is not None}
-    pairs = [(old_names[name], item) for item in new.value if (name := name_of_item(item)) in old_names]
-    old_items, new_items = ([item for item in node.value if name_of_item(item) is None] for node in (old, new))
+    old_names = {name: item for item in old.value if (name := find_item_name(item)) is not None}
+    pairs = [(old_names[name], item) for item in new.value if (name := find_item_name(item)) in old_names]
+    old_items, new_items = ([item for item in node.value if find_item_name(item) is None] for node in (old, new))
     if len(old_items) * len(new_items) > _MAX_COMPARISONS:
         return pairs
     labels |= {id(item): str(number) for number, item in enumerate(new_items)}
@@ -62,10 +65,10 @@ def _match_items(
 
 def _align(old: Sequence[yaml.Node], new: Sequence[yaml.Node], texts: dict[int, str]) -> Iterator[tuple[int, int]]:
     """Yield the indexes of matched items: the smallest edit, or for long lists a small one."""
-    old_texts, new_texts = ([_content_text(item, texts) for item in items] for items in (old, new))
+    old_texts, new_texts = ([_format_content(item, texts) for item in items] for items in (old, new))
     anchors: list[tuple[int, int]] = []
     if len(old) * len(new) <= _MAX_SIMILARITIES:
-        anchors = _best_pairs(list(map(_count_values, old)), list(map(_count_values, new)))
+        anchors = _find_best_pairs(list(map(_count_values, old)), list(map(_count_values, new)))
     else:
         matcher = SequenceMatcher(None, old_texts, new_texts, autojunk=False)
         for start, new_start, size in matcher.get_matching_blocks():
@@ -81,8 +84,8 @@ def _align(old: Sequence[yaml.Node], new: Sequence[yaml.Node], texts: dict[int, 
 def _match_similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> list[tuple[int, int]]:
     """Return the indexes of matched items in the order of both lists.
 
-    Many items match by their order. Others match if they have something in common, or if equally many items were
-    removed and added.
+    Long lists match by order. Other items match if they have common values, or if the same number of
+    items was removed and added.
     """
     in_order = [(number, number) for number in range(min(len(old), len(new)))]
     if len(old) * len(new) > _MAX_SIMILARITIES:
@@ -92,23 +95,23 @@ def _match_similar_items(old: Sequence[yaml.Node], new: Sequence[yaml.Node]) -> 
         return in_order
     if len(old) == len(new) and not any(isinstance(item, yaml.MappingNode) for item in (*old, *new)):
         return in_order
-    return _best_pairs(old_facts, new_facts)
+    return _find_best_pairs(old_facts, new_facts)
 
 
-def _best_pairs(old: Sequence[Counter[str]], new: Sequence[Counter[str]]) -> list[tuple[int, int]]:
+def _find_best_pairs(old: Sequence[Counter[str]], new: Sequence[Counter[str]]) -> list[tuple[int, int]]:
     """Return the indexes of the most similar items in the order of both lists."""
-    best = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
-    scores = [[_values_similarity(a, b) for b in new] for a in old]
+    best_scores = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
+    scores = [[_compute_similarity(a, b) for b in new] for a in old]
     for i, row in enumerate(scores, 1):
         for k, similarity in enumerate(row, 1):
-            together = best[i - 1][k - 1] + similarity if similarity >= _MIN_SIMILARITY else 0.0
-            best[i][k] = max(best[i - 1][k], best[i][k - 1], together)
+            paired_score = best_scores[i - 1][k - 1] + similarity if similarity >= _MIN_SIMILARITY else 0.0
+            best_scores[i][k] = max(best_scores[i - 1][k], best_scores[i][k - 1], paired_score)
     pairs = []
     i, k = len(old), len(new)
     while i and k:
-        if best[i][k] == best[i - 1][k]:
+        if best_scores[i][k] == best_scores[i - 1][k]:
             i -= 1
-        elif best[i][k] == best[i][k - 1]:
+        elif best_scores[i][k] == best_scores[i][k - 1]:
             k -= 1
         else:
             i, k = i - 1, k - 1
@@ -128,25 +131,25 @@ def _walk_values(node: yaml.Node, path: str, depth: int) -> Iterator[str]:
     elif isinstance(node, yaml.SequenceNode):
         children = [(str(number), value) for number, value in enumerate(node.value)]
     if not children or depth >= _MAX_DEPTH:
-        yield f"{path}={_content_text(node, {})}"
+        yield f"{path}={_format_content(node, {})}"
         return
     for key, value in children:
         yield from _walk_values(value, f"{path}.{key}", depth + 1)
 
 
-def _values_similarity(old: Counter[str], new: Counter[str]) -> float:
+def _compute_similarity(old: Counter[str], new: Counter[str]) -> float:
     total = old.total() + new.total()
     return 2 * (old & new).total() / total if total else 1.0
 
 
-def _content_text(node: yaml.Node, texts: dict[int, str]) -> str:
+def _format_content(node: yaml.Node, texts: dict[int, str]) -> str:
     """Return the content of a node as text, which is equal for equal content."""
     if id(node) not in texts:
         if isinstance(node, yaml.MappingNode):
-            items = sorted(f"{key.value}: {_content_text(value, texts)}" for key, value in node.value)
+            items = sorted(f"{key.value}: {_format_content(value, texts)}" for key, value in node.value)
             texts[id(node)] = f"{{{', '.join(items)}}}"
         elif isinstance(node, yaml.SequenceNode):
-            texts[id(node)] = f"[{', '.join(_content_text(item, texts) for item in node.value)}]"
+            texts[id(node)] = f"[{', '.join(_format_content(item, texts) for item in node.value)}]"
         else:
             texts[id(node)] = str(node.value)
     return texts[id(node)]

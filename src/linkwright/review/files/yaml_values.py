@@ -22,7 +22,7 @@ _NAME_KEYS = ("name", "id")
 """The keys that identify the items of a list."""
 _INTEGER = re.compile(r"[-+]?(0x[0-9a-fA-F]+|\d+)")
 _FLOAT = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
-_TRUTH = re.compile(r"true|false|yes|no|on|off", re.IGNORECASE)
+_BOOLEAN = re.compile(r"true|false|yes|no|on|off", re.IGNORECASE)
 
 
 class YamlType(Enum):
@@ -71,16 +71,18 @@ class YamlValue:
 
 
 def read_yaml_values(text: str, labels: Mapping[int, str] | None = None) -> dict[str, YamlValue]:
-    """Return the values of a YAML document by their paths, such as ``controller_manager.ros__parameters.update_rate``.
+    """Return the values of a YAML document by their paths.
+
+    A path is ``controller_manager.ros__parameters.update_rate``, for example.
 
     Raises:
         UnreadableFileError: the text is not YAML, or it has more values than a parameter file.
     """
     root = compose_yaml(text)
-    return {} if root is None else yaml_values(root, labels or {})
+    return {} if root is None else collect_values(root, labels or {})
 
 
-def yaml_values(root: yaml.Node, labels: Mapping[int, str]) -> dict[str, YamlValue]:
+def collect_values(root: yaml.Node, labels: Mapping[int, str]) -> dict[str, YamlValue]:
     """Return the values of a document by their paths.
 
     Args:
@@ -122,7 +124,7 @@ def compose_yaml(text: str) -> yaml.Node | None:
         raise UnreadableFileError(foreign(" ".join(str(error).split()))) from None
 
 
-def value_of_text(text: str) -> YamlValue | None:
+def parse_yaml_value(text: str) -> YamlValue | None:
     """Return the YAML scalar or list of scalars of a text; None for other texts."""
     try:
         root = compose_yaml(text)
@@ -140,12 +142,12 @@ def _walk_values(node: yaml.Node, path: str, labels: Mapping[int, str]) -> Itera
             yield from _walk_values(value, f"{path}.{name}" if path else str(name), labels)
     elif is_structured_list(node):
         for number, item in enumerate(node.value):
-            label = name_of_item(item) or labels.get(id(item)) or number
+            label = find_item_name(item) or labels.get(id(item)) or number
             yield from _walk_values(item, f"{path}[{label}]", labels)
     else:
         mark = node.start_mark
         is_list = isinstance(node, yaml.SequenceNode)
-        yield path, YamlValue(_scalar_text(node), mark.line + 1, mark.column + 1, _type_of(node), is_list)
+        yield path, YamlValue(_format_scalar(node), mark.line + 1, mark.column + 1, _find_type(node), is_list)
 
 
 def is_structured_list(node: yaml.Node) -> bool:
@@ -153,27 +155,27 @@ def is_structured_list(node: yaml.Node) -> bool:
     return isinstance(node, yaml.SequenceNode) and not all(isinstance(item, yaml.ScalarNode) for item in node.value)
 
 
-def _type_of(node: yaml.Node) -> YamlType | None:
+def _find_type(node: yaml.Node) -> YamlType | None:
     if isinstance(node, yaml.SequenceNode):
-        types = {_type_of(item) for item in node.value}
+        types = {_find_type(item) for item in node.value}
         return YamlType.MIXED if len(types) > 1 else next(iter(types), None)
     text = str(node.value)
     if not isinstance(node, yaml.ScalarNode) or node.style is not None:
         return YamlType.TEXT
     if text in ("", "~", NULL, "Null", "NULL"):
         return None
-    patterns = ((YamlType.INTEGER, _INTEGER), (YamlType.FLOAT, _FLOAT), (YamlType.TRUTH, _TRUTH))
+    patterns = ((YamlType.INTEGER, _INTEGER), (YamlType.FLOAT, _FLOAT), (YamlType.TRUTH, _BOOLEAN))
     return next((kind for kind, pattern in patterns if pattern.fullmatch(text)), YamlType.TEXT)
 
 
-def _scalar_text(node: yaml.Node) -> str:
+def _format_scalar(node: yaml.Node) -> str:
     if isinstance(node, yaml.SequenceNode):
-        items = (str(item.value) or (NULL if _type_of(item) is None else EMPTY) for item in node.value)
+        items = (str(item.value) or (NULL if _find_type(item) is None else EMPTY) for item in node.value)
         return f"[{', '.join(items)}]"
     return " ".join(str(node.value).split())
 
 
-def name_of_item(node: yaml.Node) -> str | None:
+def find_item_name(node: yaml.Node) -> str | None:
     """Return the name of a list item, which identifies it independently of its position."""
     if not isinstance(node, yaml.MappingNode):
         return None

@@ -13,8 +13,8 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.files.parameter_names import offers_frame, type_reason
-from linkwright.review.files.yaml_values import YamlType, YamlValue, value_of_text
+from linkwright.review.files.parameter_names import find_type_reason, offers_frame
+from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.matching import compute_name_similarity, find_loaded_class
 from linkwright.review.launches.outlines import (
@@ -295,7 +295,7 @@ def _find_parameter_reason(
     if new_outline.is_ros1:
         return None  # ROS 1 converts numbers
     old_value, new_value = _parse_literal(old_name), _parse_literal(new_name)
-    return type_reason(old_value, new_value) if old_value and new_value else None
+    return find_type_reason(old_value, new_value) if old_value and new_value else None
 
 
 def _parse_literal(text: str) -> YamlValue | None:
@@ -303,7 +303,7 @@ def _parse_literal(text: str) -> YamlValue | None:
 
     A word without quotes may be the name of a variable.
     """
-    value = None if "$(" in text else value_of_text(text)
+    value = None if "$(" in text else parse_yaml_value(text)
     is_word = value is not None and value.type in (YamlType.TEXT, YamlType.MIXED) and not text.startswith(("'", '"'))
     return None if is_word else value
 

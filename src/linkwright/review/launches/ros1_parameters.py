@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import yaml
 
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.yaml_values import YamlValue, compose_yaml, yaml_values
+from linkwright.review.files.yaml_values import YamlValue, collect_values, compose_yaml
 
 _DEFAULT_COMMAND = "load"
 _NULL = "null"
@@ -44,7 +44,7 @@ def read_written_parameters(attributes: Mapping[str, str], text: str) -> dict[st
     path = ".".join(filter(None, [attributes.get("ns", "").strip("/"), attributes.get("param", "")]))
     try:
         root = compose_yaml(textwrap.dedent(text))
-        values = {} if root is None else yaml_values(root, {})
+        values = {} if root is None else collect_values(root, {})
     except UnreadableFileError:
         values = {}
     if not values or (not path and not isinstance(root, yaml.MappingNode)):

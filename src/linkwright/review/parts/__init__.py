@@ -1,6 +1,6 @@
-"""Compare unexpanded descriptions: macros, parameters, arguments, and the elements that no robot shows."""
+"""Compare unexpanded descriptions, including the elements that no robot shows."""
 
 from linkwright.review.parts.comparing import compare_parts
-from linkwright.review.parts.expanded import expanded_places
+from linkwright.review.parts.expanded import find_expanded_elements
 
-__all__ = ["compare_parts", "expanded_places"]
+__all__ = ["compare_parts", "find_expanded_elements"]

@@ -7,7 +7,7 @@ import math
 import operator
 from collections.abc import Callable, Mapping
 
-_MAX_LENGTH = 200
+_MAX_CHARACTERS = 200
 _CONSTANTS = {"pi": math.pi}
 _FUNCTIONS: dict[str, Callable[[float], float]] = {
     "radians": math.radians,
@@ -27,14 +27,14 @@ _OPERATORS: dict[type[ast.operator], Callable[[float, float], float]] = {
 }
 
 
-def number_of(expression: str, values: Mapping[str, str]) -> str | None:
-    """Return the value of a numeric expression with 12 digits, or None for any other expression.
+def evaluate_number(expression: str, values: Mapping[str, str]) -> str | None:
+    """Return the value of a numeric expression with 12 digits; None for other expressions.
 
     Args:
         expression: the expression, without ``${`` and ``}``.
         values: the values of properties, by name.
     """
-    if len(expression) > _MAX_LENGTH:
+    if len(expression) > _MAX_CHARACTERS:
         return None
     try:
         number = _evaluate(ast.parse(expression.strip(), mode="eval").body, values)

@@ -10,14 +10,14 @@ from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, ExpandedPlace, Subject, SubjectKind
 from linkwright.review.failures import failure_problem
-from linkwright.review.parts.contents import compare_contents, comparison_of
+from linkwright.review.parts.contents import compare_contents, make_comparison
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.interface import (
     IncludeGraphs,
     compare_arguments,
     compare_macros,
     find_renamed_macros,
-    macro_removal_reason,
+    make_macro_removal_reason,
 )
 from linkwright.review.parts.outline import MacroOutline, Outline, read_outline
 from linkwright.review.parts.part_pair import PartPair
@@ -37,15 +37,17 @@ def compare_parts(
     subjects: Sequence[Subject],
     is_complete: Callable[[str], bool],
 ) -> list[Subject]:
-    """Return the subjects with the changes of unexpanded descriptions that no compared robot shows.
+    """Return the subjects with the changes in unexpanded descriptions.
+
+    Changes that a compared robot shows are left out.
 
     Args:
-        versions: both versions.
+        versions: the repository before and after the change.
         files: the changed files of the review.
         subjects: the subjects compared so far.
         is_complete: a function that returns whether a path is a complete robot.
     """
-    expanded = {place for subject in subjects for place in subject.expanded}
+    expanded = {element for subject in subjects for element in subject.expanded}
     result = list(subjects)
     indexes = {subject.path: number for number, subject in enumerate(subjects)}
     comparer = _Comparer(versions, expanded, is_complete)
@@ -54,23 +56,25 @@ def compare_parts(
             continue
         number = indexes.get(file.path)
         try:
-            part = comparer.subject(file, is_compared=number is not None)
-        except Exception as error:  # noqa: BLE001 - whatever it is, the other files are compared
+            part = comparer.compare_file(file, is_compared=number is not None)
+        except Exception as error:  # noqa: BLE001 - any error; the other files are still compared
             problems = [failure_problem(error)]
             part = Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, [], problems=problems)
         if number is None:
             result.append(part)
         else:
-            known = result[number]
+            existing = result[number]
             result[number] = replace(
-                known,
-                changes=[*known.changes, *part.changes],
-                problems=list(dict.fromkeys([*known.problems, *part.problems])),
+                existing,
+                changes=[*existing.changes, *part.changes],
+                problems=list(dict.fromkeys([*existing.problems, *part.problems])),
             )
     return result
 
 
 class _Comparer:
+    """Compare the changed files of a review, with the include graphs of both versions."""
+
     def __init__(
         self, versions: Versions, expanded: Collection[ExpandedPlace], is_complete: Callable[[str], bool]
     ) -> None:
@@ -79,20 +83,22 @@ class _Comparer:
         self._is_complete = is_complete
         self._graphs = IncludeGraphs(IncludeGraph(versions.old), IncludeGraph(versions.new))
 
-    def subject(self, file: ChangedFile, *, is_compared: bool) -> Subject:
+    def compare_file(self, file: ChangedFile, *, is_compared: bool) -> Subject:
         """Return a file with its changes.
 
         Args:
-            file: the file.
+            file: the changed file.
             is_compared: whether the file is a complete robot that the review has already compared.
         """
         changes: list[Change] = []
-        old = self._outline(self._versions.old, file.old_path)
-        new = self._outline(self._versions.new, file.new_path)
+        old = self._read_outline(self._versions.old, file.old_path)
+        new = self._read_outline(self._versions.new, file.new_path)
         if not is_compared:
-            changes += _file_changes(file, old, new)
+            changes += _compare_whole_file(file, old, new)
         if isinstance(old, Outline) and file.new_path is None and not is_compared:
-            changes += _lost_macros([name for name in old.macros if not self._graphs.new.files_with_macro(name)])
+            changes += _report_lost_macros(
+                [name for name in old.macros if not self._graphs.new.find_files_with_macro(name)]
+            )
         if file.old_path and file.new_path and isinstance(old, Outline) and isinstance(new, Outline):
             is_complete = is_compared or self._is_complete(file.new_path)
             pair = PartPair(self._versions, file.old_path, file.new_path, old, new, is_complete, self._expanded)
@@ -107,7 +113,7 @@ class _Comparer:
         compare_arguments(pair, self._graphs)
         compare_contents(pair, renamed)
 
-    def _outline(self, version: Version, path: str | None) -> Outline | Phrase | None:
+    def _read_outline(self, version: Version, path: str | None) -> Outline | Phrase | None:
         """Return the outline of a file, the reason why it cannot be read, or None for other files."""
         if path is None or not version.file(path).is_file():
             return None
@@ -121,7 +127,7 @@ class _Comparer:
 def _find_renamed_macros(pair: PartPair) -> Iterator[tuple[str, str]]:
     """Yield the old and new names of renamed macros."""
     similarity: Mapping[tuple[str, str], float] = {
-        (old.name, new.name): _macro_similarity(pair, old, new)
+        (old.name, new.name): _compute_similarity(pair, old, new)
         for old in pair.old.macros.values()
         if old.name not in pair.new.macros
         for new in pair.new.macros.values()
@@ -130,27 +136,29 @@ def _find_renamed_macros(pair: PartPair) -> Iterator[tuple[str, str]]:
     yield from find_renamed_macros(pair, similarity)
 
 
-def _macro_similarity(pair: PartPair, old: MacroOutline, new: MacroOutline) -> float:
+def _compute_similarity(pair: PartPair, old: MacroOutline, new: MacroOutline) -> float:
     """Return the share of equal elements of two macros, from 0 to 1; 0 if they are not similar."""
-    comparison = comparison_of(pair, old, new)
+    comparison = make_comparison(pair, old, new)
     contents = [
-        Counter(wording.content(child) for child in macro.element.elements())
-        for wording, macro in ((comparison.old, old), (comparison.new, new))
+        Counter(substitution.normalize_element(child) for child in macro.element.elements())
+        for substitution, macro in ((comparison.old, old), (comparison.new, new))
     ]
     total = sum(content.total() for content in contents)
     share = 2 * (contents[0] & contents[1]).total() / total if total else 0.0
     return share if share >= _MIN_SIMILARITY else 0.0
 
 
-def _lost_macros(names: Sequence[str]) -> Iterator[Change]:
+def _report_lost_macros(names: Sequence[str]) -> Iterator[Change]:
     """Yield the change that macros were removed with their file."""
     if names:
         text = phrase("macro '{name}' removed", name=names[0])
-        yield Change(text, Effect.BREAKING, macro_removal_reason(), other_names=tuple(names[1:]))
+        yield Change(text, Effect.BREAKING, make_macro_removal_reason(), other_names=tuple(names[1:]))
 
 
-def _file_changes(file: ChangedFile, old: Outline | Phrase | None, new: Outline | Phrase | None) -> Iterator[Change]:
-    """Yield the changes of a part as a whole: added, removed, renamed, or unreadable."""
+def _compare_whole_file(
+    file: ChangedFile, old: Outline | Phrase | None, new: Outline | Phrase | None
+) -> Iterator[Change]:
+    """Yield the changes to a part as a whole: added, removed, renamed, or unreadable."""
     reason = phrase("launch files and descriptions that name the file do not find it")
     is_semantic = file.path.endswith(_SEMANTIC)
     if isinstance(old, Outline) and file.new_path is None:

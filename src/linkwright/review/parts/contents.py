@@ -18,17 +18,17 @@ from linkwright.review.breaking import (
 )
 from linkwright.review.changes import Change, Effect
 from linkwright.review.element_values import values_text
-from linkwright.review.files.semantics import removal_reason
+from linkwright.review.files.semantics import find_removal_reason
 from linkwright.review.merging import common_reason, name_edit
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
+from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import PROPERTY, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
-from linkwright.review.parts.wording import NameSubstitution, literals_of, properties_of
 from linkwright.xmltree import Element
 
 _MAX_CHARACTERS = 80
 """The maximum number of characters of a value in a line."""
-_SHOWN_BEGINNING = 20
+_SHOWN_COMMON_CHARACTERS = 20
 """The number of equal characters that are shown before the difference of long values."""
 _MAX_VALUES = 8
 """The maximum number of values of an added or removed element in a line."""
@@ -41,10 +41,10 @@ _NAMESPACE = "namespace"
 _INCLUDE, _INSERT = "xacro:include", "xacro:insert_block"
 
 
-def comparison_of(pair: PartPair, old: MacroOutline | None = None, new: MacroOutline | None = None) -> ItemComparison:
+def make_comparison(pair: PartPair, old: MacroOutline | None = None, new: MacroOutline | None = None) -> ItemComparison:
     """Return the comparison of the elements of two files, or of two macros in them."""
     renamed = dict(_find_renamed_properties(pair))
-    literals = [literals_of(outline.root) for outline in (pair.old, pair.new)]
+    literals = [read_literals(outline.root) for outline in (pair.old, pair.new)]
     if old is not None and new is not None:
         renamed |= dict(_find_renamed_parameters(old, new))
         for values, macro in zip(literals, (old, new), strict=True):
@@ -54,7 +54,7 @@ def comparison_of(pair: PartPair, old: MacroOutline | None = None, new: MacroOut
 
 
 def compare_contents(pair: PartPair, renamed: Mapping[str, str]) -> None:
-    """Report the changes of elements that no compared robot shows.
+    """Report the changes to elements that no compared robot shows.
 
     Args:
         pair: both versions of the file.
@@ -62,19 +62,19 @@ def compare_contents(pair: PartPair, renamed: Mapping[str, str]) -> None:
     """
     changes = [
         _ReportedDifference(pair, None, difference)
-        for difference in _hidden_differences(pair, comparison_of(pair), pair.old.root, pair.new.root)
+        for difference in _find_hidden_differences(pair, make_comparison(pair), pair.old.root, pair.new.root)
     ]
     for name, macro in pair.new.macros.items():
         old_name = next((old for old, new in renamed.items() if new == name), name)
         old = pair.old.macros.get(old_name)
         if old is not None:
-            comparison = comparison_of(pair, old, macro)
-            differences = _hidden_differences(pair, comparison, old.element, macro.element)
+            comparison = make_comparison(pair, old, macro)
+            differences = _find_hidden_differences(pair, comparison, old.element, macro.element)
             changes += (_ReportedDifference(pair, name, difference) for difference in differences)
     pair.changes += _merge_differences(changes)
 
 
-def _hidden_differences(
+def _find_hidden_differences(
     pair: PartPair, comparison: ItemComparison, old: Element, new: Element
 ) -> Iterator[PartDifference]:
     """Yield the differences between two elements that no compared robot shows."""
@@ -84,7 +84,7 @@ def _hidden_differences(
 
 
 def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Element) -> bool:
-    """Return whether the compared robots show a difference, or would show it if it had an effect."""
+    """Return whether the compared robots show a difference that has an effect."""
     elements = difference.old_element, difference.new_element
     element = elements[1] or elements[0]
     assert element is not None
@@ -92,7 +92,7 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
     if difference.value == "conditions":
         return _is_condition_shown(pair, difference)
     if None in (difference.old, difference.new) and f"${{{difference.value}}}" in (difference.old, difference.new):
-        return True  # a call that hands on a parameter, which is a change of its own
+        return True  # a call that passes a parameter on; the parameter itself is reported
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
     if element.tag in (_INCLUDE, _INSERT):
@@ -101,20 +101,24 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
 
 
 def _is_condition_shown(pair: PartPair, difference: PartDifference) -> bool:
-    """Return whether the compared robots show a change of the conditions of an element.
+    """Return whether the compared robots show a change to the conditions of an element.
 
-    An added or removed condition matters for other arguments, even if all compared robots have the element.
+    An added or removed condition can have an effect with different arguments, even if all compared robots have the
+    element.
     """
     has_old = pair.is_expanded(difference.old_element, is_old=True)
     has_new = pair.is_expanded(difference.new_element, is_old=False)
     old, new = ((text or "").split(CONDITION_SEPARATOR) for text in (difference.old, difference.new))
-    comes_or_goes = set(filter(None, old)) < set(new) or set(filter(None, new)) < set(old)
-    return has_old != has_new or (has_old and has_new and not comes_or_goes)
+    is_added_or_removed = set(filter(None, old)) < set(new) or set(filter(None, new)) < set(old)
+    return has_old != has_new or (has_old and has_new and not is_added_or_removed)
 
 
 def _is_property_shown(pair: PartPair, name: str, old: Element, new: Element) -> bool:
-    """Return whether a compared robot has an element that uses a property, directly or through other properties."""
-    found = False
+    """Return whether a compared robot has an element that uses a property.
+
+    The use can be direct or through other properties.
+    """
+    is_used = False
     for root, is_old in ((old, True), (new, False)):
         names, pending = {name}, [name]
         while pending:
@@ -122,20 +126,20 @@ def _is_property_shown(pair: PartPair, name: str, old: Element, new: Element) ->
             for element in root.walk():
                 if not uses_name(element, property_name):
                     continue
-                found = True
+                is_used = True
                 other = element.attributes.get("name", "")
                 if element.tag == PROPERTY and other not in names:
                     names.add(other)
                     pending.append(other)
                 if pair.is_expanded(element, is_old=is_old):
                     return True
-    return not found and any(pair.is_read(is_old=is_old) for is_old in (True, False))
+    return not is_used and any(pair.is_read(is_old=is_old) for is_old in (True, False))
 
 
 def _find_renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
-    """Yield the old and new names of renamed properties, whose values are equal, in their order."""
+    """Yield the old and new names of renamed properties, which keep their values."""
     old, new = (
-        {name: element.attributes.get("value") for name, element in properties_of(outline.root)}
+        {name: element.attributes.get("value") for name, element in iterate_properties(outline.root)}
         for outline in (pair.old, pair.new)
     )
     added = {name: value for name, value in new.items() if name not in old}
@@ -147,7 +151,10 @@ def _find_renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
 
 
 def _find_renamed_parameters(old: MacroOutline, new: MacroOutline) -> Iterator[tuple[str, str]]:
-    """Yield the old and new names of renamed parameters, if equally many were removed and added with equal defaults."""
+    """Yield the old and new names of renamed parameters.
+
+    The removed and added parameters must have the same defaults in the same order.
+    """
     removed = [parameter for name, parameter in old.parameters.items() if name not in new.parameters]
     added = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
     if [parameter.default for parameter in removed] == [parameter.default for parameter in added]:
@@ -188,7 +195,7 @@ class _ReportedDifference:
     def change(self) -> Change:
         """The change in one line."""
         collector = replace(self.pair, changes=[])
-        text = self._sentence()
+        text = self._describe()
         if self.macro is not None:
             text = phrase("macro '{macro}': {text}", macro=self.macro, text=text)
         collector.add(text, self.difference.old_element, self.difference.new_element, self.reason)
@@ -214,10 +221,10 @@ class _ReportedDifference:
             return f"{self.difference.old} -> {self.difference.new}"
         return self.element
 
-    def name_beside(self, first: _ReportedDifference) -> str | None:
-        """Return the name to list after the first element with the same change, or None if it adds nothing.
+    def find_name_beside(self, first: _ReportedDifference) -> str | None:
+        """Return the name to list after the first element; None if it adds nothing.
 
-        Elements with other values are listed with the values, and elements without a name with their attributes.
+        Elements with different values are listed with the values, and elements without a name with their attributes.
         """
         if self.element != first.element:
             has_other_contents = self.shows_contents and str(self.contents) != str(first.contents)
@@ -226,7 +233,7 @@ class _ReportedDifference:
         value, first_value = (changed.new or changed.old or "" for changed in (difference, first.difference))
         return f"{self.element} {_truncate(value)}" if difference.is_whole and value != first_value else None
 
-    def _sentence(self) -> Phrase:
+    def _describe(self) -> Phrase:
         difference = self.difference
         if difference.value == "conditions":
             old, new = (
@@ -235,11 +242,11 @@ class _ReportedDifference:
             )
             return phrase("{element}: condition {old} -> {new}", element=self.element, old=old, new=new)
         if difference.new is None or difference.old is None:
-            return self._presence_text()
+            return self._describe_presence()
         old, new = _shorten_common_beginning(difference.old, difference.new)
         return phrase("{element}: {old} -> {new}", element=self.element, old=old or "-", new=new or "-")
 
-    def _presence_text(self) -> Phrase:
+    def _describe_presence(self) -> Phrase:
         """Return the sentence about an added or removed value or element."""
         difference = self.difference
         value = _truncate((difference.new if difference.old is None else difference.old) or "")
@@ -262,18 +269,18 @@ class _ReportedDifference:
         difference, old = self.difference, self.difference.old_element
         if old is None:
             return None
-        is_gone = difference.is_whole or difference.value == "name"
+        is_removed = difference.is_whole or difference.value == "name"
         if len(difference.path) == 1 and old.tag in ("link", "joint"):
             name = old.attributes.get("name", "")
-            if not is_gone:
+            if not is_removed:
                 return None
             if old.tag == "link":
                 return frame_reason(name)
             return joint_name_reason(name) if old.attributes.get("type") in MOVING_TYPES else None
         if len(difference.path) == 1 and difference.value == "name" and old.tag == "world":
             return world_reason(old.attributes.get("name", ""))
-        if len(difference.path) == 1 and is_gone and old.tag in ("group", "group_state", "end_effector"):
-            return removal_reason(old.tag, old.attributes.get("name", ""))
+        if len(difference.path) == 1 and is_removed and old.tag in ("group", "group_state", "end_effector"):
+            return find_removal_reason(old.tag, old.attributes.get("name", ""))
         kind, name = difference.value, " ".join(difference.path[1:])
         if kind not in ("", "text", "conditions"):
             name = f"{name} @{kind}".strip()
@@ -281,20 +288,23 @@ class _ReportedDifference:
         if kind == "conditions" or not root.startswith(("gazebo", "ros2_control")):
             return None
         if difference.new_element is None and root.startswith("gazebo"):
-            return self._lost_name_reason(old)
+            return self._find_lost_name_reason(old)
         if difference.is_whole and not name:
             return extension_reason(Difference("extension", root, "removed"))
         return extension_reason(Difference("extension", root, "changed", name, difference.old or "-", difference.new))
 
-    def _lost_name_reason(self, old: Element) -> Phrase | None:
-        """Return the reason why removing a Gazebo element is breaking, or None if another element has its names."""
-        kept = _words_of(self.pair.new.root)
+    def _find_lost_name_reason(self, old: Element) -> Phrase | None:
+        """Return the reason why removing a Gazebo element is breaking; None if it is not.
+
+        It is not breaking if a different element has its names.
+        """
+        new_words = _collect_words(self.pair.new.root)
         for element in old.walk():
             text = " ".join(element.text().split())
             if text == "/" or _NAMESPACE in element.tag.lower():
                 continue
             reason = plugin_name_reason(Difference("extension", "gazebo", "changed", element.tag, text or None))
-            if reason is not None and not {text, *text.split(":=")[1:]} & kept:
+            if reason is not None and not {text, *text.split(":=")[1:]} & new_words:
                 return reason
         return None
 
@@ -309,20 +319,20 @@ def _merge_differences(differences: list[_ReportedDifference]) -> Iterator[Chang
         if len({str(difference.contents) for difference in (first, *others)}) > 1:
             shows_contents = len(others) < _MAX_WITH_CONTENTS
             first, *others = (replace(difference, shows_contents=shows_contents) for difference in (first, *others))
-        names = dict.fromkeys(name for other in others if (name := other.name_beside(first)) is not None)
+        names = dict.fromkeys(name for other in others if (name := other.find_name_beside(first)) is not None)
         reason = common_reason(described.reason for described in (first, *others))
         changes.append(replace(first.change, reason=reason, other_names=tuple(names)))
     breaking = [change for change in changes if change.effect is Effect.BREAKING]
-    rest = [change for change in changes if change.effect is not Effect.BREAKING]
+    not_breaking = [change for change in changes if change.effect is not Effect.BREAKING]
     yield from breaking
-    yield from rest[:_MAX_LINES]
-    if len(rest) > _MAX_LINES:
-        text = counted("{count} more change", "{count} more changes", len(rest) - _MAX_LINES)
-        yield replace(rest[_MAX_LINES], sentence=text, other_names=())
+    yield from not_breaking[:_MAX_LINES]
+    if len(not_breaking) > _MAX_LINES:
+        text = counted("{count} more change", "{count} more changes", len(not_breaking) - _MAX_LINES)
+        yield replace(not_breaking[_MAX_LINES], sentence=text, other_names=())
 
 
-def _words_of(root: Element) -> set[str]:
-    """Return the words in texts and attributes of a file, and the targets of remappings such as ``~/out:=scan``."""
+def _collect_words(root: Element) -> set[str]:
+    """Return the words in texts and attributes, and the targets of remappings."""
     words: set[str] = set()
     for element in root.walk():
         for text in (element.text(), *element.attributes.values()):
@@ -341,7 +351,7 @@ def _shorten_common_beginning(old: str, new: str) -> tuple[str, str]:
     texts = [" ".join(text.split()) for text in (old, new)]
     pairs = zip(*texts, strict=False)
     common = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
-    if max(map(len, texts)) <= _MAX_CHARACTERS or common <= _SHOWN_BEGINNING:
+    if max(map(len, texts)) <= _MAX_CHARACTERS or common <= _SHOWN_COMMON_CHARACTERS:
         return _truncate(texts[0]), _truncate(texts[1])
-    first, second = (_truncate(f"...{text[common - _SHOWN_BEGINNING :]}") for text in texts)
+    first, second = (_truncate(f"...{text[common - _SHOWN_COMMON_CHARACTERS :]}") for text in texts)
     return first, second

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from linkwright.descriptions.comparison import GAZEBO
-from linkwright.review.parts.outline import Item, items_of, join_items
-from linkwright.review.parts.wording import NameSubstitution
+from linkwright.review.parts.name_substitution import NameSubstitution
+from linkwright.review.parts.outline import Item, iterate_items, join_items
 from linkwright.xmltree import Element
 
 CONDITION_SEPARATOR = " and "
@@ -56,12 +56,12 @@ class ItemComparison:
 
     def differences(self, old: Element, new: Element, path: tuple[str, ...] = ()) -> Iterator[PartDifference]:
         """Yield the differences between the contents of two elements."""
-        for old_item, new_item in self._match_items(list(items_of(old)), list(items_of(new))):
+        for old_item, new_item in self._match_items(list(iterate_items(old)), list(iterate_items(new))):
             item = new_item or old_item
             assert item is not None
             item_path = (*path, item.key)
             if old_item is None or new_item is None:
-                yield _whole_difference(item_path, old_item, new_item)
+                yield _make_whole_difference(item_path, old_item, new_item)
                 continue
             yield from self._compare_conditions(old_item, new_item, item_path)
             yield from self._compare_values(old_item.element, new_item.element, item_path)
@@ -89,11 +89,14 @@ class ItemComparison:
         return old_text == new_text or self.old.resolve_values(old_text) == self.new.resolve_values(new_text)
 
     def _match_items(self, old: Sequence[Item], new: Sequence[Item]) -> Iterator[tuple[Item | None, Item | None]]:
-        """Yield the matched pairs of elements, which may differ, in the order of the new description."""
-        old_rest, new_rest = list(old), list(new)
+        """Yield the matched pairs of elements in the order of the new description.
+
+        Elements without a match follow, with None as the other element.
+        """
+        remaining_old, remaining_new = list(old), list(new)
 
         def is_equal(old_item: Item, new_item: Item) -> bool:
-            return self.old.content(old_item.element) == self.new.content(new_item.element)
+            return self.old.normalize_element(old_item.element) == self.new.normalize_element(new_item.element)
 
         def has_same_conditions(old_item: Item, new_item: Item) -> bool:
             return self.are_equal_texts(" ".join(old_item.conditions), " ".join(new_item.conditions))
@@ -103,38 +106,38 @@ class ItemComparison:
 
         pairs: list[tuple[Item | None, Item | None]] = []
         for matches in (is_identical, is_equal):
-            pairs += self._take_matched(old_rest, new_rest, matches)
-        pairs += self._take_joined_blocks(old_rest, new_rest)
-        pairs += self._take_matched(old_rest, new_rest, has_same_conditions)
-        pairs += self._take_matched(old_rest, new_rest, self._left_as_often(old_rest, new_rest))
-        pairs += self._take_renamed(old_rest, new_rest)
+            pairs += self._take_matched(remaining_old, remaining_new, matches)
+        pairs += self._take_joined_blocks(remaining_old, remaining_new)
+        pairs += self._take_matched(remaining_old, remaining_new, has_same_conditions)
+        pairs += self._take_matched(remaining_old, remaining_new, self._make_count_check(remaining_old, remaining_new))
+        pairs += self._take_renamed(remaining_old, remaining_new)
         positions = {item.element.offset: number for number, item in enumerate(new)}
         pairs.sort(key=lambda pair: -1 if pair[1] is None else positions[pair[1].element.offset])
         yield from pairs
-        yield from ((None, item) for item in new_rest)
-        yield from ((item, None) for item in old_rest)
+        yield from ((None, item) for item in remaining_new)
+        yield from ((item, None) for item in remaining_old)
 
     def _take_joined_blocks(self, old: list[Item], new: list[Item]) -> list[tuple[Item, Item]]:
-        """Remove repeated ``<gazebo>`` elements of a link from both lists, and return them joined by link."""
+        """Remove repeated ``<gazebo>`` elements of a link from both lists, and return them joined."""
         pairs = []
         for key in dict.fromkeys(item.key for item in new if item.element.tag == GAZEBO):
-            news = [item for item in new if item.key == key]
-            olds = [item for item in old if self.old.rename_names(item.key) == key]
-            if not olds or max(len(olds), len(news)) == 1:
+            new_items = [item for item in new if item.key == key]
+            old_items = [item for item in old if self.old.rename_names(item.key) == key]
+            if not old_items or max(len(old_items), len(new_items)) == 1:
                 continue
-            texts = {self.old.rename_names(" ".join(item.conditions)) for item in olds}
-            texts |= {self.new.rename_names(" ".join(item.conditions)) for item in news}
+            texts = {self.old.rename_names(" ".join(item.conditions)) for item in old_items}
+            texts |= {self.new.rename_names(" ".join(item.conditions)) for item in new_items}
             is_common = len(texts) == 1
             old_item, new_item = (
-                join_items(items, items[0].conditions if is_common else None) for items in (olds, news)
+                join_items(items, items[0].conditions if is_common else None) for items in (old_items, new_items)
             )
             pairs.append((old_item, new_item))
-            old[:] = [item for item in old if item not in olds]
-            new[:] = [item for item in new if item not in news]
+            old[:] = [item for item in old if item not in old_items]
+            new[:] = [item for item in new if item not in new_items]
         return pairs
 
-    def _left_as_often(self, old: Sequence[Item], new: Sequence[Item]) -> Callable[[Item, Item], bool]:
-        """Return a function that returns whether the keys of two elements occur equally often in both lists."""
+    def _make_count_check(self, old: Sequence[Item], new: Sequence[Item]) -> Callable[[Item, Item], bool]:
+        """Return a function that checks that a key occurs equally often in both lists."""
         counts = (
             Counter(self.old.rename_names(item.key) for item in old),
             Counter(item.key for item in new),
@@ -156,7 +159,10 @@ class ItemComparison:
         return pairs
 
     def _take_renamed(self, old: list[Item], new: list[Item]) -> list[tuple[Item, Item]]:
-        """Remove the renamed elements, whose contents are similar, from both lists, and return them as pairs."""
+        """Remove the renamed elements from both lists, and return them as pairs.
+
+        Their contents are similar.
+        """
         pairs = []
         for new_item in list(new):
             candidates = [item for item in old if item.element.tag == new_item.element.tag]
@@ -166,8 +172,8 @@ class ItemComparison:
                 old.remove(candidates[0])
                 new.remove(new_item)
                 continue
-            best = max(candidates, key=lambda item: self._similarity(item, new_item), default=None)
-            if best is not None and self._similarity(best, new_item) >= _MIN_SIMILARITY:
+            best = max(candidates, key=lambda item: self._compute_similarity(item, new_item), default=None)
+            if best is not None and self._compute_similarity(best, new_item) >= _MIN_SIMILARITY:
                 pairs.append((best, new_item))
                 old.remove(best)
                 new.remove(new_item)
@@ -177,25 +183,25 @@ class ItemComparison:
         """Return whether two elements are frames: links without contents."""
         return old.element.tag == "link" and not any((*old.element.elements(), *new.element.elements()))
 
-    def _similarity(self, old: Item, new: Item) -> float:
+    def _compute_similarity(self, old: Item, new: Item) -> float:
         """Return the share of equal children of two elements, from 0 to 1."""
         contents = [
-            Counter(wording.content(child) for child in item.element.elements())
-            for wording, item in ((self.old, old), (self.new, new))
+            Counter(substitution.normalize_element(child) for child in item.element.elements())
+            for substitution, item in ((self.old, old), (self.new, new))
         ]
         total = sum(content.total() for content in contents)
         return 2 * (contents[0] & contents[1]).total() / total if total else 0.0
 
 
-def _whole_difference(path: tuple[str, ...], old: Item | None, new: Item | None) -> PartDifference:
+def _make_whole_difference(path: tuple[str, ...], old: Item | None, new: Item | None) -> PartDifference:
     """Return the difference for an element that only one of the descriptions has."""
     old_element, new_element = (None if item is None else item.element for item in (old, new))
-    old_text, new_text = (None if item is None else summary_of(item) for item in (old, new))
+    old_text, new_text = (None if item is None else summarize(item) for item in (old, new))
     return PartDifference(path, "", old_text, new_text, old_element, new_element)
 
 
-def summary_of(item: Item) -> str:
-    """Return the attributes and the text of an element in one line, with the conditions around it."""
+def summarize(item: Item) -> str:
+    """Return the attributes, text and conditions of an element in one line."""
     element = item.element
     shown = [f"{name}={value}" for name, value in element.attributes.items() if name not in ("name", "reference")]
     conditions = [f"[{CONDITION_SEPARATOR.join(item.conditions)}]"] if item.conditions else []

@@ -11,14 +11,17 @@ from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element
 
 
-def expanded_places(versions: Versions, old: Description, new: Description) -> Iterator[ExpandedPlace]:
-    """Yield the elements of changed files that two expansions use: written elements, macro calls and includes."""
+def find_expanded_elements(versions: Versions, old: Description, new: Description) -> Iterator[ExpandedPlace]:
+    """Yield the elements of changed files that two expansions use.
+
+    These are written elements, macro calls and includes.
+    """
     for version, description in ((versions.old, old), (versions.new, new)):
         paths = {file.old_path if version.is_old else file.new_path for file in versions.changed_files}
-        yield from _used_places(version, description, {path for path in paths if path})
+        yield from _find_used_elements(version, description, {path for path in paths if path})
 
 
-def _used_places(version: Version, description: Description, paths: set[str]) -> Iterator[ExpandedPlace]:
+def _find_used_elements(version: Version, description: Description, paths: set[str]) -> Iterator[ExpandedPlace]:
     names: dict[str, str] = {}
     for file in description.files:
         path = version.relative(file)
@@ -27,18 +30,18 @@ def _used_places(version: Version, description: Description, paths: set[str]) ->
             yield ExpandedPlace(path, FILE, version.is_old)
     if not names:
         return
-    seen: set[int] = set()
+    visited_frames: set[int] = set()
     for element in description.document.root.walk():
-        yield from _element_place(element, names, version)
+        yield from _find_written_element(element, names, version)
         frame = element.origin if isinstance(element.origin, Frame) else None
         for call_frame in frames(frame):
-            if id(call_frame) in seen:
+            if id(call_frame) in visited_frames:
                 break
-            seen.add(id(call_frame))
-            yield from _element_place(call_frame.site, names, version)
+            visited_frames.add(id(call_frame))
+            yield from _find_written_element(call_frame.site, names, version)
 
 
-def _element_place(element: Element, names: dict[str, str], version: Version) -> Iterator[ExpandedPlace]:
+def _find_written_element(element: Element, names: dict[str, str], version: Version) -> Iterator[ExpandedPlace]:
     path = None if element.source is None else names.get(element.source.name)
     if path is not None:
         yield ExpandedPlace(path, element.offset, version.is_old)

@@ -23,26 +23,28 @@ class IncludeGraph:
         self._version = version
 
     def declares(self, path: str, is_declared: Callable[[Outline], bool]) -> bool:
-        """Return whether a file or one of its included files has an outline that fulfills a condition."""
-        return any(is_declared(self._outlines[reachable]) for reachable in self._reachable(path, self._included))
+        """Return whether a file, or a file that it includes, fulfills a condition."""
+        return any(is_declared(self._outlines[reachable]) for reachable in self._find_reachable(path, self._included))
 
-    def robots_with(self, path: str) -> list[str]:
+    def find_robots_with(self, path: str) -> list[str]:
         """Return the top-level files that include a file, directly or indirectly."""
-        return [reachable for reachable in self._reachable(path, self._includers) if not self._includers[reachable]]
+        return [
+            reachable for reachable in self._find_reachable(path, self._includers) if not self._includers[reachable]
+        ]
 
-    def files_with_macro(self, macro: str) -> list[str]:
+    def find_files_with_macro(self, macro: str) -> list[str]:
         """Return the files that define a macro."""
         return [path for path, outline in self._outlines.items() if macro in outline.macros]
 
-    def _reachable(self, path: str, edges: dict[str, set[str]]) -> Iterator[str]:
-        pending, seen = [path], {path}
+    def _find_reachable(self, path: str, edges: dict[str, set[str]]) -> Iterator[str]:
+        pending, visited = [path], {path}
         while pending:
             current = pending.pop()
             if current not in self._outlines:
                 continue
             yield current
-            pending += sorted(edges[current] - seen)
-            seen |= edges[current]
+            pending += sorted(edges[current] - visited)
+            visited |= edges[current]
 
     @cached_property
     def _description_files(self) -> tuple[list[Path], list[Path]]:
@@ -81,7 +83,7 @@ class IncludeGraph:
     def _includers(self) -> dict[str, set[str]]:
         """The files that can include each file."""
         includers: dict[str, set[str]] = {path: set() for path in self._outlines}
-        for path, others in self._included.items():
-            for other in others:
+        for path, included in self._included.items():
+            for other in included:
                 includers[other].add(path)
         return includers

@@ -1,8 +1,8 @@
-"""Compare the names that other descriptions and callers use: macros, their parameters, and arguments."""
+"""Compare the names that other files use: macros, their parameters, and arguments."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, counted, phrase
@@ -10,7 +10,7 @@ from linkwright.review.list_changes import change_text
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.outline import MacroOutline, Outline
 from linkwright.review.parts.part_pair import PartPair
-from linkwright.review.parts.renamed_names import renamed_names
+from linkwright.review.parts.renamed_names import find_renamed_names
 from linkwright.xacro.macros import Parameter
 from linkwright.xmltree import Element
 
@@ -39,45 +39,45 @@ def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, 
     for name, macro in pair.new.macros.items():
         if name in pair.old.macros:
             _compare_parameters(pair, pair.old.macros[name], macro)
-        elif name not in renamed.values() and not _has_macro(graphs.old, pair.old_path, name):
+        elif name not in renamed.values() and not _declares_macro(graphs.old, pair.old_path, name):
             pair.add(phrase("macro '{name}' added", name=name), None, macro.element)
     for name, macro in pair.old.macros.items():
         if name in renamed:
             new = pair.new.macros[renamed[name]]
             text = phrase("macro '{old}' renamed to '{name}'", old=name, name=new.name)
-            pair.add(text, macro.element, new.element, macro_removal_reason())
+            pair.add(text, macro.element, new.element, make_macro_removal_reason())
             _compare_parameters(pair, macro, new)
-        elif name not in pair.new.macros and not _has_macro(graphs.new, pair.new_path, name):
+        elif name not in pair.new.macros and not _declares_macro(graphs.new, pair.new_path, name):
             _report_lost_macro(pair, macro, graphs.new)
 
 
 def _report_lost_macro(pair: PartPair, macro: MacroOutline, graph: IncludeGraph) -> None:
-    others = graph.files_with_macro(macro.name)
-    if not others:
-        pair.add(phrase("macro '{name}' removed", name=macro.name), macro.element, None, macro_removal_reason())
+    paths = graph.find_files_with_macro(macro.name)
+    if not paths:
+        pair.add(phrase("macro '{name}' removed", name=macro.name), macro.element, None, make_macro_removal_reason())
         return
-    text = phrase("macro '{name}' moved to {path}", name=macro.name, path=", ".join(others[:2]))
+    text = phrase("macro '{name}' moved to {path}", name=macro.name, path=", ".join(paths[:2]))
     reason = phrase("descriptions that include only this file do not find the macro")
     pair.add(text, macro.element, None, reason)
 
 
-def macro_removal_reason() -> Phrase:
+def make_macro_removal_reason() -> Phrase:
     """Return the reason why removing a macro is breaking."""
     return phrase("descriptions that call the macro cannot be expanded")
 
 
-def _has_macro(graph: IncludeGraph, path: str, name: str) -> bool:
+def _declares_macro(graph: IncludeGraph, path: str, name: str) -> bool:
     return graph.declares(path, lambda outline: name in outline.macros)
 
 
 def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) -> None:
-    """Report the added and removed parameters of a macro, and the changes of their defaults."""
-    lost = [name for name in old.parameters if name not in new.parameters]
-    gained = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
+    """Report the added and removed parameters of a macro, and changed defaults."""
+    removed = [name for name in old.parameters if name not in new.parameters]
+    added = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
     renamed = dict(
-        renamed_names(
-            {name: old.parameters[name].default for name in lost},
-            {parameter.name: parameter.default for parameter in gained},
+        find_renamed_names(
+            {name: old.parameters[name].default for name in removed},
+            {parameter.name: parameter.default for parameter in added},
             old.element,
             new.element,
         )
@@ -86,14 +86,24 @@ def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) ->
         change = phrase("parameter {old} renamed to {name}", old=old_name, name=name)
         text = phrase("macro '{name}': {change}", name=new.name, change=change)
         pair.add(text, old.element, new.element, phrase("calls that pass it cannot be expanded"))
-    lost = [name for name in lost if name not in renamed]
-    gained = [parameter for parameter in gained if parameter.name not in renamed.values()]
-    required = [parameter.name for parameter in gained if not _has_default(parameter)]
-    optional = [_text_with_default(parameter) for parameter in gained if _has_default(parameter)]
+    removed = [name for name in removed if name not in renamed]
+    added = [parameter for parameter in added if parameter.name not in renamed.values()]
+    _report_unpaired_parameters(pair, old, new, removed, added)
+    for name, parameter in new.parameters.items():
+        if name in old.parameters:
+            _compare_defaults(pair, old, new, old.parameters[name], parameter)
+
+
+def _report_unpaired_parameters(
+    pair: PartPair, old: MacroOutline, new: MacroOutline, removed: Sequence[str], added: Sequence[Parameter]
+) -> None:
+    """Report removed parameters, and added parameters with and without a default."""
+    required = [parameter.name for parameter in added if not _has_default(parameter)]
+    optional = [_format_parameter(parameter) for parameter in added if _has_default(parameter)]
     for names, change, reason in (
         (
-            lost,
-            counted("parameter {names} removed", "parameters {names} removed", len(lost), names=", ".join(lost)),
+            removed,
+            counted("parameter {names} removed", "parameters {names} removed", len(removed), names=", ".join(removed)),
             phrase("calls that pass it cannot be expanded"),
         ),
         (
@@ -115,25 +125,22 @@ def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) ->
         if names:
             text = phrase("macro '{name}': {change}", name=new.name, change=change)
             pair.add(text, old.element, new.element, reason)
-    for name, parameter in new.parameters.items():
-        if name in old.parameters:
-            _compare_defaults(pair, old, new, old.parameters[name], parameter)
 
 
 def _compare_defaults(
     pair: PartPair, old_macro: MacroOutline, new_macro: MacroOutline, old: Parameter, new: Parameter
 ) -> None:
-    if _default_text(old) == _default_text(new):
+    if _format_default(old) == _format_default(new):
         return
     reason = None
     if not _has_default(new):
         change = phrase("parameter {name} has no default any more", name=new.name)
         reason = phrase("calls that do not pass it cannot be expanded")
     elif not _has_default(old):
-        change = phrase("parameter {name} has the default {value}", name=new.name, value=_default_text(new))
+        change = phrase("parameter {name} has the default {value}", name=new.name, value=_format_default(new))
     else:
         name = phrase("default of parameter {name}", name=new.name)
-        change = change_text(name, _default_text(old), _default_text(new))
+        change = change_text(name, _format_default(old), _format_default(new))
     text = phrase("macro '{name}': {change}", name=new_macro.name, change=change)
     pair.add(text, old_macro.element, new_macro.element, reason)
 
@@ -142,14 +149,14 @@ def _has_default(parameter: Parameter) -> bool:
     return parameter.default is not None or parameter.forward
 
 
-def _default_text(parameter: Parameter) -> str:
+def _format_default(parameter: Parameter) -> str:
     """Return a default as written, with single spaces."""
     text = " ".join((parameter.default or "").split())
     return f"^|{text}" if parameter.forward and text else "^" if parameter.forward else text
 
 
-def _text_with_default(parameter: Parameter) -> str:
-    return f"{parameter.name}:={_default_text(parameter)}"
+def _format_parameter(parameter: Parameter) -> str:
+    return f"{parameter.name}:={_format_default(parameter)}"
 
 
 def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
@@ -160,14 +167,14 @@ def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
     added = {
         name: element
         for name, element in pair.new.arguments.items()
-        if name not in pair.old.arguments and not _is_declared(graphs.old, pair.old_path, name)
+        if name not in pair.old.arguments and not _is_declared_by_robots(graphs.old, pair.old_path, name)
     }
     removed = {
         name: element
         for name, element in pair.old.arguments.items()
-        if name not in pair.new.arguments and not _is_declared(graphs.new, pair.new_path, name)
+        if name not in pair.new.arguments and not _is_declared_by_robots(graphs.new, pair.new_path, name)
     }
-    renamed = renamed_names(_defaults_by_name(removed), _defaults_by_name(added), pair.old.root, pair.new.root)
+    renamed = find_renamed_names(_get_defaults(removed), _get_defaults(added), pair.old.root, pair.new.root)
     old_names = {name: old_name for old_name, name in renamed}
     for name, element in pair.new.arguments.items():
         if name in pair.old.arguments:
@@ -175,11 +182,11 @@ def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
         elif name in old_names:
             old_name = old_names[name]
             text = phrase("argument '{old}' renamed to '{name}'", old=old_name, name=name)
-            pair.add(text, removed.pop(old_name), element, _unused_value_reason(old_name))
+            pair.add(text, removed.pop(old_name), element, _make_unused_value_reason(old_name))
         elif name in added:
             _report_added_argument(pair, name, element)
     for name, element in removed.items():
-        pair.add(phrase("argument '{name}' removed", name=name), element, None, _unused_value_reason(name))
+        pair.add(phrase("argument '{name}' removed", name=name), element, None, _make_unused_value_reason(name))
 
 
 def _report_added_argument(pair: PartPair, name: str, element: Element) -> None:
@@ -191,11 +198,11 @@ def _report_added_argument(pair: PartPair, name: str, element: Element) -> None:
     pair.add(phrase("argument '{name}' added, with the default '{value}'", name=name, value=default), None, element)
 
 
-def _unused_value_reason(name: str) -> Phrase:
+def _make_unused_value_reason(name: str) -> Phrase:
     return phrase("a value that a caller passes for '{name}' has no effect", name=name)
 
 
-def _defaults_by_name(arguments: Mapping[str, Element]) -> dict[str, str | None]:
+def _get_defaults(arguments: Mapping[str, Element]) -> dict[str, str | None]:
     return {name: element.attributes.get("default") for name, element in arguments.items()}
 
 
@@ -215,13 +222,13 @@ def _compare_argument(pair: PartPair, old: Element, new: Element) -> None:
     pair.add(text, old, new)
 
 
-def _is_declared(graph: IncludeGraph, path: str, name: str) -> bool:
+def _is_declared_by_robots(graph: IncludeGraph, path: str, name: str) -> bool:
     """Return whether all robots that include a file declare an argument."""
 
     def is_declared(outline: Outline) -> bool:
         return name in outline.arguments
 
-    robots = graph.robots_with(path) or [path]
+    robots = graph.find_robots_with(path) or [path]
     return all(graph.declares(robot, is_declared) for robot in robots)
 
 
@@ -232,12 +239,12 @@ def find_renamed_macros(pair: PartPair, similarity: Mapping[tuple[str, str], flo
         pair: both versions of the part.
         similarity: the share of equal elements of two macros, from 0 to 1, by their names.
     """
-    taken: set[str] = set()
+    used_names: set[str] = set()
     for name in pair.old.macros:
         if name in pair.new.macros:
             continue
-        free = [other for other in pair.new.macros if other not in pair.old.macros and other not in taken]
-        best = max(free, key=lambda other: similarity[name, other], default=None)
+        unused = [other for other in pair.new.macros if other not in pair.old.macros and other not in used_names]
+        best = max(unused, key=lambda other: similarity[name, other], default=None)
         if best is not None and similarity[name, best] > 0:
-            taken.add(best)
+            used_names.add(best)
             yield name, best

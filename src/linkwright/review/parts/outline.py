@@ -1,4 +1,4 @@
-"""Read the outline of an unexpanded description: its arguments, properties, macros and elements."""
+"""Read the arguments, properties, macros and elements of an unexpanded description."""
 
 from __future__ import annotations
 
@@ -63,10 +63,10 @@ class Outline:
     """An unexpanded description.
 
     Attributes:
-        root: its root element.
+        root: the root element.
         macros: the macros by name.
         arguments: the ``<xacro:arg>`` by name.
-        inclusions: the files that it includes.
+        inclusions: the included files.
     """
 
     root: Element
@@ -107,16 +107,16 @@ def try_read_outline(file: Path) -> Outline | None:
         return None
 
 
-def items_of(element: Element, conditions: tuple[str, ...] = ()) -> Iterator[Item]:
+def iterate_items(element: Element, conditions: tuple[str, ...] = ()) -> Iterator[Item]:
     """Yield the elements inside an element and its conditions, without macros and arguments."""
     for child in element.elements():
         if child.tag in (ARG, MACRO):
             continue
         word = _CONDITIONS.get(child.tag)
         if word is None:
-            yield Item(_item_key(child), child, conditions)
+            yield Item(_make_item_key(child), child, conditions)
         else:
-            yield from items_of(child, (*conditions, f"{word} {child.attributes.get('value', '')}"))
+            yield from iterate_items(child, (*conditions, f"{word} {child.attributes.get('value', '')}"))
 
 
 def join_items(items: Sequence[Item], conditions: tuple[str, ...] | None) -> Item:
@@ -129,25 +129,28 @@ def join_items(items: Sequence[Item], conditions: tuple[str, ...] | None) -> Ite
     first = items[0]
     if conditions is not None:
         return Item(first.key, joined_block([item.element for item in items]), conditions)
-    return Item(first.key, joined_block([_with_inner_conditions(item) for item in items]), ())
+    return Item(first.key, joined_block([_move_conditions_inside(item) for item in items]), ())
 
 
-def _with_inner_conditions(item: Item) -> Element:
+def _move_conditions_inside(item: Item) -> Element:
     """Return a copy of an element with its conditions around its children."""
-    outer = item.element
-    result = Element(outer.tag, dict(outer.attributes), outer.source, outer.offset, outer.origin)
+    original = item.element
+    result = Element(original.tag, dict(original.attributes), original.source, original.offset, original.origin)
     inner = result
     for condition in item.conditions:
         word, _, value = condition.partition(" ")
-        child = Element(_CONDITION_TAGS[word], {"value": value}, outer.source, outer.offset)
+        child = Element(_CONDITION_TAGS[word], {"value": value}, original.source, original.offset)
         inner.children.append(child)
         inner = child
-    inner.children += outer.children
+    inner.children += original.children
     return result
 
 
-def _item_key(element: Element) -> str:
-    """Return the tag and name of an element. An element without a name gets the name of its plugin or sensor."""
+def _make_item_key(element: Element) -> str:
+    """Return the tag and name of an element.
+
+    A nameless ``<gazebo>`` gets the name of its plugin or sensor.
+    """
     name = element.attributes.get("name") or element.attributes.get("reference")
     if element.tag == GAZEBO and name is None:
         inner = element.first("plugin") or element.first("sensor")

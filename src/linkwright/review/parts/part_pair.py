@@ -1,4 +1,4 @@
-"""Define a changed file with an unexpanded description, in both versions."""
+"""Both versions of a changed file with an unexpanded description."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class PartPair:
     """A changed file with an unexpanded description. A comparison adds its changes.
 
     Attributes:
-        versions: both versions.
+        versions: the repository before and after the change.
         old_path: the path in the old version.
         new_path: the path in the new version.
         old: the old outline.
@@ -37,11 +37,14 @@ class PartPair:
     changes: list[Change] = field(default_factory=list)
 
     def add(self, sentence: Phrase, old: Element | None, new: Element | None, reason: Phrase | None = None) -> None:
-        """Report a change at the location of the new or else the old element. A change with a reason is breaking."""
-        effect = Effect.CHANGED if reason is None else Effect.BREAKING
-        self.changes.append(Change(sentence, effect, reason, self._location(old, new)))
+        """Report a change at the location of the new or else the old element.
 
-    def _location(self, old: Element | None, new: Element | None) -> Location | None:
+        A change with a reason is breaking.
+        """
+        effect = Effect.CHANGED if reason is None else Effect.BREAKING
+        self.changes.append(Change(sentence, effect, reason, self._find_location(old, new)))
+
+    def _find_location(self, old: Element | None, new: Element | None) -> Location | None:
         element, is_old = (old, True) if new is None else (new, False)
         version = self.versions.old if is_old else self.versions.new
         span = None if element is None else element.span()

@@ -7,13 +7,13 @@ from collections.abc import Hashable, Iterator, Mapping
 
 from linkwright.xmltree import Element
 
-_MIN_COMMON = 0.5
+_MIN_SHARED_FRACTION = 0.5
 """The minimum share of equal uses of a renamed value."""
 _EXPRESSION = re.compile(r"\$\{[^}]*\}|\$\(arg [^)]*\)")
 _MARK = "*"
 
 
-def renamed_names(
+def find_renamed_names(
     removed: Mapping[str, str | None], added: Mapping[str, str | None], old: Element, new: Element
 ) -> Iterator[tuple[str, str]]:
     """Yield the old and new names of values with equal defaults and equal uses.
@@ -27,21 +27,23 @@ def renamed_names(
     new_uses = {name: set(_find_uses(new, name)) for name in added}
     for name, default in removed.items():
         uses = set(_find_uses(old, name))
-        shares = {other: _shared_fraction(uses, new_uses[other]) for other in new_uses if added[other] == default}
+        shares = {
+            other: _compute_shared_fraction(uses, new_uses[other]) for other in new_uses if added[other] == default
+        }
         best = max(shares, key=lambda other: shares[other], default=None)
-        if best is not None and shares[best] >= _MIN_COMMON:
+        if best is not None and shares[best] >= _MIN_SHARED_FRACTION:
             del new_uses[best]
             yield name, best
 
 
-def _shared_fraction(old: set[Hashable], new: set[Hashable]) -> float:
+def _compute_shared_fraction(old: set[Hashable], new: set[Hashable]) -> float:
     return len(old & new) / len(old | new) if old and new else 0.0
 
 
 def _find_uses(root: Element, name: str) -> Iterator[Hashable]:
-    """Yield the texts and attributes whose expressions use a name, with a mark in place of the name.
+    """Yield the texts and attributes that use a name, with a mark in place of the name.
 
-    The other attributes of the element count, too, unless an attribute passes the value on by the same name.
+    The other attributes of the element are included, unless an attribute passes the value on by the same name.
     """
     word = re.compile(rf"(?<![\w.]){re.escape(name)}(?!\w)")
     for element in root.walk():
@@ -52,5 +54,5 @@ def _find_uses(root: Element, name: str) -> Iterator[Hashable]:
             if key == name and _EXPRESSION.fullmatch(marked):
                 yield element.tag, _MARK, marked
                 continue
-            others = frozenset(item for item in element.attributes.items() if item[0] != key)
-            yield element.tag, key, marked, others
+            other_attributes = frozenset(item for item in element.attributes.items() if item[0] != key)
+            yield element.tag, key, marked, other_attributes

@@ -17,11 +17,11 @@ from linkwright.review.drawings.images import collision_images, view_images
 from linkwright.review.drawings.scenes import robot_scene
 from linkwright.review.element_values import own_content
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.semantics import disabled_collisions
+from linkwright.review.files.semantics import find_disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.merging import common_reason, merge_changes
 from linkwright.review.names_in_plugins import path_of_renamed
-from linkwright.review.parts.expanded import expanded_places
+from linkwright.review.parts.expanded import find_expanded_elements
 from linkwright.review.left_names import find_left_names
 from linkwright.review.plugins import added_topics, contents_text, is_still_offered, missing_topics_reason
 from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
@@ -48,7 +48,7 @@ def compare_descriptions(pair: FilePair) -> None:
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
             continue
-        pair.expanded.update(expanded_places(pair.versions, case.old, case.new))
+        pair.expanded.update(find_expanded_elements(pair.versions, case.old, case.new))
         comparison = case.models.compare(case.old.robot, case.new.robot)
         frames = SharedFrames(case.old.robot, case.new.robot, comparison.links)
         for change in _find_changes(pair, comparison, frames, case):
@@ -70,7 +70,7 @@ def compare_descriptions(pair: FilePair) -> None:
             new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new, old_joints)
             pair.figures += figures_of(old, new)
             if may_change_collisions(comparison.differences):
-                disabled = disabled_collisions(pair.versions.new.root)
+                disabled = find_disabled_collisions(pair.versions.new.root)
                 collisions = list(collision_changes(old, new, comparison.links, disabled))
     pair.changes += merge_changes(group.change(pair.cases) for group in _merge_groups(groups.values()))
     pair.changes += collisions

@@ -9,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.lint.targets import find_files_and_packages
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import compare_roots
-from linkwright.review.parts.expanded import expanded_places
+from linkwright.review.parts.expanded import find_expanded_elements
 from linkwright.review.robots.cases import fault_of
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
@@ -36,7 +36,7 @@ def compare_expanded_semantics(pair: FilePair) -> None:
         for version, path in ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
     )
     if isinstance(old, Description) and isinstance(new, Description):
-        pair.expanded.update(expanded_places(pair.versions, old, new))
+        pair.expanded.update(find_expanded_elements(pair.versions, old, new))
         compare_roots(pair, old.document.root, new.document.root)
     elif isinstance(old, Description) or isinstance(new, Description):
         pair.add_faults(fault_of(old, pair.versions.old), fault_of(new, pair.versions.new))

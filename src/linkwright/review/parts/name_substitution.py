@@ -6,7 +6,7 @@ import re
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from linkwright.review.parts.arithmetic import number_of
+from linkwright.review.parts.arithmetic import evaluate_number
 from linkwright.review.parts.outline import ARG, MACRO, PROPERTY
 from linkwright.xmltree import Element
 
@@ -35,7 +35,7 @@ class NameSubstitution:
         return _EXPRESSION.sub(lambda match: _WORD.sub(lambda word: self.renamed.get(word[0], word[0]), match[0]), text)
 
     def resolve_values(self, text: str) -> str:
-        """Return a text with the values of literal properties and expressions, and with normalized numbers."""
+        """Return a text with evaluated expressions and normalized numbers."""
         text = _EXPRESSION.sub(self._resolve_expression, " ".join(text.split()))
         return " ".join(map(_normalize_number, text.split()))
 
@@ -44,29 +44,29 @@ class NameSubstitution:
         value = self.literals.get(content, content)
         if content in self.literals or _is_number(content):
             return value
-        return number_of(content, self.literals) or match[0]
+        return evaluate_number(content, self.literals) or match[0]
 
-    def content(self, element: Element) -> Hashable:
-        """Return the comparable content of an element, without white space, comments and nested macros."""
+    def normalize_element(self, element: Element) -> Hashable:
+        """Return comparable contents, without white space, comments and nested macros."""
         attributes = frozenset(
             (name, self.resolve_values(self.rename_names(value))) for name, value in element.attributes.items()
         )
-        children = tuple(self.content(child) for child in element.elements() if child.tag not in (ARG, MACRO))
+        children = tuple(self.normalize_element(child) for child in element.elements() if child.tag not in (ARG, MACRO))
         return element.tag, attributes, self.resolve_values(self.rename_names(element.text())), children
 
 
-def literals_of(root: Element) -> dict[str, str]:
+def read_literals(root: Element) -> dict[str, str]:
     """Return the literal property values of a file by name."""
     values: dict[str, str | None] = {}
-    for name, element in properties_of(root):
+    for name, element in iterate_properties(root):
         value = element.attributes.get("value")
         is_literal = value is not None and _LITERAL.fullmatch(value) is not None and "default" not in element.attributes
         values[name] = value if is_literal and name not in values else None
     return {name: value for name, value in values.items() if value is not None}
 
 
-def properties_of(root: Element) -> Iterator[tuple[str, Element]]:
-    """Yield the names and elements of the properties of a file, including properties inside macros."""
+def iterate_properties(root: Element) -> Iterator[tuple[str, Element]]:
+    """Yield the names and elements of the properties of a file, including those in macros."""
     for element in root.walk():
         if element.tag == PROPERTY and "name" in element.attributes:
             yield element.attributes["name"], element
