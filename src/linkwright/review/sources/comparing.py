@@ -145,7 +145,7 @@ class _SourcePair:
             )
 
     def find_parse_failure(self) -> Iterator[Change]:
-        """Yield the change that no version of Python can parse the new source."""
+        """Yield a change if no version of Python can parse the new source."""
         names = self.new.get_names(self.file.new_path)
         if names.error_line and names.is_error_certain:
             text = phrase("cannot be parsed any more")

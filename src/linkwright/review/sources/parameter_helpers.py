@@ -36,7 +36,7 @@ class ReadElement(NamedTuple):
 
 
 def reads_parameter(function: str) -> bool:
-    """Return whether a function reads a parameter by its name, such as ``getRequiredParam``."""
+    """Return whether a function name such as ``getRequiredParam`` means to read a parameter."""
     return _FUNCTION.fullmatch(function) is not None
 
 

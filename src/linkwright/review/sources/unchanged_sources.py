@@ -131,7 +131,7 @@ def is_same_topic(item: SourceName, other: SourceName) -> bool:
 
 
 def make_user_reason(kind: NameKind, path: str, name: str) -> Phrase:
-    """Return the reason why removing a name is breaking that another source uses.
+    """Return the reason why removing a name breaks a source that still uses it.
 
     Args:
         kind: the kind of the removed name.
