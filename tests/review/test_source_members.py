@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from linkwright.review.sources.cpp_members import header_texts
+from linkwright.review.sources.cpp_members import read_included_headers
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
@@ -92,7 +92,7 @@ def test_headers_outside_of_the_package_are_not_read(tmp_path, include):
     (source.parent / "link.hpp").symlink_to(tmp_path / "secret.hpp")
     path = include.format(outside=tmp_path)
     source.write_text(f'#include "{path}"\nArm::Arm() : server_(nh_, "reach", f, false) {{}}\n')
-    assert header_texts(source) == []
+    assert read_included_headers(source) == []
 
 
 POINT_HEADER = """#pragma once

@@ -64,10 +64,10 @@ from linkwright.review.references import find_lost_references
 from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import match_moved_files, remove_consequences
 from linkwright.review.robots.semantics import semantic_files
-from linkwright.review.sources.callers import broken_callers
+from linkwright.review.sources.callers import find_broken_callers
 from linkwright.review.sources.comparing import source_subjects
-from linkwright.review.sources.lost_methods import lost_methods
-from linkwright.review.sources.lost_types import lost_types
+from linkwright.review.sources.lost_methods import find_lost_methods
+from linkwright.review.sources.lost_types import find_lost_types
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -236,10 +236,10 @@ class _Reviewer:
         result += self._run_step(compare_rosbuild_manifests)
         paths = {subject.path for subject in result}
         result += (found for found in self._run_step(source_subjects) if found.path not in paths)
-        result = _with_changes(result, self._run_step(broken_callers))
+        result = _with_changes(result, self._run_step(find_broken_callers))
         result = _with_changes(result, self._run_step(find_lost_arguments))
-        result = _with_changes(result, self._run_step(lost_types))
-        result = _with_changes(result, self._run_step(lost_methods))
+        result = _with_changes(result, self._run_step(find_lost_types))
+        result = _with_changes(result, self._run_step(find_lost_methods))
         result = _with_changes(result, self._run_step(find_lost_controllers))
         result = _with_changes(result, self._run_step(find_lost_data))
         return sorted(result, key=lambda subject: subject.path)

@@ -1,1 +1,4 @@
-"""Compare the sources of nodes: the names that they offer to other programs, read without running them."""
+"""Compare the sources of nodes by the names that they offer to other programs.
+
+The sources are not run.
+"""

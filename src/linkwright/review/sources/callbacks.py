@@ -1,4 +1,4 @@
-"""The names of two versions of a source whose messages, requests or goals call the same function."""
+"""Pair removed and added names that call the same function."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from collections.abc import Sequence
 from linkwright.review.sources.names import SourceName, SourceNames
 
 
-def with_same_callback(
+def pair_by_callback(
     removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames, new_names: SourceNames
 ) -> list[tuple[SourceName, SourceName]]:
-    """Return the removed and added names whose messages, requests or goals call the same function.
+    """Return the pairs of a removed and an added name that call the same function.
+
+    The function gets the messages, requests or goals.
 
     Args:
         removed: the names that only the old version has.

@@ -1,4 +1,4 @@
-"""Find Python files that still import or call functions that another module removed or changed."""
+"""Find Python files that use functions which a changed module no longer offers."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.package_imports import PACKAGE_FILE
 from linkwright.review.sources.python import parse_source
-from linkwright.review.sources.python_objects import FailingCall, ModuleClasses, classes_of, failing_calls
+from linkwright.review.sources.python_objects import FailingCall, ModuleClasses, find_failing_calls, read_classes
 from linkwright.review.sources.reading import is_generated, try_read_source
-from linkwright.review.sources.signatures import Signature, signature_of
-from linkwright.review.sources.undefined_names import bound_names
+from linkwright.review.sources.signatures import Signature, read_signature
+from linkwright.review.sources.undefined_names import find_bound_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
-_ADDED_FOLDER = re.compile(r"^\s*sys\.path\.(?:append|insert|extend)\(", re.MULTILINE)
+_PATH_EXTENSION = re.compile(r"^\s*sys\.path\.(?:append|insert|extend)\(", re.MULTILINE)
 """A statement with which a file can import modules of other folders by their names."""
 
 
@@ -30,10 +30,10 @@ class _Module:
     """The names of a module.
 
     Attributes:
-        names: all names that it may have, besides the names of its files.
+        names: all names that the module binds.
         defined: the names of its functions and classes.
-        signatures: the parameters of these functions and classes, if they are certain.
-        is_complete: whether it certainly has no other names.
+        signatures: the parameters of these functions and classes, if these are certain.
+        is_complete: whether the module certainly has no other names.
     """
 
     names: frozenset[str]
@@ -43,7 +43,7 @@ class _Module:
 
 
 @dataclass(frozen=True)
-class _Lost:
+class _LostNames:
     """The functions and classes that a module removed or changed.
 
     Attributes:
@@ -59,72 +59,74 @@ class _Lost:
     is_removed: bool = False
 
 
-def broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+def find_broken_callers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the files that import a removed name, or call a function with unsuitable arguments.
 
-    Only modules of the repository that match exactly one file are searched. Methods of objects are followed if their
-    class is certain.
+    Only modules of the repository that match exactly one file are searched. Methods are checked if the
+    class of their object is certain.
     """
-    yield from _failing_methods(versions, changed_files)
+    yield from _find_failing_methods(versions, changed_files)
     lost = [module for file in changed_files if (module := _find_lost(versions, file)) is not None]
     if not lost:
         return
-    files = _Files(versions.new, [module.path for module in lost if module.is_removed])
+    files = _PythonFiles(versions.new, [module.path for module in lost if module.is_removed])
     for path in files.paths:
         text = versions.new.text(path)
-        candidates = [module for module in lost if _module_word(module.path) in text and _has_any(module, text)]
+        candidates = [
+            module for module in lost if _get_module_word(module.path) in text and _mentions_any(module, text)
+        ]
         tree = _parse(versions.new, path) if candidates else None
         if tree is None:
             continue
         for module in candidates:
             if module.path != path:
-                yield from ((path, change) for change in _Caller(files, path, tree, module).changes())
+                yield from ((path, change) for change in _Caller(files, path, tree, module).find_changes())
 
 
-def _failing_methods(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+def _find_failing_methods(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the files that newly call a method that the class of the object lacks."""
     changed = [file.new_path for file in changed_files if file.new_path and file.new_path.endswith(PYTHON_SUFFIX)]
     if not changed:
         return
-    files = {version: _Files(version, ()) for version in (versions.old, versions.new)}
+    files = {version: _PythonFiles(version, ()) for version in (versions.old, versions.new)}
     old_paths = {file.new_path: file.old_path for file in changed_files}
     for path in files[versions.new].paths:
         text = versions.new.text(path)
-        if path not in changed and not any(_module_word(module) in text for module in changed):
+        if path not in changed and not any(_get_module_word(module) in text for module in changed):
             continue
-        new = list(_failing_calls(files[versions.new], path))
+        new = list(_find_failing_calls(files[versions.new], path))
         old_path = old_paths.get(path, path)
-        old = {call[:3] for call in _failing_calls(files[versions.old], old_path)} if new and old_path else set()
+        old = {call[:3] for call in _find_failing_calls(files[versions.old], old_path)} if new and old_path else set()
         for call in {call.method: call for call in reversed(new) if call[:3] not in old}.values():
-            text_of_change = phrase(
+            message = phrase(
                 "calls the method '{name}', which '{class_name}' in '{file}' does not have",
                 name=call.method,
                 class_name=call.class_name,
                 file=call.path,
             )
             location = Location(path, call.node.lineno, call.node.col_offset + 1)
-            yield path, Change(text_of_change, Effect.BREAKING, phrase("the call fails"), location)
+            yield path, Change(message, Effect.BREAKING, phrase("the call fails"), location)
 
 
-def _failing_calls(files: _Files, path: str) -> Iterator[FailingCall]:
+def _find_failing_calls(files: _PythonFiles, path: str) -> Iterator[FailingCall]:
     tree = _parse(files.version, path)
 
-    def module(name: str, level: int) -> ModuleClasses | None:
-        module_path = files.module(path, name, level)
+    def find_module(name: str, level: int) -> ModuleClasses | None:
+        module_path = files.find_module(path, name, level)
         module_tree = None if module_path is None else _parse(files.version, module_path)
-        return None if module_path is None or module_tree is None else classes_of(module_path, module_tree)
+        return None if module_path is None or module_tree is None else read_classes(module_path, module_tree)
 
-    return iter(()) if tree is None else failing_calls(tree, module)
+    return iter(()) if tree is None else find_failing_calls(tree, find_module)
 
 
-def _find_lost(versions: Versions, file: ChangedFile) -> _Lost | None:
-    """Return the functions and classes that a changed module removed or changed, or None if there are none."""
+def _find_lost(versions: Versions, file: ChangedFile) -> _LostNames | None:
+    """Return the functions and classes that a module removed or changed, or None."""
     path = file.old_path
     if path is None or not path.endswith(PYTHON_SUFFIX) or file.is_submodule:
         return None
     if path != file.new_path:
         is_built = file.new_path is None and is_generated(versions.old.text(path))
-        return None if is_built else _Lost(path, is_removed=True)
+        return None if is_built else _LostNames(path, is_removed=True)
     old, new = (_read_module(version, path) for version in (versions.old, versions.new))
     if old is None or new is None:
         return None
@@ -132,15 +134,15 @@ def _find_lost(versions: Versions, file: ChangedFile) -> _Lost | None:
     common = old.signatures.keys() & new.signatures.keys()
     changed = {name: (old.signatures[name], new.signatures[name]) for name in common}
     changed = {name: pair for name, pair in changed.items() if pair[0].text != pair[1].text}
-    return _Lost(path, removed, changed) if removed or changed else None
+    return _LostNames(path, removed, changed) if removed or changed else None
 
 
-def _module_word(path: str) -> str:
+def _get_module_word(path: str) -> str:
     pure_path = PurePosixPath(path)
     return pure_path.parent.name if pure_path.name == PACKAGE_FILE else pure_path.stem
 
 
-def _has_any(lost: _Lost, text: str) -> bool:
+def _mentions_any(lost: _LostNames, text: str) -> bool:
     return lost.is_removed or any(name in text for name in (*lost.removed, *lost.changed))
 
 
@@ -156,11 +158,11 @@ def _read_module(version: Version, path: str) -> _Module | None:
     tree = _parse(version, path)
     if tree is None:
         return None
-    bound = list(bound_names(tree))
+    bound = list(find_bound_names(tree))
     definitions = [
         node for node in tree.body if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef))
     ]
-    pairs = ((node.name, signature_of(node)) for node in definitions if bound.count(node.name) == 1)
+    pairs = ((node.name, read_signature(node)) for node in definitions if bound.count(node.name) == 1)
     is_dynamic = {"__getattr__", "*"} & set(bound) or any(
         isinstance(node, ast.Name) and node.id in ("globals", "exec") for node in ast.walk(tree)
     )
@@ -168,7 +170,7 @@ def _read_module(version: Version, path: str) -> _Module | None:
     return _Module(frozenset(bound), frozenset(node.name for node in definitions), signatures, not is_dynamic)
 
 
-class _Files:
+class _PythonFiles:
     """The Python sources of a version, except tests.
 
     Args:
@@ -179,15 +181,17 @@ class _Files:
     def __init__(self, version: Version, removed: Sequence[str]) -> None:
         paths = version.paths((PYTHON_SUFFIX,))
         self.paths = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
-        self._gone = removed
+        self._removed_paths = removed
         self.version = version
 
     @cached_property
     def _all_paths(self) -> frozenset[str]:
-        return frozenset((*self.paths, *self._gone))
+        return frozenset((*self.paths, *self._removed_paths))
 
-    def module(self, path: str, name: str, level: int) -> str | None:
-        """Return the path of the module that a file imports, or None unless exactly one file matches.
+    def find_module(self, path: str, name: str, level: int) -> str | None:
+        """Return the path of the module that a file imports.
+
+        The result is None unless exactly one file matches.
 
         Args:
             path: the path of the file.
@@ -198,25 +202,25 @@ class _Files:
         part = name.replace(".", "/")
         if level:
             parents = [folder, *folder.parents]
-            places = [parents[level - 1] / part] if level <= len(parents) else []
-            files = [f"{place}{end}" for place in places for end in (PYTHON_SUFFIX, f"/{PACKAGE_FILE}")]
-            return self._single_path(file for file in files if file in self._all_paths)
-        beside = (folder / f"{part}{PYTHON_SUFFIX}").as_posix()
+            bases = [parents[level - 1] / part] if level <= len(parents) else []
+            files = [f"{base}{end}" for base in bases for end in (PYTHON_SUFFIX, f"/{PACKAGE_FILE}")]
+            return self._get_only_path(file for file in files if file in self._all_paths)
+        sibling = (folder / f"{part}{PYTHON_SUFFIX}").as_posix()
         if "/" not in part:
-            if beside in self.paths:
-                return beside
-            if not _ADDED_FOLDER.search(self.version.text(path)):
-                return None  # a module that is gone may be one of another package
-            return self._single_path(
+            if sibling in self.paths:
+                return sibling
+            if not _PATH_EXTENSION.search(self.version.text(path)):
+                return None  # a module that does not exist here may belong to a different package
+            return self._get_only_path(
                 file for file in self.paths if PurePosixPath(file).name == f"{part}{PYTHON_SUFFIX}"
             )
         ends = (f"/{part}{PYTHON_SUFFIX}", f"/{part}/{PACKAGE_FILE}")
-        return self._single_path(file for file in self._all_paths if f"/{file}".endswith(ends))
+        return self._get_only_path(file for file in self._all_paths if f"/{file}".endswith(ends))
 
     @staticmethod
-    def _single_path(paths: Iterable[str]) -> str | None:
-        found = list(paths)
-        return found[0] if len(found) == 1 else None
+    def _get_only_path(paths: Iterable[str]) -> str | None:
+        matches = list(paths)
+        return matches[0] if len(matches) == 1 else None
 
 
 class _Caller:
@@ -229,17 +233,17 @@ class _Caller:
         lost: the functions and classes that the module removed or changed.
     """
 
-    def __init__(self, files: _Files, path: str, tree: ast.Module, lost: _Lost) -> None:
+    def __init__(self, files: _PythonFiles, path: str, tree: ast.Module, lost: _LostNames) -> None:
         self._files = files
         self._path = path
         self._tree = tree
         self._lost = lost
-        self._bound = list(bound_names(tree))
-        guarded = (node for node in ast.walk(tree) if isinstance(node, ast.Try))
-        self._guarded = {id(inner) for node in guarded for part in node.body for inner in ast.walk(part)}
+        self._bound_names = list(find_bound_names(tree))
+        try_statements = (node for node in ast.walk(tree) if isinstance(node, ast.Try))
+        self._guarded_ids = {id(inner) for node in try_statements for part in node.body for inner in ast.walk(part)}
 
-    def changes(self) -> Iterator[Change]:
-        """Yield a change for each removed name that the file still imports, and for each call that does not fit."""
+    def find_changes(self) -> Iterator[Change]:
+        """Yield the imports of removed names and the calls that no longer fit."""
         functions: dict[str, str] = {}  # the local name of a function, and its name in the module
         modules: set[str] = set()  # the local names of the module, with dots
         for node in ast.walk(self._tree):
@@ -247,7 +251,7 @@ class _Caller:
                 lost = [alias for alias in node.names if self._is_lost_module(alias.name, 0)]
                 modules.update(alias.asname or alias.name for alias in lost)
                 if lost and self._lost.is_removed:
-                    yield from self._failing_import(node, None)
+                    yield from self._report_import(node, None)
             elif isinstance(node, ast.ImportFrom):
                 for alias in node.names:
                     yield from self._check_import(node, alias, functions, modules)
@@ -256,7 +260,10 @@ class _Caller:
     def _check_import(
         self, node: ast.ImportFrom, alias: ast.alias, functions: dict[str, str], modules: set[str]
     ) -> Iterator[Change]:
-        """Yield a change if an imported name was removed, or else add its local name to one of the collections."""
+        """Yield a change if an imported name was removed.
+
+        The local name of any other import is added to `functions` or `modules`.
+        """
         local = alias.asname or alias.name
         name = f"{node.module}.{alias.name}" if node.module else alias.name
         is_module = self._is_lost_module(name, node.level)
@@ -264,25 +271,25 @@ class _Caller:
             return
         if self._lost.is_removed:
             if is_module or alias is node.names[0]:
-                yield from self._failing_import(node, None)
+                yield from self._report_import(node, None)
         elif is_module:
             modules.add(local)
         elif alias.name in self._lost.removed:
-            yield from self._failing_import(node, alias.name)
-        elif alias.name in self._lost.changed and self._bound.count(local) == 1:
+            yield from self._report_import(node, alias.name)
+        elif alias.name in self._lost.changed and self._bound_names.count(local) == 1:
             functions[local] = alias.name
 
-    def _failing_import(self, node: ast.stmt, name: str | None) -> Iterator[Change]:
+    def _report_import(self, node: ast.stmt, name: str | None) -> Iterator[Change]:
         """Yield the change that an import fails, unless the file handles the failure."""
-        if id(node) in self._guarded:
+        if id(node) in self._guarded_ids:
             return
         text = phrase("imports '{file}', which does not exist any more", file=self._lost.path)
         if name is not None:
             text = phrase("imports '{name}', which '{file}' no longer has", name=name, file=self._lost.path)
-        yield self._change(text, phrase("the import fails"), node)
+        yield self._make_change(text, phrase("the import fails"), node)
 
     def _check_calls(self, functions: Mapping[str, str], modules: set[str]) -> Iterator[Change]:
-        """Yield a change for each call that fits only the old parameters, and for each call of a removed function."""
+        """Yield the calls that fit only the old parameters, and the calls of removed functions."""
         for node in ast.walk(self._tree):
             if not isinstance(node, ast.Call):
                 continue
@@ -291,9 +298,9 @@ class _Caller:
                 name = node.func.attr
             if name is None:
                 continue
-            if name in self._lost.removed and id(node) not in self._guarded:
+            if name in self._lost.removed and id(node) not in self._guarded_ids:
                 text = phrase("calls '{name}', which '{file}' no longer has", name=name, file=self._lost.path)
-                yield self._change(text, phrase("the call fails"), node)
+                yield self._make_change(text, phrase("the call fails"), node)
             elif name in self._lost.changed:
                 old, new = self._lost.changed[name]
                 if old.fits(node) and not new.fits(node):
@@ -303,14 +310,14 @@ class _Caller:
                         file=self._lost.path,
                         arguments=new.text,
                     )
-                    yield self._change(text, phrase("the call fails"), node)
+                    yield self._make_change(text, phrase("the call fails"), node)
 
     def _is_module(self, node: ast.expr, modules: set[str]) -> bool:
         text = ast.unparse(node) if isinstance(node, (ast.Name, ast.Attribute)) else ""
-        return text in modules and ("." in text or self._bound.count(text) == 1)
+        return text in modules and ("." in text or self._bound_names.count(text) == 1)
 
     def _is_lost_module(self, name: str, level: int) -> bool:
-        return self._files.module(self._path, name, level) == self._lost.path
+        return self._files.find_module(self._path, name, level) == self._lost.path
 
-    def _change(self, text: Phrase, reason: Phrase, node: ast.stmt | ast.expr) -> Change:
+    def _make_change(self, text: Phrase, reason: Phrase, node: ast.stmt | ast.expr) -> Change:
         return Change(text, Effect.BREAKING, reason, Location(self._path, node.lineno, node.col_offset + 1))

@@ -1,4 +1,4 @@
-"""Search the changed sources of a version for names, and the other sources of their packages."""
+"""Search for names in the changed sources of a version and in the rest of their packages."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 from linkwright.review.sources.reading import read_source_names, try_read_source
-from linkwright.review.sources.unchanged_sources import UnchangedSources, counterpart, is_same_topic
+from linkwright.review.sources.unchanged_sources import UnchangedSources, get_counterpart, is_same_topic
 from linkwright.review.versions import Version
 
 COMMUNICATION_KINDS = (
@@ -19,8 +19,8 @@ COMMUNICATION_KINDS = (
     *(NameKind.ACTION, NameKind.ACTION_CLIENT),
 )
 """The kinds of names by which a node communicates."""
-_LOCAL = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
-"""The kinds whose names may mean another thing in another source."""
+_LOCAL_KINDS = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
+"""The kinds whose names may mean something else in a different source."""
 
 
 class ChangedSources:
@@ -34,9 +34,9 @@ class ChangedSources:
     def __init__(self, version: Version, paths: Sequence[str | None]) -> None:
         self.version = version
         self._names = {path: read_source_names(version.file(path)) for path in paths if path is not None}
-        self._others: dict[str, UnchangedSources] = {}
+        self._unchanged_by_package: dict[str, UnchangedSources] = {}
 
-    def names(self, path: str | None) -> SourceNames:
+    def get_names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
         return self._names.get(path, SourceNames()) if path is not None else SourceNames()
 
@@ -54,45 +54,50 @@ class ChangedSources:
             code: the code that contains the function.
             path: the path of the source to skip.
         """
-        short, body = re.split(r"\.|::", name)[-1], code.body(name)
+        short, body = re.split(r"\.|::", name)[-1], code.get_body(name)
         return any(
-            re.split(r"\.|::", function)[-1] == short and other.body(function) == body
+            re.split(r"\.|::", function)[-1] == short and other.get_body(function) == body
             for other_path, other in self.codes.items()
             if other_path != path
             for function in other.functions
         )
 
     @cached_property
-    def _known(self) -> frozenset[tuple[NameKind, str]]:
-        return frozenset((item.kind, comparison_name(item)) for names in self._names.values() for item in names.names)
+    def _known_names(self) -> frozenset[tuple[NameKind, str]]:
+        return frozenset(
+            (item.kind, get_comparison_name(item)) for names in self._names.values() for item in names.names
+        )
 
     @cached_property
-    def _functions(self) -> frozenset[str]:
+    def _function_names(self) -> frozenset[str]:
         overrides = {name for names in self._names.values() for name in names.overrides}
-        declared = {name.rpartition("::")[2] for kind, name in self._known if kind is NameKind.FUNCTION}
+        declared = {name.rpartition("::")[2] for kind, name in self._known_names if kind is NameKind.FUNCTION}
         return frozenset(overrides | declared)
 
     @cached_property
     def _expressions(self) -> list[tuple[NameKind, str]]:
         return [(item.kind, item.type) for names in self._names.values() for item in names.expressions]
 
-    def count(self, item: SourceName) -> int:
+    def count_expressions(self, item: SourceName) -> int:
         """Return the number of expressions in changed sources with the same kind and type."""
         return self._expressions.count((item.kind, item.type))
 
     def lacks_in_changed(self, item: SourceName, path: str) -> bool:
-        """Return whether no changed source except this one has a name, so that the name has not moved."""
+        """Return whether no other changed source has a name.
+
+        If one has it, the name has moved.
+        """
         if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
             return False
         others = (names for other, names in self._names.items() if other != path)
         return not any(
-            (known.kind, comparison_name(known)) == (item.kind, comparison_name(item))
+            (known.kind, get_comparison_name(known)) == (item.kind, get_comparison_name(item))
             for names in others
             for known in names.names
         )
 
     def lacks(self, item: SourceName, path: str) -> bool:
-        """Return whether neither a changed source nor another source of the same package has a name.
+        """Return whether a name is in no changed source and in no source of the package.
 
         Args:
             item: the name to search for.
@@ -100,50 +105,59 @@ class ChangedSources:
         """
         if item.kind is NameKind.IMPORT:
             return True
-        if (item.kind, comparison_name(item)) in self._known:
+        if (item.kind, get_comparison_name(item)) in self._known_names:
             return False
-        if item.kind is NameKind.FUNCTION and item.name.rpartition("::")[2] in self._functions:
+        if item.kind is NameKind.FUNCTION and item.name.rpartition("::")[2] in self._function_names:
             return False  # in a base class, for example
-        if item.kind in _LOCAL:
+        if item.kind in _LOCAL_KINDS:
             return True
-        package = self.package(path)
+        package = self.find_package(path)
         if package is None:
             return True
         if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
             return False
-        others = self._unchanged(package)
-        return not (others.has_same(item) if item.kind in COMMUNICATION_KINDS else others.has_text(item.name))
+        others = self._get_unchanged(package)
+        return not (others.has_name(item) if item.kind in COMMUNICATION_KINDS else others.has_text(item.name))
 
-    def keeps(self, item: SourceName, path: str) -> bool:
-        """Return whether an unchanged source of the same package has a topic, service or action of the same kind."""
-        package = self.package(path) if item.kind in COMMUNICATION_KINDS else None
-        return package is not None and self._unchanged(package).has_same(item)
+    def has_in_unchanged(self, item: SourceName, path: str) -> bool:
+        """Return whether an unchanged source of the package has the same topic, service or action."""
+        package = self.find_package(path) if item.kind in COMMUNICATION_KINDS else None
+        return package is not None and self._get_unchanged(package).has_name(item)
 
-    def user(self, item: SourceName, path: str) -> str | None:
-        """Return a source of the same package with the other end of a topic, service or action, or None."""
-        package, kind = self.package(path), counterpart(item.kind)
+    def find_user(self, item: SourceName, path: str) -> str | None:
+        """Return a source of the package that uses the other end of a name, or None.
+
+        Only topics, services and actions have another end.
+        """
+        package, kind = self.find_package(path), get_counterpart(item.kind)
         if package is None or kind is None:
             return None
         for other, names in self._names.items():
-            if self.package(other) == package and any(is_same_topic(item, user) for user in names.of_kind(kind)):
+            if self.find_package(other) == package and any(is_same_topic(item, user) for user in names.of_kind(kind)):
                 return other
-        return self._unchanged(package).user(item)
+        return self._get_unchanged(package).find_user(item)
 
-    def package(self, path: str) -> str | None:
+    def find_package(self, path: str) -> str | None:
         """Return the folder of the package of a file, or None for a file outside of packages."""
         return self.version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
 
-    def _unchanged(self, package: str) -> UnchangedSources:
-        if package not in self._others:
-            self._others[package] = UnchangedSources(self.version, package, self._names)
-        return self._others[package]
+    def _get_unchanged(self, package: str) -> UnchangedSources:
+        if package not in self._unchanged_by_package:
+            self._unchanged_by_package[package] = UnchangedSources(self.version, package, self._names)
+        return self._unchanged_by_package[package]
 
     def _generates(self, name: str, path: str) -> bool:
-        """Return whether a parameter description beside a source, from which code is generated, has a parameter."""
+        """Return whether code is generated for a parameter.
+
+        The generator reads a description beside the source.
+        """
         files = self.version.file(path).parent.glob("*.y*ml")
         return any(f"{name.rpartition('.')[2]}:" in file.read_text("utf-8", errors="replace") for file in files)
 
 
-def comparison_name(item: SourceName) -> str:
-    """Return the name by which versions are compared. In ROS 1, a private name may lack the ``~``."""
+def get_comparison_name(item: SourceName) -> str:
+    """Return the name by which versions are compared.
+
+    In ROS 1, a private name may lack the ``~``.
+    """
     return item.name.lstrip("~/") if item.kind is NameKind.PARAMETER else item.name

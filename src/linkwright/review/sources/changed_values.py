@@ -9,25 +9,27 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.sources.cpp_statements import cpp_statements
+from linkwright.review.sources.cpp_statements import read_cpp_statements
 from linkwright.review.sources.names import CPP_SUFFIXES
-from linkwright.review.sources.python_statements import python_statements
+from linkwright.review.sources.python_statements import read_python_statements
 from linkwright.review.sources.reading import try_read_source
-from linkwright.review.sources.statements import Difference, Literal, Statement, literal_differences
+from linkwright.review.sources.statements import Difference, Literal, Statement, find_literal_differences
 from linkwright.review.sources.tokens import TokenKind
 
 _DEFINITION = re.compile(r"\b([A-Z]\w+)(?=\s*(?:=(?!=)|[{\[,]))|define\s+(\w+)")
 _QUOTED = re.compile("\"[^\"]*\"|'[^']*'")
-_ALIKE = 0.6
-"""The ratio of equal tokens from which two statements with other tokens are versions of one statement."""
+_MIN_SIMILARITY = 0.6
+"""The minimum ratio of equal tokens of two versions of a statement."""
 _COUNTERS = frozenset({"0", "1"})
 """Numbers that also change with the form of a statement, such as in ``i + 1``."""
-_MAX_COMPARED = 4_000_000
+_MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
 
 
-def value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) -> Iterator[tuple[Phrase, Span]]:
-    """Yield the functions in which only literals of statements differ, each with the place of the first difference.
+def find_value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) -> Iterator[tuple[Phrase, Span]]:
+    """Yield the functions in which only literals differ.
+
+    Each comes with the location of its first difference.
 
     Args:
         old_path: the old source.
@@ -40,7 +42,8 @@ def value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) -> It
     is_cpp = new_path.suffix in CPP_SUFFIXES
     try:
         old, new = (
-            cpp_statements(source.text) if is_cpp else python_statements(source) for source in (old_source, new_source)
+            read_cpp_statements(source.text) if is_cpp else read_python_statements(source)
+            for source in (old_source, new_source)
         )
     except (ValueError, SyntaxError, RecursionError):
         return
@@ -48,7 +51,9 @@ def value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) -> It
         items = [
             item
             for pair in _pair_statements(old.get(name, []), statements)
-            for item in (literal_differences(*pair) if pair[0].shape == pair[1].shape else _number_change(*pair))
+            for item in (
+                find_literal_differences(*pair) if pair[0].shape == pair[1].shape else _find_number_change(*pair)
+            )
             if not _is_reported(item, reported) and not _is_renamed(item, old_source.text, new_source.text)
         ]
         if items:
@@ -62,10 +67,10 @@ def value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) -> It
 def _pair_statements(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator[tuple[Statement, Statement]]:
     """Yield pairs of statements of a function that differ only in literals, or are similar.
 
-    Between equal statements, the statements of the same shape are paired if both versions have equally many. So are
-    the others.
+    Between equal statements, the statements of the same shape are paired if both versions have the
+    same number. So are the remaining statements.
     """
-    if len(old) * len(new) > _MAX_COMPARED:
+    if len(old) * len(new) > _MAX_COMPARED_PAIRS:
         return
     matcher = SequenceMatcher(
         None, [statement.key for statement in old], [statement.key for statement in new], autojunk=False
@@ -75,12 +80,12 @@ def _pair_statements(old: Sequence[Statement], new: Sequence[Statement]) -> Iter
             continue
         shapes = dict.fromkeys(statement.shape for statement in new[new_start:new_end])
         old_shapes = {statement.shape for statement in old[old_start:old_end]}
-        lone = (
+        unpaired = (
             [statement for statement in old[old_start:old_end] if statement.shape not in shapes],
             [statement for statement in new[new_start:new_end] if statement.shape not in old_shapes],
         )
-        if len(lone[0]) == len(lone[1]):
-            yield from zip(*lone, strict=True)
+        if len(unpaired[0]) == len(unpaired[1]):
+            yield from zip(*unpaired, strict=True)
         for shape in shapes:
             before = [statement for statement in old[old_start:old_end] if statement.shape == shape]
             after = [statement for statement in new[new_start:new_end] if statement.shape == shape]
@@ -89,8 +94,11 @@ def _pair_statements(old: Sequence[Statement], new: Sequence[Statement]) -> Iter
                 yield from (pair for pair in pairs if _are_versions(*pair))
 
 
-def _number_change(old: Statement, new: Statement) -> Iterator[Difference]:
-    """Yield the only number that differs between two statements that also differ in another way."""
+def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
+    """Yield the number that differs between two statements.
+
+    The statements also differ in other ways. If several numbers differ, nothing is yielded.
+    """
     numbers = [
         [token for token in statement.tokens if token.kind is TokenKind.NUMBER and token.text not in _COUNTERS]
         for statement in (old, new)
@@ -103,25 +111,25 @@ def _number_change(old: Statement, new: Statement) -> Iterator[Difference]:
     old_words, new_words = (
         [token.text for token in statement.tokens if token.kind is not TokenKind.NUMBER] for statement in (old, new)
     )
-    if SequenceMatcher(None, old_words, new_words, autojunk=False).ratio() >= _ALIKE:
+    if SequenceMatcher(None, old_words, new_words, autojunk=False).ratio() >= _MIN_SIMILARITY:
         token = next(token for token in numbers[1] if token.text == after)
         yield Difference(f"{before} -> {after}", before, after, token)
 
 
-def _changed_literals(old: Statement, new: Statement) -> list[tuple[Literal, Literal]]:
+def _find_changed_literals(old: Statement, new: Statement) -> list[tuple[Literal, Literal]]:
     return [pair for pair in zip(old.literals, new.literals, strict=True) if pair[0].differs_from(pair[1])]
 
 
 def _are_reordered(pairs: Sequence[tuple[Statement, Statement]]) -> bool:
     """Return whether a text only moves from one literal to another."""
-    changed = [pair for statements in pairs for pair in _changed_literals(*statements)]
+    changed = [pair for statements in pairs for pair in _find_changed_literals(*statements)]
     removed, added = ({pair[side].value for pair in changed if pair[side].is_text} for side in (0, 1))
     return not removed.isdisjoint(added)
 
 
 def _are_versions(old: Statement, new: Statement) -> bool:
     """Return whether two statements of the same shape are probably versions of one statement."""
-    changed = _changed_literals(old, new)
+    changed = _find_changed_literals(old, new)
     has_texts = any(literal.is_text for pair in changed for literal in pair)
     return bool(changed) and (len(old.literals) == 1 or not has_texts or 2 * len(changed) <= len(old.literals))
 
@@ -149,12 +157,12 @@ def _is_renamed(item: Difference, old_text: str, new_text: str) -> bool:
     if re.fullmatch(r"\w+", item.old) is None or re.fullmatch(r"\w+", item.new) is None:
         return False
     return (
-        _has_word(_defined_names(old_text), item.old)
+        _has_word(_find_defined_names(old_text), item.old)
         and not _has_word(new_text, item.old)
-        and (_has_word(_defined_names(new_text), item.new) and not _has_word(old_text, item.new))
+        and (_has_word(_find_defined_names(new_text), item.new) and not _has_word(old_text, item.new))
     )
 
 
-def _defined_names(text: str) -> str:
+def _find_defined_names(text: str) -> str:
     """Return the names of the constants that a source defines."""
     return " ".join(match[1] or match[2] for match in _DEFINITION.finditer(text))

@@ -1,4 +1,7 @@
-"""Normalize the code of a source by function, without layout, comments, docstrings and output."""
+"""Normalize the code of a source by function.
+
+Layout, comments, docstrings and output are left out.
+"""
 
 from __future__ import annotations
 
@@ -14,15 +17,17 @@ from linkwright.diagnostics import SourceText
 from linkwright.review.sources.cpp_statements import is_output, read_cpp_blocks
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.python import parse_source
-from linkwright.review.sources.python_statements import blocks_of, called_names
+from linkwright.review.sources.python_statements import get_blocks, list_called_names
 from linkwright.review.sources.statements import normalize_number
 from linkwright.review.sources.tokens import Token, TokenKind
 
-_PRINTING = re.compile(r"p?print|log\w*|debug|info|warn|warning|error|critical|exception|fatal|echo", re.IGNORECASE)
+_OUTPUT_FUNCTION = re.compile(
+    r"p?print|log\w*|debug|info|warn|warning|error|critical|exception|fatal|echo", re.IGNORECASE
+)
 """The functions that only print or log."""
-_FUNCTION = re.compile(r"(?:\w+(?:\.|::))*(?:~?\w+|operator\W+)")
-_CONTROLS = frozenset({"if", "for", "while", "switch", "catch"})
-_BRANCHES = frozenset({"else", "do", "try"})
+_FUNCTION_NAME = re.compile(r"(?:\w+(?:\.|::))*(?:~?\w+|operator\W+)")
+_CONTROL_KEYWORDS = frozenset({"if", "for", "while", "switch", "catch"})
+_BRANCH_KEYWORDS = frozenset({"else", "do", "try"})
 
 
 class Part(NamedTuple):
@@ -30,13 +35,13 @@ class Part(NamedTuple):
 
     Attributes:
         text: the normalized code.
-        first: the number of its first line.
-        last: the number of its last line.
+        first_line: the number of its first line.
+        last_line: the number of its last line.
     """
 
     text: str
-    first: int
-    last: int
+    first_line: int
+    last_line: int
 
 
 @dataclass
@@ -45,15 +50,15 @@ class Code:
 
     Attributes:
         functions: the statements of each function, by qualified name. The first statement is the head.
-        others: the statements outside of functions by class; statements outside of classes have an empty name.
+        outside: the statements outside of functions by class; statements outside of classes have an empty name.
         imports: the imports of a Python source.
     """
 
     functions: dict[str, list[Part]] = field(default_factory=dict)
-    others: dict[str, list[Part]] = field(default_factory=dict)
+    outside: dict[str, list[Part]] = field(default_factory=dict)
     imports: list[Part] = field(default_factory=list)
 
-    def body(self, name: str) -> list[str]:
+    def get_body(self, name: str) -> list[str]:
         """Return the code of a function without its head."""
         return [part.text for part in self.functions.get(name, ())[1:]]
 
@@ -66,7 +71,7 @@ def read_code(source: SourceText) -> Code:
         code = Code()
         tree = parse_source(source).tree
         imports = (node for node in ast.walk(tree) if isinstance(node, (ast.Import, ast.ImportFrom)))
-        code.imports = [_python_part(node, "") for node in imports]
+        code.imports = [_make_python_part(node, "") for node in imports]
         _read_python(tree.body, "", code)
     except (ValueError, SyntaxError, RecursionError):
         return Code()
@@ -81,28 +86,28 @@ def _read_python(body: Sequence[ast.stmt], scope: str, code: Code) -> None:
     for node in body:
         if isinstance(node, ast.ClassDef):
             name = f"{scope}.{node.name}".lstrip(".")
-            code.others.setdefault(name, []).append(_python_part(node, ""))
+            code.outside.setdefault(name, []).append(_make_python_part(node, ""))
             _read_python(node.body, name, code)
         elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             parts = code.functions.setdefault(f"{scope}.{node.name}".lstrip("."), [])
-            parts.extend(_python_parts([node], ""))
+            parts.extend(_make_python_parts([node], ""))
         else:
-            code.others.setdefault(scope, []).extend(_python_parts([node], ""))
+            code.outside.setdefault(scope, []).extend(_make_python_parts([node], ""))
 
 
-def _python_parts(body: Sequence[ast.stmt], indent: str) -> Iterator[Part]:
+def _make_python_parts(body: Sequence[ast.stmt], indent: str) -> Iterator[Part]:
     """Yield the statements of a block in depth-first order."""
     for node in body:
         if _is_skipped(node):
             continue
-        yield _python_part(node, indent)
-        for index, block in enumerate(blocks_of(node)):
-            yield from _python_parts(block, f"{indent}{index or ' '}")
+        yield _make_python_part(node, indent)
+        for index, block in enumerate(get_blocks(node)):
+            yield from _make_python_parts(block, f"{indent}{index or ' '}")
 
 
-def _python_part(node: ast.stmt, indent: str) -> Part:
+def _make_python_part(node: ast.stmt, indent: str) -> Part:
     """Return a statement without annotations, error messages and nested statements."""
-    inner = blocks_of(node)
+    inner = get_blocks(node)
     first = min([node.lineno, *(decorator.lineno for decorator in getattr(node, "decorator_list", []))])
     last = inner[0][0].lineno - 1 if inner else node.end_lineno or node.lineno
     return Part(indent + ast.unparse(_normalize(node)), first, max(first, last))
@@ -117,8 +122,8 @@ def _normalize(node: ast.stmt) -> ast.stmt:
     if isinstance(node, ast.AnnAssign) and node.value is not None:
         return ast.copy_location(ast.Assign([node.target], node.value), node)
     if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
-        node = ast.copy_location(_without_annotations(node), node)
-    elif not blocks_of(node):
+        node = ast.copy_location(_remove_annotations(node), node)
+    elif not get_blocks(node):
         return node
     fields = {name: getattr(node, name) for name in node._fields if hasattr(node, name)}
     fields.update((name, []) for name in ("orelse", "finalbody") if name in fields)
@@ -131,7 +136,7 @@ def _normalize(node: ast.stmt) -> ast.stmt:
     return ast.copy_location(type(node)(**fields), node)
 
 
-def _without_annotations(node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.FunctionDef | ast.AsyncFunctionDef:
+def _remove_annotations(node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.FunctionDef | ast.AsyncFunctionDef:
     for argument in ast.walk(node.args):
         if isinstance(argument, ast.arg):
             argument.annotation = None
@@ -147,9 +152,9 @@ def _is_skipped(node: ast.stmt) -> bool:
         return True
     if not isinstance(node, ast.Expr):
         return False
-    names = called_names(node.value)
+    names = list_called_names(node.value)
     return isinstance(node.value, ast.Constant) or (
-        bool(names) and (_PRINTING.fullmatch(names[0]) is not None or "get_logger" in names)
+        bool(names) and (_OUTPUT_FUNCTION.fullmatch(names[0]) is not None or "get_logger" in names)
     )
 
 
@@ -161,24 +166,24 @@ def _read_cpp(source: SourceText) -> Code:
     starts = [match.end() for match in re.finditer("\n", source.text)]
     code = Code()
     for name, statements in blocks.items():
-        if name and not _FUNCTION.fullmatch(name):
+        if name and not _FUNCTION_NAME.fullmatch(name):
             continue
         parts = [
-            _cpp_part(tokens, starts)
+            _make_cpp_part(tokens, starts)
             for statement in statements
             for tokens in _split_unbraced(statement)
             if not is_output(tokens) or _has_throw(tokens)
         ]
-        (code.functions if name in functions else code.others)[name] = parts
+        (code.functions if name in functions else code.outside)[name] = parts
     return code
 
 
 def _split_unbraced(tokens: Sequence[Token]) -> Iterator[Sequence[Token]]:
-    """Yield the body of a condition without braces, and then the condition, as if it had braces."""
+    """Yield the body of a condition without braces, followed by the condition."""
     end = 0
-    if tokens and tokens[0].text in _BRANCHES:
+    if tokens and tokens[0].text in _BRANCH_KEYWORDS:
         end = 1
-    elif len(tokens) > 1 and tokens[0].text in _CONTROLS:
+    elif len(tokens) > 1 and tokens[0].text in _CONTROL_KEYWORDS:
         depth = 0
         for index, token in enumerate(tokens[1:], 1):
             depth += (token.text == "(") - (token.text == ")")
@@ -196,15 +201,15 @@ def _has_throw(tokens: Sequence[Token]) -> bool:
     return any(token.text == "throw" for token in tokens)
 
 
-def _cpp_part(tokens: Sequence[Token], starts: Sequence[int]) -> Part:
+def _make_cpp_part(tokens: Sequence[Token], starts: Sequence[int]) -> Part:
     has_message = _has_throw(tokens)
-    texts = [_token_text(token, has_message=has_message) for token in tokens if token.text != "override"]
+    texts = [_normalize_token(token, has_message=has_message) for token in tokens if token.text != "override"]
     lines = [bisect.bisect_right(starts, token.start) + 1 for token in (tokens[0], tokens[-1])]
     return Part(" ".join(texts), *lines)
 
 
-def _token_text(token: Token, *, has_message: bool) -> str:
-    """Return a token in normalized form: without error messages, with equal notation of numbers."""
+def _normalize_token(token: Token, *, has_message: bool) -> str:
+    """Return a token without error messages and with one notation of numbers."""
     if token.kind is TokenKind.NUMBER:
         return normalize_number(token.text, is_divided=True)
     return '""' if has_message and token.kind is TokenKind.TEXT else token.text

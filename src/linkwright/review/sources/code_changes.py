@@ -13,13 +13,13 @@ from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change
 from linkwright.review.sources.code import Code, Part
 from linkwright.review.sources.names import SourceNames
-from linkwright.review.sources.statements import statement_of
-from linkwright.review.sources.tokens import cpp_tokens
+from linkwright.review.sources.statements import parse_statement
+from linkwright.review.sources.tokens import tokenize_cpp
 
 _QUOTED = re.compile(r"'([^']+)'")
 _LITERAL = re.compile("\"((?:\\\\.|[^\"\\\\])*)\"|'((?:\\\\.|[^'\\\\])*)'")
 _VALUES = "values in {name}: {values}"
-_MAX_COMPARED = 4_000_000
+_MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
 
 
@@ -37,22 +37,22 @@ class CodeChange(NamedTuple):
     is_old: bool
 
 
-def code_change(
+def find_code_change(
     old: Code,
     new: Code,
     reported: Sequence[Change],
     has_moved: Callable[[str, Code], bool],
     names: SourceNames,
 ) -> CodeChange | None:
-    """Return the changed functions of a source that no other line names; None if there are none.
+    """Return the changed functions that no other line names, or None.
 
-    Without changed functions and other lines, the change names classes with changes outside of functions, or imports.
+    If nothing else is reported, the change names classes whose code outside of functions changes, or imports.
 
     Args:
         old: the code of the old version.
         new: the code of the new version.
         reported: the other lines about the source.
-        has_moved: whether another source has a function of the given code, with the same code.
+        has_moved: whether a different source has a function with the same name and code.
         names: the names in the new version.
     """
     lines = _ReportedLines(reported)
@@ -63,125 +63,153 @@ def code_change(
     for old_name, new_name in _find_renamed(old, new, removed, added, lines):
         removed.remove(old_name)
         added.remove(new_name)
-        is_same_name = _short_name(old_name) == _short_name(new_name)
+        is_same_name = _get_short_name(old_name) == _get_short_name(new_name)
         pairs += [(old_name, new_name)] if is_same_name else []
         renamed += [] if is_same_name else [(old_name, new_name)]
     changed = [
         pair for pair in pairs if lines.has_unreported_change(old.functions[pair[0]], new.functions[pair[1]], pair[1])
     ]
-    removed, added = ([name for name in items if not lines.names(name)] for items in (removed, added))
-    texts = []
-    if changed:
-        texts.append(
-            phrase("code changed in {names}", names=_list_names(_with_topic(name, names) for _, name in changed))
-        )
-    if added:
-        texts.append(phrase("code added: {names}", names=_list_names(_with_topic(name, names) for name in added)))
-    if removed:
-        texts.append(phrase("code removed: {names}", names=_list_names(f"'{name}()'" for name in removed)))
-    if renamed:
-        texts.append(phrase("code renamed: {names}", names=_list_names(f"'{a}()' -> '{b}()'" for a, b in renamed)))
+    removed, added = ([name for name in items if not lines.mentions(name)] for items in (removed, added))
+    texts = _format_functions(changed, added, removed, renamed, names)
     if texts:
         new_names = [*(name for _, name in changed), *added, *(name for _, name in renamed)]
         sides = (new, old) if new_names else (old, new)
         name = new_names[0] if new_names else removed[0]
-        line = _first_line(sides[0].functions[name], sides[1].functions.get(name, ()))
+        line = _find_first_line(sides[0].functions[name], sides[1].functions.get(name, ()))
         return CodeChange(joined(texts, "; "), line, is_old=not new_names)
-    return None if reported else _other_change(old, new)
+    return None if reported else _find_outside_change(old, new)
 
 
-def _other_change(old: Code, new: Code) -> CodeChange | None:
-    """Return the classes whose code changes outside of functions, or else the source; None if nothing changes there."""
-    sides = ((phrase("code changed in {names}", names=""), new, old.others.keys() & new.others.keys()),
-             (phrase("code added: {names}", names=""), new, new.others.keys() - old.others.keys()),
-             (phrase("code removed: {names}", names=""), old, old.others.keys() - new.others.keys()))  # fmt: skip
+def _format_functions(
+    changed: Sequence[tuple[str, str]],
+    added: Sequence[str],
+    removed: Sequence[str],
+    renamed: Sequence[tuple[str, str]],
+    names: SourceNames,
+) -> list[Phrase]:
+    """Return a text for each kind of change to functions. Changed and renamed functions are pairs of names."""
+    texts = []
+    if changed:
+        texts.append(
+            phrase("code changed in {names}", names=_join_names(_format_function(name, names) for _, name in changed))
+        )
+    if added:
+        texts.append(phrase("code added: {names}", names=_join_names(_format_function(name, names) for name in added)))
+    if removed:
+        texts.append(phrase("code removed: {names}", names=_join_names(f"'{name}()'" for name in removed)))
+    if renamed:
+        texts.append(
+            phrase("code renamed: {names}", names=_join_names(f"'{old}()' -> '{new}()'" for old, new in renamed))
+        )
+    return texts
+
+
+def _find_outside_change(old: Code, new: Code) -> CodeChange | None:
+    """Return the classes whose code changes outside of functions, or None.
+
+    If no class changes, the result tells whether the source changes outside of classes.
+    """
+    sides = ((phrase("code changed in {names}", names=""), new, old.outside.keys() & new.outside.keys()),
+             (phrase("code added: {names}", names=""), new, new.outside.keys() - old.outside.keys()),
+             (phrase("code removed: {names}", names=""), old, old.outside.keys() - new.outside.keys()))  # fmt: skip
     texts = []
     lines = []
     for text, code, names in sides:
         changed = [
             name
-            for name in code.others
-            if name in names and name and _part_texts(old.others.get(name, ())) != _part_texts(new.others.get(name, ()))
+            for name in code.outside
+            if name in names and name and _get_texts(old.outside.get(name, ())) != _get_texts(new.outside.get(name, ()))
         ]
         if changed:
-            texts.append(text.with_arguments(names=_list_names(f"'{name}'" for name in changed)))
+            texts.append(text.with_arguments(names=_join_names(f"'{name}'" for name in changed)))
             other = old if code is new else new
-            lines.append((_first_line(code.others[changed[0]], other.others.get(changed[0], ())), code is old))
+            lines.append(
+                (
+                    _find_first_line(code.outside[changed[0]], other.outside.get(changed[0], ())),
+                    code is old,
+                )
+            )
     if texts:
         return CodeChange(joined(texts, "; "), *lines[0])
-    parts = new.others.get("", ())
-    if parts and _part_texts(old.others.get("", ())) != _part_texts(parts):
-        line = _first_line(parts, old.others.get("", ()))
+    parts = new.outside.get("", ())
+    if parts and _get_texts(old.outside.get("", ())) != _get_texts(parts):
+        line = _find_first_line(parts, old.outside.get("", ()))
         return CodeChange(phrase("code changed outside of functions"), line, is_old=False)
-    return _import_change(old.imports, new.imports)
+    return _compare_imports(old.imports, new.imports)
 
 
-def _import_change(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | None:
-    """Return the imports that only one version of a source has, or None if the imports are equal."""
-    before, after = set(_part_texts(old)), set(_part_texts(new))
+def _compare_imports(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | None:
+    """Return the imports that only one version has, or None if the imports are equal."""
+    before, after = set(_get_texts(old)), set(_get_texts(new))
     removed = [part for part in old if part.text not in after]
     added = [part for part in new if part.text not in before]
     texts = []
     if added:
-        texts.append(phrase("imports added: {imports}", imports=_list_names(f"'{part.text}'" for part in added)))
+        texts.append(phrase("imports added: {imports}", imports=_join_names(f"'{part.text}'" for part in added)))
     if removed:
-        texts.append(phrase("imports removed: {imports}", imports=_list_names(f"'{part.text}'" for part in removed)))
-    return CodeChange(joined(texts, "; "), (added or removed)[0].first, is_old=not added) if texts else None
+        texts.append(phrase("imports removed: {imports}", imports=_join_names(f"'{part.text}'" for part in removed)))
+    return CodeChange(joined(texts, "; "), (added or removed)[0].first_line, is_old=not added) if texts else None
 
 
-def _first_line(parts: Sequence[Part], others: Sequence[Part]) -> int:
+def _find_first_line(parts: Sequence[Part], others: Sequence[Part]) -> int:
     """Return the line of the first statement that differs from the other version."""
     pairs = zip_longest(parts, others)
     return next(
-        (part.first for part, other in pairs if part and (not other or part.text != other.text)), parts[-1].last
+        (part.first_line for part, other in pairs if part and (not other or part.text != other.text)),
+        parts[-1].last_line,
     )
 
 
-def _list_names(names: Iterable[str]) -> Phrase:
+def _join_names(names: Iterable[str]) -> Phrase:
     return joined_first(names, MAX_NAMES)
 
 
-def _part_texts(parts: Sequence[Part]) -> list[str]:
+def _get_texts(parts: Sequence[Part]) -> list[str]:
     return [part.text for part in parts]
 
 
-def _short_name(name: str) -> str:
+def _get_short_name(name: str) -> str:
     return re.split(r"\.|::", name)[-1]
 
 
 def _find_renamed(
     old: Code, new: Code, removed: Sequence[str], added: Sequence[str], lines: _ReportedLines
 ) -> list[tuple[str, str]]:
-    """Return the old and new names of renamed functions: their code is equal, or their class was renamed."""
+    """Return the old and new names of renamed functions.
+
+    Their code is equal, or their class was renamed.
+    """
     pairs = []
-    rest = list(added)
+    remaining = list(added)
     for name in removed:
-        scope, short = name[: -len(_short_name(name))], _short_name(name)
-        same = [candidate for candidate in rest if old.body(name) and old.body(name) == new.body(candidate)]
+        scope, short = name[: -len(_get_short_name(name))], _get_short_name(name)
+        equal_code = [
+            candidate for candidate in remaining if old.get_body(name) and old.get_body(name) == new.get_body(candidate)
+        ]
         is_class_removed = bool(scope) and not any(candidate.startswith(scope) for candidate in new.functions)
-        moved = [
+        in_renamed_class = [
             candidate
-            for candidate in rest
+            for candidate in remaining
             if is_class_removed
-            and _short_name(candidate) == short
-            and (not lines.names(candidate) or lines.renames(name, candidate))
+            and _get_short_name(candidate) == short
+            and (not lines.mentions(candidate) or lines.renames(name, candidate))
             and not any(other.startswith(candidate[: -len(short)] or candidate) for other in old.functions)
         ]
-        best = next((candidate for candidate in [*same, *moved] if _short_name(candidate) == short), None) or next(
-            iter(same), None
-        )
+        best = next(
+            (candidate for candidate in [*equal_code, *in_renamed_class] if _get_short_name(candidate) == short), None
+        ) or next(iter(equal_code), None)
         if best is not None:
             pairs.append((name, best))
-            rest.remove(best)
+            remaining.remove(best)
     return pairs
 
 
-def _with_topic(name: str, names: SourceNames) -> str:
+def _format_function(name: str, names: SourceNames) -> str:
     """Return the name of a function with the topic, service or action that calls it."""
-    found = names.callbacks.get(_short_name(name))
-    if found is None:
+    callback = names.callbacks.get(_get_short_name(name))
+    if callback is None:
         return f"'{name}()'"
-    kind, topic = found
+    kind, topic = callback
     if kind is None:
         return phrase("'{name}()' (callback of a timer)", name=name)
     return phrase("'{name}()' (callback of {kind} '{topic}')", name=name, kind=kind.title, topic=topic)
@@ -205,24 +233,26 @@ class _ReportedLines:
             for is_old in (True, False)
         }
 
-    def names(self, function: str) -> bool:
+    def mentions(self, function: str) -> bool:
         """Return whether a line names a function or its class."""
-        return any(scope in self._names for scope in _enclosing_scopes(function))
+        return any(scope in self._names for scope in _list_scopes(function))
 
     def renames(self, old: str, new: str) -> bool:
         """Return whether a line reports that the class of a function was renamed."""
-        pairs = zip(_enclosing_scopes(old), _enclosing_scopes(new), strict=False)
-        patterns = (rf"'{re.escape(a)}'[^'\n]* renamed to '{re.escape(b)}'" for a, b in pairs)
+        pairs = zip(_list_scopes(old), _list_scopes(new), strict=False)
+        patterns = (
+            rf"'{re.escape(old_scope)}'[^'\n]* renamed to '{re.escape(new_scope)}'" for old_scope, new_scope in pairs
+        )
         return any(re.search(pattern, self._text) for pattern in patterns)
 
     def has_unreported_change(self, old: Sequence[Part], new: Sequence[Part], name: str) -> bool:
         """Return whether the code of a function differs in anything that other lines do not report."""
-        if re.search(rf"'{_constructor_class(name)}': .*\(", self._text):
+        if re.search(rf"'{_get_constructor_class(name)}': .*\(", self._text):
             old, new = old[1:], new[1:]  # a line has the arguments of the constructor
-        before, after = _part_texts(old), _part_texts(new)
+        before, after = _get_texts(old), _get_texts(new)
         if before == after:
             return False
-        if len(before) * len(after) > _MAX_COMPARED:
+        if len(before) * len(after) > _MAX_COMPARED_PAIRS:
             return True
         has_values = name in self._functions
         matcher = SequenceMatcher(None, before, after, autojunk=False)
@@ -234,29 +264,30 @@ class _ReportedLines:
 
     def _reports(self, old: Sequence[Part], new: Sequence[Part], *, has_values: bool) -> bool:
         for parts, is_old in ((old, True), (new, False)):
-            if any(part.first <= line <= part.last for part in parts for line in self._lines[is_old]):
+            if any(part.first_line <= line <= part.last_line for part in parts for line in self._lines[is_old]):
                 return True
             literals = {text for part in parts for match in _LITERAL.finditer(part.text) for text in match.groups()}
             if not literals.isdisjoint(self._names):
                 return True
-        return has_values and [_statement_shape(part.text) for part in old] == [
-            _statement_shape(part.text) for part in new
-        ]
+        return has_values and [_get_shape(part.text) for part in old] == [_get_shape(part.text) for part in new]
 
 
-def _constructor_class(name: str) -> str:
-    """Return the class of a constructor; for other functions, a text that cannot be a class name."""
+def _get_constructor_class(name: str) -> str:
+    """Return a pattern for the class of a constructor.
+
+    The pattern for any other function matches no class.
+    """
     parts = re.split(r"\.|::", name)
     return re.escape(parts[-2]) if len(parts) > 1 and parts[-1] == "__init__" else "-"
 
 
 @lru_cache(maxsize=4096)
-def _statement_shape(text: str) -> str:
+def _get_shape(text: str) -> str:
     """Return the text of a statement with marks for its literals."""
-    return statement_of(cpp_tokens(text)).shape
+    return parse_statement(tokenize_cpp(text)).shape
 
 
-def _enclosing_scopes(name: str) -> Iterator[str]:
+def _list_scopes(name: str) -> Iterator[str]:
     """Yield a name and the names of the enclosing classes."""
     parts = re.split(r"(\.|::)", name)
     for end in range(len(parts), 0, -2):

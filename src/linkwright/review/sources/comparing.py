@@ -1,4 +1,4 @@
-"""Compare the sources of nodes: topics, services, actions, parameters, frames, options and classes."""
+"""Compare the names in both versions of each changed source."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Problem, Subject, SubjectKind
 from linkwright.review.installed_paths import is_exported_header
-from linkwright.review.sources.callbacks import with_same_callback
-from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, comparison_name
-from linkwright.review.sources.changed_values import value_changes
+from linkwright.review.sources.callbacks import pair_by_callback
+from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
+from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
-from linkwright.review.sources.code_changes import code_change
-from linkwright.review.sources.details import detail_changes
-from linkwright.review.sources.name_patterns import pattern_of
+from linkwright.review.sources.code_changes import find_code_change
+from linkwright.review.sources.details import compare_details
+from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
     PYTHON_SUFFIX,
     YES,
@@ -30,27 +30,27 @@ from linkwright.review.sources.names import (
 )
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.reading import is_program_text
-from linkwright.review.sources.reasons import is_used_by_others, removal_reason
-from linkwright.review.sources.shared_constants import users_of_changed_constants
-from linkwright.review.sources.unchanged_sources import user_reason
+from linkwright.review.sources.reasons import find_removal_reason, is_used_by_others
+from linkwright.review.sources.shared_constants import find_constant_users
+from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
-_SKIPPED = frozenset({"setup.py", "conf.py"})
-_MAX_ARGUMENTS = 80
+_SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
+_MAX_ARGUMENT_CHARACTERS = 80
 """The maximum number of characters of shown arguments of an added function or class."""
-_MAX_FUNCTIONS = 3
+_MAX_FUNCTION_CHANGES = 3
 """The maximum number of functions with changed arguments in a file that have lines of their own."""
-_UNITS = re.compile(
+_UNIT_NAMES = re.compile(
     r"\b(?:ros|rospy|rclcpp|rclpy|std|chrono|(?:nano|micro|milli)?seconds|duration|Duration|from_sec|to_sec|n?secs|"
     r"[num]?s|Hz|from_seconds|float|int)\b"
 )
 _MIN_SIMILARITY = 0.6
 """The minimum ratio of equal characters of similar names of the same kind."""
-_MAX_COMPARED = 10_000
+_MAX_COMPARED_PAIRS = 10_000
 """The maximum number of pairs of names among which similar names are searched."""
-_UNTYPED = (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
-"""The kinds whose names are not alike because their types are equal."""
-_DECLARED = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
+_UNTYPED_KINDS = (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
+"""The kinds for which equal types do not suggest a rename."""
+_DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
 
@@ -61,22 +61,22 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     text.
     """
     files = [file for file in changed_files if _is_source(versions, file)]
-    files += [file for file in users_of_changed_constants(versions, files) if _is_source(versions, file)]
+    files += [file for file in find_constant_users(versions, files) if _is_source(versions, file)]
     sides = (
         ChangedSources(versions.old, [file.old_path for file in files]),
         ChangedSources(versions.new, [file.new_path for file in files]),
     )
     for file in files:
-        pair = _Pair(*sides, file)
-        problems = list(pair.problems())
-        changes = list(pair.lost_source()) if problems else list(pair.changes())
+        pair = _SourcePair(*sides, file)
+        problems = list(pair.find_problems())
+        changes = list(pair.find_parse_failure()) if problems else list(pair.find_changes())
         if changes or problems:
             yield Subject(SubjectKind.SOURCE, file.path, file.old_path, file.new_path, changes, problems=problems)
 
 
 def _is_source(versions: Versions, file: ChangedFile) -> bool:
     path = PurePosixPath(file.path)
-    if path.name in _SKIPPED or path.name.startswith(("test_", ".")) or file.is_submodule:
+    if path.name in _SKIPPED_FILES or path.name.startswith(("test_", ".")) or file.is_submodule:
         return False
     if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
         return False
@@ -85,35 +85,35 @@ def _is_source(versions: Versions, file: ChangedFile) -> bool:
 
 
 @dataclass(frozen=True)
-class _Pair:
+class _SourcePair:
     """Both versions of a changed source.
 
     Attributes:
         old: the names of the old version.
         new: the names of the new version.
-        file: the source.
+        file: the paths of the source in both versions.
     """
 
     old: ChangedSources
     new: ChangedSources
     file: ChangedFile
 
-    def changes(self) -> Iterator[Change]:
+    def find_changes(self) -> Iterator[Change]:
         """Yield the differences."""
-        old_names, new_names = self.old.names(self.file.old_path), self.new.names(self.file.new_path)
-        changes = [change for kind in NameKind for change in self._changes_of(kind, old_names, new_names)]
-        changes += self._rate_changes(old_names, new_names)
-        changes += self._import_changes(old_names, new_names)
-        changes += self._undefined_changes(old_names, new_names)
+        old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
+        changes = [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
+        changes += self._compare_rates(old_names, new_names)
+        changes += self._compare_imports(old_names, new_names)
+        changes += self._find_undefined(old_names, new_names)
         if self.file.old_path is not None and self.file.new_path is not None:
             old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
             reported = [str(change.sentence) for change in changes]
-            values = value_changes(old_path, new_path, reported)
-            changes += [self._change(text, span, self.new, None) for text, span in values]
-            changes += self._code_changes(self.file.old_path, self.file.new_path, changes)
+            values = find_value_changes(old_path, new_path, reported)
+            changes += [self._make_change(text, span, self.new, None) for text, span in values]
+            changes += self._compare_code(self.file.old_path, self.file.new_path, changes)
         yield from changes
 
-    def _code_changes(self, old_path: str, new_path: str, reported: Sequence[Change]) -> Iterator[Change]:
+    def _compare_code(self, old_path: str, new_path: str, reported: Sequence[Change]) -> Iterator[Change]:
         """Yield the functions whose code changes, unless other lines report it."""
         old, new = self.old.codes.get(old_path), self.new.codes.get(new_path)
         if not old or not new:
@@ -123,16 +123,16 @@ class _Pair:
             side, path = (self.new, new_path) if code is old else (self.old, old_path)
             return side.has_function(name, code, path)
 
-        change = code_change(old, new, reported, has_moved, self.new.names(new_path))
+        change = find_code_change(old, new, reported, has_moved, self.new.get_names(new_path))
         if change is not None:
             location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
             yield Change(change.text, location=location)
 
-    def problems(self) -> Iterator[Problem]:
-        """Yield the reason why the names of one version are unknown, if the names of the other version are known."""
+    def find_problems(self) -> Iterator[Problem]:
+        """Yield the reason why the names of only one version are unknown."""
         lines = [
-            self.old.names(self.file.old_path).error_line,
-            self.new.names(self.file.new_path).error_line,
+            self.old.get_names(self.file.old_path).error_line,
+            self.new.get_names(self.file.new_path).error_line,
         ]
         if None in (self.file.old_path, self.file.new_path) or bool(lines[0]) == bool(lines[1]):
             return
@@ -144,96 +144,134 @@ class _Pair:
                 phrase("the new version has a syntax error in line {line}; its names are not known", line=lines[1])
             )
 
-    def lost_source(self) -> Iterator[Change]:
-        """Yield the change that the new version cannot be parsed, unless another version of Python may parse it."""
-        names = self.new.names(self.file.new_path)
+    def find_parse_failure(self) -> Iterator[Change]:
+        """Yield a change if no version of Python can parse the new source."""
+        names = self.new.get_names(self.file.new_path)
         if names.error_line and names.is_error_certain:
             text = phrase("cannot be parsed any more")
             reason = phrase("programs that run or import the file fail")
             yield Change(text, Effect.BREAKING, reason, Location(self.file.path, names.error_line, 1))
 
-    def _changes_of(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        before = {comparison_name(item): item for item in old_names.of_kind(kind)}
-        after = {comparison_name(item): item for item in new_names.of_kind(kind)}
+    def _compare_kind(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the changes to the names of a kind."""
+        before = {get_comparison_name(item): item for item in old_names.of_kind(kind)}
+        after = {get_comparison_name(item): item for item in new_names.of_kind(kind)}
         changed = [(item, *detail) for name, item in after.items() if name in before
-                   for detail in detail_changes(before[name], item)]  # fmt: skip
-        yield from self._detail_changes(kind, changed, old_names)
-        is_python = self.file.path.endswith(PYTHON_SUFFIX)
-        path = self.file.path
-        removed = [item for name, item in before.items() if name not in after and self.new.lacks(item, path)]
-        old_path = self.file.old_path or path
-        is_lacking = self.old.lacks
-        if self.file.old_path is None and new_names.makes_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
-            is_lacking = self.old.lacks_in_changed  # what a new node uses matters although another one uses it, too
-        is_only = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
-        added = [item for name, item in after.items() if name not in before and (is_only or is_lacking(item, old_path))]
-        is_told = kind is NameKind.CLASS and is_python
-        if kind in _DECLARED and not is_told and not self._is_interface(old_path):
+                   for detail in compare_details(before[name], item)]  # fmt: skip
+        yield from self._report_details(kind, changed, old_names)
+        if not self._is_reported(kind):
             return
-        if kind is NameKind.IMPORT:
-            if None in (self.file.old_path, self.file.new_path) or not is_installed_package(
-                self.old.version, self.old.package(old_path), old_path
-            ):
-                return
-            removed, added = _other_imports(removed, new_names), _other_imports(added, old_names)
-        if kind in (NameKind.FUNCTION, NameKind.MEMBER) and not is_python:
-            classes = [{item.name for item in names.of_kind(NameKind.CLASS)} for names in (old_names, new_names)]
-            removed = [item for item in removed if _has_class(item, classes[0] & classes[1])]
-            added = [item for item in added if _has_class(item, classes[0] & classes[1])]
-        if kind is NameKind.FUNCTION and is_python:
-            is_installed = is_installed_module(self.old.version, self.old.package(old_path), old_path)
-            plain = old_names.plain_classes & new_names.plain_classes if is_installed else set()
-            removed = [item for item in removed if _is_method_of(item, plain)]
-            added = [item for item in added if _is_method_of(item, plain)]
-        kept = [item for name, item in before.items() if name not in after and self.new.keeps(item, path)]
-        used = [item for name, item in after.items() if name not in before and self.old.keeps(item, old_path)]
-        pairs = with_same_callback([*removed, *kept], [*added, *used], old_names, new_names)
-        if kind is NameKind.FUNCTION:
-            pairs = list(self._with_same_code(removed, added))
-        taken = [item for pair in pairs for item in pair]
-        rest = [[item for item in items if item not in taken] for items in ([*removed, *kept], [*added, *used])]
-        for old_item, new_item in [*pairs, *_pair_renamed(*rest)]:
-            text = phrase(
-                "{kind} {old} renamed to {new}", kind=kind.title, old=_name_text(old_item), new=_name_text(new_item)
-            )
-            is_same = kind is NameKind.FRAME and old_item.name.strip("/") == new_item.name.strip("/")
-            # tf takes both names for the same
-            reason = None if is_same or old_item in kept else self._rename_reason(old_item, new_item, old_names)
-            yield self._change(text, new_item.span, self.new, reason)
+        path, old_path = self.file.path, self.file.old_path or self.file.path
+        only_old = {name: item for name, item in before.items() if name not in after}
+        only_new = {name: item for name, item in after.items() if name not in before}
+        removed = [item for item in only_old.values() if self.new.lacks(item, path)]
+        is_new_node = self.file.old_path is None and new_names.makes_node
+        lacks = self.old.lacks
+        if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
+            lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it
+        is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
+        added = [item for item in only_new.values() if is_sole_node or lacks(item, old_path)]
+        removed, added = self._select_reported(kind, removed, added, old_names, new_names)
+        # a different source of the package still has these names, or already had them
+        remaining_old = [item for item in only_old.values() if self.new.has_in_unchanged(item, path)]
+        existing_new = [item for item in only_new.values() if self.old.has_in_unchanged(item, old_path)]
+        pairs = self._pair_names(kind, [*removed, *remaining_old], [*added, *existing_new])
+        for old_item, new_item in pairs:
+            is_harmless = old_item in remaining_old or _is_same_frame(old_item, new_item)
+            reason = None if is_harmless else self._find_rename_reason(old_item, new_item, old_names)
+            yield self._make_change(_format_rename(old_item, new_item), new_item.span, self.new, reason)
             removed = [item for item in removed if item is not old_item]
             added = [item for item in added if item is not new_item]
-        yield from self._expression_changes(kind, removed, added)
-        yield from self._lone_changes(kind, removed, added, old_names)
+        yield from self._compare_expressions(kind, removed, added)
+        yield from self._report_unpaired(kind, removed, added, old_names)
 
-    def _with_same_code(
+    def _is_reported(self, kind: NameKind) -> bool:
+        """Return whether removed and added names of a kind matter outside of the file."""
+        old_path = self.file.old_path or self.file.path
+        is_python_class = kind is NameKind.CLASS and self.file.path.endswith(PYTHON_SUFFIX)
+        if kind in _DECLARED_KINDS and not is_python_class:
+            return self._is_interface(old_path)
+        if kind is NameKind.IMPORT:
+            has_both = self.file.old_path is not None and self.file.new_path is not None
+            return has_both and is_installed_package(self.old.version, self.old.find_package(old_path), old_path)
+        return True
+
+    def _select_reported(
+        self,
+        kind: NameKind,
+        removed: list[SourceName],
+        added: list[SourceName],
+        old_names: SourceNames,
+        new_names: SourceNames,
+    ) -> tuple[list[SourceName], list[SourceName]]:
+        """Return the removed and added names without those of classes that only one version has."""
+        if kind is NameKind.IMPORT:
+            return _drop_defined_imports(removed, new_names), _drop_defined_imports(added, old_names)
+        is_python = self.file.path.endswith(PYTHON_SUFFIX)
+        if kind not in (NameKind.FUNCTION, NameKind.MEMBER) or (is_python and kind is NameKind.MEMBER):
+            return removed, added
+        if is_python:
+            path = self.file.old_path or self.file.path
+            is_installed = is_installed_module(self.old.version, self.old.find_package(path), path)
+            common = old_names.self_contained_classes & new_names.self_contained_classes if is_installed else set()
+            belongs = _is_method_of
+        else:
+            old_classes, new_classes = (
+                {item.name for item in names.of_kind(NameKind.CLASS)} for names in (old_names, new_names)
+            )
+            common, belongs = old_classes & new_classes, _has_class
+        return [item for item in removed if belongs(item, common)], [item for item in added if belongs(item, common)]
+
+    def _pair_names(
+        self, kind: NameKind, old_items: Sequence[SourceName], new_items: Sequence[SourceName]
+    ) -> list[tuple[SourceName, SourceName]]:
+        """Return the pairs of an old and a new name of the same thing."""
+        if kind is NameKind.FUNCTION:
+            pairs = list(self._pair_by_code(old_items, new_items))
+        else:
+            old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
+            pairs = pair_by_callback(old_items, new_items, old_names, new_names)
+        paired = [item for pair in pairs for item in pair]
+        unpaired_old, unpaired_new = (
+            [item for item in items if item not in paired] for items in (old_items, new_items)
+        )
+        return [*pairs, *_pair_similar(unpaired_old, unpaired_new)]
+
+    def _pair_by_code(
         self, removed: Sequence[SourceName], added: Sequence[SourceName]
     ) -> Iterator[tuple[SourceName, SourceName]]:
-        """Yield the removed and added functions with equal arguments and code, unless several are alike."""
+        """Yield the removed and added functions with equal arguments and code.
+
+        Functions with several matches are left out.
+        """
         old, new = self.old.codes.get(self.file.old_path or ""), self.new.codes.get(self.file.new_path or "")
         if old is None or new is None:
             return
         for item in removed:
-            body = old.body(item.name)
-            same = [other for other in added if other.details == item.details and new.body(other.name) == body]
-            if body and len(same) == 1 and sum(old.body(other.name) == body for other in removed) == 1:
-                yield item, same[0]
+            body = old.get_body(item.name)
+            matching = [other for other in added if other.details == item.details and new.get_body(other.name) == body]
+            if body and len(matching) == 1 and sum(old.get_body(other.name) == body for other in removed) == 1:
+                yield item, matching[0]
 
-    def _detail_changes(
+    def _report_details(
         self, kind: NameKind, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]], old_names: SourceNames
     ) -> Iterator[Change]:
-        """Yield the changes of names that both versions have. Functions count only if other files can call them."""
+        """Yield the changes to names that both versions have.
+
+        Functions count only if other files can call them.
+        """
         is_program = self.file.path.endswith(PYTHON_SUFFIX) and old_names.is_program
         is_called = not is_program and self._is_interface(self.file.old_path or self.file.path)
         if kind in (NameKind.FUNCTION, NameKind.MEMBER) and not is_called:
             return
-        if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTIONS:
-            yield self._merged_functions(changed)
+        if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTION_CHANGES:
+            yield self._merge_functions(changed)
             return
         for item, text, reason in changed:
             is_breaking = is_called or kind is not NameKind.CLASS
-            yield self._change(text, item.span, self.new, reason if is_breaking else None)
+            yield self._make_change(text, item.span, self.new, reason if is_breaking else None)
 
-    def _merged_functions(self, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]]) -> Change:
+    def _merge_functions(self, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]]) -> Change:
         """Return one change for many functions whose arguments changed."""
         names = joined_first(dict.fromkeys(item.name for item, _, _ in changed), MAX_NAMES)
         text = phrase("functions with other arguments: {names}", names=names)
@@ -242,130 +280,160 @@ class _Pair:
             reason = phrase("code that calls them with the old arguments does not build")
             if self.file.path.endswith(PYTHON_SUFFIX):
                 reason = phrase("programs that call them with the old arguments fail")
-        return self._change(text, changed[0][0].span, self.new, reason)
+        return self._make_change(text, changed[0][0].span, self.new, reason)
 
     def _is_interface(self, path: str) -> bool:
-        """Return whether other packages can use the definitions of a file: it is a module or an installed header."""
-        package = self.old.package(path)
+        """Return whether other packages can use the definitions of a file.
+
+        That is, whether it is a module of a package or an installed header.
+        """
+        package = self.old.find_package(path)
         if path.endswith(PYTHON_SUFFIX):
             return package is not None and (self.old.version.file(path).parent / "__init__.py").is_file()
         return package is not None and is_exported_header(self.old.version, package, path)
 
-    def _lone_changes(
+    def _report_unpaired(
         self, kind: NameKind, removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames
     ) -> Iterator[Change]:
         if not is_used_by_others(kind, self.file.path, old_names):
             return
         if added and (kind not in (NameKind.FUNCTION, NameKind.MEMBER) or self.file.old_path is not None):
-            text = phrase("{kind} added: {names}", kind=kind.plural, names=_names_text(added))
-            reason = _required_reason(added) if self.file.old_path is not None else None
-            yield self._change(text, added[0].span, self.new, reason)
-        hidden = self.new.names(self.file.new_path).hidden
-        lost = [item for item in removed if item.name not in hidden]
+            text = phrase("{kind} added: {names}", kind=kind.plural, names=_format_names(added))
+            reason = _find_required_reason(added) if self.file.old_path is not None else None
+            yield self._make_change(text, added[0].span, self.new, reason)
+        non_public = self.new.get_names(self.file.new_path).non_public
+        lost = [item for item in removed if item.name not in non_public]
         if lost:
-            text = phrase("{kind} removed: {names}", kind=kind.plural, names=_names_text(lost))
-            yield self._change(text, lost[0].span, self.old, self._removal_reason(lost, old_names))
-        kept = [item for item in removed if item.name in hidden]
-        if kept:
-            text = phrase("{kind} not public any more: {names}", kind=kind.plural, names=_names_text(kept))
-            yield self._change(text, kept[0].span, self.old, self._removal_reason(kept, old_names))
+            text = phrase("{kind} removed: {names}", kind=kind.plural, names=_format_names(lost))
+            yield self._make_change(text, lost[0].span, self.old, self._find_removal_reason(lost, old_names))
+        newly_hidden = [item for item in removed if item.name in non_public]
+        if newly_hidden:
+            text = phrase("{kind} not public any more: {names}", kind=kind.plural, names=_format_names(newly_hidden))
+            yield self._make_change(
+                text, newly_hidden[0].span, self.old, self._find_removal_reason(newly_hidden, old_names)
+            )
 
-    def _removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
+    def _find_removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self._is_interface(path):
             return None
-        reason = removal_reason(items, names, path)
-        users = ((item, self.new.user(item, path)) for item in (items if reason is not None else ()))
-        return next((user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
+        reason = find_removal_reason(items, names, path)
+        users = ((item, self.new.find_user(item, path)) for item in (items if reason is not None else ()))
+        return next((make_user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
 
-    def _rename_reason(self, old_item: SourceName, new_item: SourceName, names: SourceNames) -> Phrase | None:
-        """Return the reason why a new name is breaking. For a client, it is if the package serves only the old name."""
-        reason = self._removal_reason([old_item], names)
+    def _find_rename_reason(self, old_item: SourceName, new_item: SourceName, names: SourceNames) -> Phrase | None:
+        """Return the reason why a new name is breaking, or None.
+
+        A new name of a client is breaking if the package serves only the old one.
+        """
+        reason = self._find_removal_reason([old_item], names)
         if reason is not None or old_item.kind not in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
             return reason
         path = self.file.path
-        server = None if self.new.user(new_item, path) is not None else self.new.user(old_item, path)
-        return None if server is None else user_reason(old_item.kind, server, old_item.name)
+        server = None if self.new.find_user(new_item, path) is not None else self.new.find_user(old_item, path)
+        return None if server is None else make_user_reason(old_item.kind, server, old_item.name)
 
     # --- expressions ------------------------------------------------------------------------------------------------
 
-    def _expression_changes(
+    def _compare_expressions(
         self, kind: NameKind, removed: list[SourceName], added: list[SourceName]
     ) -> Iterator[Change]:
-        """Yield the names that change between literal and expression, and remove them from the lists."""
-        old_names, new_names = self.old.names(self.file.old_path), self.new.names(self.file.new_path)
+        """Yield the names that change between literal and expression.
+
+        These names are removed from the lists.
+        """
+        old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
         sides = [[item for item in names.expressions if item.kind is kind] for names in (old_names, new_names)]
         removed_expressions = [item for item in sides[0] if all(item.name != other.name for other in sides[1])]
         added_expressions = [item for item in sides[1] if all(item.name != other.name for other in sides[0])]
-        yield from self._expression_types(*sides)
-        for item in list(removed_expressions):  # another expression for the same thing
-            same = [expression for expression in added_expressions if expression.type == item.type]
-            if same:
-                other = max(same, key=lambda expression: _name_similarity(item, expression))
+        yield from self._compare_expression_types(*sides)
+        for item in list(removed_expressions):  # a different expression for the same name
+            matching = [expression for expression in added_expressions if expression.type == item.type]
+            if matching:
+                other = max(matching, key=lambda expression: _compute_similarity(item, expression))
                 removed_expressions.remove(item)
                 added_expressions.remove(other)
-                yield from self._changed_pattern(item, other)
+                yield from self._compare_patterns(item, other)
         for item, other in _take_pairs(removed, added_expressions):
             text = phrase(
-                "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_name_text(item), new=other.name
+                "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_format_name(item), new=other.name
             )
-            yield self._change(text, other.span, self.new, None)
+            yield self._make_change(text, other.span, self.new, None)
         for item, other in _take_pairs(added, removed_expressions):
             text = phrase(
-                "{kind} {name} had a computed name: {old}", kind=kind.title, name=_name_text(item), old=other.name
+                "{kind} {name} had a computed name: {old}", kind=kind.title, name=_format_name(item), old=other.name
             )
-            yield self._change(text, item.span, self.new, None)
-        added_expressions = [item for item in added_expressions if self.new.count(item) > self.old.count(item)]
-        removed_expressions = [item for item in removed_expressions if self.old.count(item) > self.new.count(item)]
+            yield self._make_change(text, item.span, self.new, None)
+        added_expressions = [
+            item for item in added_expressions if self.new.count_expressions(item) > self.old.count_expressions(item)
+        ]
+        removed_expressions = [
+            item for item in removed_expressions if self.old.count_expressions(item) > self.new.count_expressions(item)
+        ]
         if added_expressions:
             text = phrase(
-                "{kind} with computed names added: {names}", kind=kind.plural, names=_names_text(added_expressions)
+                "{kind} with computed names added: {names}", kind=kind.plural, names=_format_names(added_expressions)
             )
-            yield self._change(text, added_expressions[0].span, self.new, None)
+            yield self._make_change(text, added_expressions[0].span, self.new, None)
             removed.clear()
         if removed_expressions:
             text = phrase(
-                "{kind} with computed names removed: {names}", kind=kind.plural, names=_names_text(removed_expressions)
+                "{kind} with computed names removed: {names}",
+                kind=kind.plural,
+                names=_format_names(removed_expressions),
             )
-            yield self._change(text, removed_expressions[0].span, self.old, None)
+            yield self._make_change(text, removed_expressions[0].span, self.old, None)
             added.clear()
 
-    def _expression_types(self, old: Sequence[SourceName], new: Sequence[SourceName]) -> Iterator[Change]:
-        """Yield the names with the same expression but another type, if only one name has the expression."""
-        for item in new:
-            same = [[expression for expression in items if expression.name == item.name] for items in (old, new)]
-            if len(same[0]) == len(same[1]) == 1 and same[0][0].type != item.type and same[0][0].type and item.type:
-                ((_, text, reason),) = ((item, *change) for change in detail_changes(same[0][0], item))
-                yield self._change(text, item.span, self.new, reason)
+    def _compare_expression_types(self, old: Sequence[SourceName], new: Sequence[SourceName]) -> Iterator[Change]:
+        """Yield the names whose expression is unchanged but whose type differs.
 
-    def _changed_pattern(self, old: SourceName, new: SourceName) -> Iterator[Change]:
+        Expressions of several names are left out.
+        """
+        for item in new:
+            matching = [[expression for expression in items if expression.name == item.name] for items in (old, new)]
+            if (
+                len(matching[0]) == len(matching[1]) == 1
+                and matching[0][0].type != item.type
+                and matching[0][0].type
+                and item.type
+            ):
+                ((_, text, reason),) = ((item, *change) for change in compare_details(matching[0][0], item))
+                yield self._make_change(text, item.span, self.new, reason)
+
+    def _compare_patterns(self, old: SourceName, new: SourceName) -> Iterator[Change]:
         """Yield the change of the texts in an expression for a name."""
-        patterns = pattern_of(old.name), pattern_of(new.name)
+        patterns = extract_pattern(old.name), extract_pattern(new.name)
         if None in patterns or patterns[0] == patterns[1]:
             return
-        text = phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=_name_text(old), new=_name_text(new))
         reason = phrase("the name is a pattern; programs that use one of the old names do not find it")
-        is_lost = self._removal_reason([old], self.old.names(self.file.old_path)) is not None
-        yield self._change(text, new.span, self.new, reason if is_lost else None)
+        is_lost = self._find_removal_reason([old], self.old.get_names(self.file.old_path)) is not None
+        yield self._make_change(_format_rename(old, new), new.span, self.new, reason if is_lost else None)
 
-    def _rate_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changed rates and periods, if both versions have equally many, and all rates of a new node."""
+    def _compare_rates(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the changed rates and periods, and all rates of a new node.
+
+        Rates are compared only if both versions have the same number.
+        """
         old_rates, new_rates = old_names.rates, new_names.rates
         if self.file.old_path is None and new_rates and new_names.makes_node:
             texts = joined_first(dict.fromkeys(text for text, _ in new_rates), MAX_NAMES)
-            yield self._change(phrase("rates and periods: {texts}", texts=texts), new_rates[0][1], self.new, None)
+            yield self._make_change(phrase("rates and periods: {texts}", texts=texts), new_rates[0][1], self.new, None)
         if len(old_rates) != len(new_rates):
             return
         for (old_text, _), (new_text, span) in zip(old_rates, new_rates, strict=True):
             is_same_call = old_text.partition("(")[0] == new_text.partition("(")[0]
             if is_same_call and old_text != new_text and (_is_number(old_text) or _is_number(new_text)):
                 text = phrase("rate or period: {old} -> {new}", old=old_text, new=new_text)
-                yield self._change(text, span, self.new, None)
+                yield self._make_change(text, span, self.new, None)
 
-    def _import_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield new absolute imports of modules of the same package. They fail once the package is installed."""
+    def _compare_imports(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield new absolute imports of modules of the same package.
+
+        They fail once the package is installed.
+        """
         path = self.file.new_path or ""
-        package = self.new.package(path)
+        package = self.new.find_package(path)
         if package is None or not is_installed_package(self.new.version, package, path):
             return
         before = {name for name, _ in old_names.absolute_imports}
@@ -373,21 +441,23 @@ class _Pair:
             name, span = new_names.absolute_imports[index]
             if name not in before:
                 text = phrase("absolute import of '{name}', a module of the same package", name=name)
-                yield self._change(text, span, self.new, phrase("the package cannot be imported once it is installed"))
+                yield self._make_change(
+                    text, span, self.new, phrase("the package cannot be imported once it is installed")
+                )
 
-    def _undefined_changes(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+    def _find_undefined(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the names and methods that are still used but no longer defined or imported."""
-        for name, span in new_names.undefined.items() if self.file.old_path is not None else ():
-            if name in old_names.bound:
+        for name, span in new_names.undefined_names.items() if self.file.old_path is not None else ():
+            if name in old_names.bound_names:
                 text = phrase("'{name}' is used, but nothing defines or imports it any more", name=name)
-                yield self._change(text, span, self.new, phrase("the code that uses the name fails"))
+                yield self._make_change(text, span, self.new, phrase("the code that uses the name fails"))
         for name, span in new_names.undefined_methods.items():
             if name in old_names.attributes:
                 text = phrase("calls its method '{name}', which nothing defines any more", name=name)
-                yield self._change(text, span, self.new, phrase("the call fails"))
+                yield self._make_change(text, span, self.new, phrase("the call fails"))
 
     @staticmethod
-    def _change(text: Phrase, span: Span, side: ChangedSources, reason: Phrase | None) -> Change:
+    def _make_change(text: Phrase, span: Span, side: ChangedSources, reason: Phrase | None) -> Change:
         path = side.version.relative(span.file)
         location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
         return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
@@ -396,22 +466,31 @@ class _Pair:
 def _is_number(rate: str) -> bool:
     """Return whether the argument of a rate has no names except units."""
     argument = rate.partition("(")[2]
-    return re.search(r"[A-Za-z_]{2,}", _UNITS.sub("", re.sub(r"(\d)[a-z]+", r"\1", argument))) is None
+    return re.search(r"[A-Za-z_]{2,}", _UNIT_NAMES.sub("", re.sub(r"(\d)[a-z]+", r"\1", argument))) is None
 
 
-def _name_text(item: SourceName) -> str:
-    """Return a name with its message type, the default of a parameter, or the arguments of a function."""
+def _format_name(item: SourceName) -> str:
+    """Return a name with its type, default or arguments."""
     arguments = dict(item.details).get(Detail.ARGUMENTS, "()")
-    if arguments != "()" and len(arguments) <= _MAX_ARGUMENTS:
+    if arguments != "()" and len(arguments) <= _MAX_ARGUMENT_CHARACTERS:
         return f"'{item.name}' {arguments}"
     return f"'{item.name}' ({item.type})" if item.type else f"'{item.name}'"
 
 
-def _names_text(items: Sequence[SourceName]) -> Phrase:
-    return joined_first(map(_name_text, items), MAX_NAMES)
+def _format_rename(old: SourceName, new: SourceName) -> Phrase:
+    return phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=_format_name(old), new=_format_name(new))
 
 
-def _required_reason(items: Sequence[SourceName]) -> Phrase | None:
+def _is_same_frame(old: SourceName, new: SourceName) -> bool:
+    """Return whether two names mean the same frame. tf ignores slashes at the ends of a name."""
+    return old.kind is NameKind.FRAME and old.name.strip("/") == new.name.strip("/")
+
+
+def _format_names(items: Sequence[SourceName]) -> Phrase:
+    return joined_first(map(_format_name, items), MAX_NAMES)
+
+
+def _find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
     """Return the reason why added names are breaking, or None if none of them is required."""
     names = [item.name for item in items if (Detail.REQUIRED, YES) in item.details]
     if not names:
@@ -421,25 +500,28 @@ def _required_reason(items: Sequence[SourceName]) -> Phrase | None:
     return phrase("callers that do not pass '{name}' get an error", name=joined_first(names, MAX_NAMES))
 
 
-def _other_imports(items: Sequence[SourceName], names: SourceNames) -> list[SourceName]:
-    """Return the imported names that the other version of the file neither defines nor may import by ``*``."""
+def _drop_defined_imports(items: Sequence[SourceName], names: SourceNames) -> list[SourceName]:
+    """Return the imported names that the other version does not define.
+
+    The result is empty if that version imports all names of a module.
+    """
     defined = {item.name for kind in (NameKind.CLASS, NameKind.FUNCTION) for item in names.of_kind(kind)}
-    return [] if names.has_star else [item for item in items if item.name not in defined]
+    return [] if names.has_star_import else [item for item in items if item.name not in defined]
 
 
 def _has_class(function: SourceName, classes: Collection[str]) -> bool:
-    """Return whether a C++ function is in one of the given classes or in no class."""
+    """Return whether a C++ function belongs to one of the given classes or to none."""
     names = function.name.split("::")[:-1]
     return not names or names[-1] in classes
 
 
 def _is_method_of(function: SourceName, classes: Collection[str]) -> bool:
-    """Return whether a Python function is a method of one of the given classes or no method."""
+    """Return whether a Python function is a method of a given class or a plain function."""
     class_name, _, _ = function.name.rpartition(".")
     return not class_name or class_name in classes
 
 
-def _pair_renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:
+def _pair_similar(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:
     """Return the pairs of a removed and an added name of the same thing.
 
     A pair is a single removed and added name that are alike, the only names of a type, or the most similar names.
@@ -447,32 +529,36 @@ def _pair_renamed(removed: Sequence[SourceName], added: Sequence[SourceName]) ->
     pairs: list[tuple[SourceName, SourceName]] = []
     if len(removed) == len(added) == 1:
         (old,), (new,) = removed, added
-        has_types = old.kind not in _UNTYPED
-        is_same = old.type == new.type and (has_types or bool(old.type))
-        return [(old, new)] if is_same or _name_similarity(old, new) >= _MIN_SIMILARITY else []
-    rest = list(added)
-    is_compared = len(removed) * len(added) <= _MAX_COMPARED
+        has_types = old.kind not in _UNTYPED_KINDS
+        has_equal_type = old.type == new.type and (has_types or bool(old.type))
+        return [(old, new)] if has_equal_type or _compute_similarity(old, new) >= _MIN_SIMILARITY else []
+    unpaired = list(added)
+    is_compared = len(removed) * len(added) <= _MAX_COMPARED_PAIRS
     for item in removed:
-        similar = [candidate for candidate in rest if _has_compatible_type(item, candidate)] if is_compared else []
-        candidates = [candidate for candidate in similar if _name_similarity(item, candidate) >= _MIN_SIMILARITY]
-        same = [
-            [candidate for candidate in items if candidate.type == item.type and item.type] for items in (removed, rest)
+        similar = [candidate for candidate in unpaired if _has_compatible_type(item, candidate)] if is_compared else []
+        candidates = [candidate for candidate in similar if _compute_similarity(item, candidate) >= _MIN_SIMILARITY]
+        same_type = [
+            [candidate for candidate in items if candidate.type == item.type and item.type]
+            for items in (removed, unpaired)
         ]
         is_typed = item.kind not in (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.MEMBER)
-        if is_typed and len(same[0]) == len(same[1]) == 1:
-            candidates = same[1]
+        if is_typed and len(same_type[0]) == len(same_type[1]) == 1:
+            candidates = same_type[1]
         if candidates:
-            best = max(candidates, key=lambda candidate: _name_similarity(item, candidate))
+            best = max(candidates, key=lambda candidate: _compute_similarity(item, candidate))
             pairs.append((item, best))
-            rest.remove(best)
+            unpaired.remove(best)
     return pairs
 
 
 def _take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> Iterator[tuple[SourceName, SourceName]]:
-    """Remove the names and expressions that are probably the same thing from both lists, and yield them as pairs."""
+    """Yield the pairs of a name and an expression that probably mean the same.
+
+    They are removed from both lists.
+    """
     for item in list(literals):
-        is_only = len(literals) == len(expressions) == 1
-        other = next((expression for expression in expressions if is_only or expression.type == item.type), None)
+        is_only_pair = len(literals) == len(expressions) == 1
+        other = next((expression for expression in expressions if is_only_pair or expression.type == item.type), None)
         if other is not None:
             literals.remove(item)
             expressions.remove(other)
@@ -483,6 +569,6 @@ def _has_compatible_type(old: SourceName, new: SourceName) -> bool:
     return old.type == new.type or not old.type or not new.type
 
 
-def _name_similarity(old: SourceName, new: SourceName) -> float:
+def _compute_similarity(old: SourceName, new: SourceName) -> float:
     old_name, new_name = (item.name.rpartition("::")[2].casefold() for item in (old, new))
     return SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()

@@ -8,13 +8,13 @@ from functools import cached_property
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
-from linkwright.review.sources.cpp_callbacks import message_type
-from linkwright.review.sources.cpp_functions import DeclaredFunction, declared_members, read_declared_functions
-from linkwright.review.sources.cpp_members import header_texts, made_members
-from linkwright.review.sources.name_patterns import format_of
+from linkwright.review.sources.cpp_callbacks import find_message_type
+from linkwright.review.sources.cpp_functions import DeclaredFunction, read_declared_functions, read_declared_members
+from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
+from linkwright.review.sources.name_patterns import find_format
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
-from linkwright.review.sources.parameter_helpers import helper_calls, is_parameter_name, read_elements
-from linkwright.review.sources.shared_constants import header_constants
+from linkwright.review.sources.parameter_helpers import find_helper_calls, is_parameter_name, read_elements
+from linkwright.review.sources.shared_constants import read_header_constants
 
 _COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
 _KINDS = {
@@ -44,18 +44,18 @@ _CALL = re.compile(
     rf"(?P<scope>\brclcpp_action::|\bros::param::|[.>]\s*|\b)(?P<name>{'|'.join(_KINDS)}|(?<=ros::param::)get)"
     r"\s*(?=[<(])"
 )
-_ROS1 = frozenset(
+_ROS1_CALLS = frozenset(
     {
         *("advertise", "advertiseCamera", "advertiseService", "subscribe", "subscribeCamera", "serviceClient"),
         *("param", "getParam", "getParamCached", "get", "lookupTransform", "waitForTransform", "canTransform"),
     }
 )
 """The methods whose names also occur in other libraries, so that only literal names count."""
-_COMMUNICATION = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT)
-_NODE_FIRST = frozenset({"declare_parameter_if_not_declared"})
+_COMMUNICATION_KINDS = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT)
+_NODE_FIRST_CALLS = frozenset({"declare_parameter_if_not_declared"})
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
-_OUTPUTS = frozenset({"getParam", "getParamCached", "get"})
-_ROS2_PARAMETERS = frozenset({"declare_parameter", "auto_declare", "declare_parameter_if_not_declared"})
+_OUTPUT_CALLS = frozenset({"getParam", "getParamCached", "get"})
+_ROS2_PARAMETER_CALLS = frozenset({"declare_parameter", "auto_declare", "declare_parameter_if_not_declared"})
 _NODE = re.compile(
     r"(?::\s*|,\s*)(?:rclcpp(?:_lifecycle)?::)?(?:Lifecycle)?Node\s*\(|"
     r"\brclcpp(?:_lifecycle)?::(?:Lifecycle)?Node::make_shared\s*\(|"
@@ -137,7 +137,7 @@ class _Reader:
         for match in _RECONFIGURATION.finditer(text):
             self._add(NameKind.RECONFIGURATION, match["name"], match.start("name"), match.end("name"))
         for match in _COMPONENT.finditer(text):
-            for begin, end in list(_argument_offsets(text, match.end() - 1))[:1]:
+            for begin, end in list(_find_arguments(text, match.end() - 1))[:1]:
                 self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)
         for match in _CLASS.finditer(text):
             self._add(NameKind.CLASS, match["name"], match.start("name"), match.end("name"))
@@ -145,7 +145,10 @@ class _Reader:
         self._names.is_program = re.search(r"\bint\s+main\s*\(", text) is not None
 
     def _read_functions(self) -> None:
-        """Add the functions of a header. The type of a function is the list of parameters of each overload."""
+        """Add the functions and members of a header.
+
+        The type of a function is the list of parameters of each overload.
+        """
         if PurePosixPath(self._source.name).suffix not in HEADER_SUFFIXES:
             return
         overloads: dict[str, list[DeclaredFunction]] = {}
@@ -159,11 +162,14 @@ class _Reader:
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
             start = self._text.find(name.rpartition("::")[2], functions[0].start)
             self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
-        for member in declared_members(self._text):
+        for member in read_declared_members(self._text):
             end = member.start + len(member.name.rpartition("::")[2])
             self._add(NameKind.MEMBER, member.name, member.start, end, member.type)
-        hidden = (read_declared_functions(self._text, is_public=False), declared_members(self._text, is_public=False))
-        self._names.hidden = frozenset(item.name for items in hidden for item in items)
+        non_public = (
+            read_declared_functions(self._text, is_public=False),
+            read_declared_members(self._text, is_public=False),
+        )
+        self._names.non_public = frozenset(item.name for items in non_public for item in items)
 
     def _read_call(self, match: re.Match[str]) -> None:
         text, function = self._text, match["name"]
@@ -173,7 +179,7 @@ class _Reader:
             kind = NameKind.ACTION_CLIENT
         start, type_name = match.end(), ""
         if text[start] == "<":
-            end = _closing_offset(text, start)
+            end = _find_closing_bracket(text, start)
             type_name = " ".join(text[start + 1 : end].split())
             if function == "advertiseService":
                 type_name = type_name.partition(",")[0].removesuffix("::Request")
@@ -182,84 +188,105 @@ class _Reader:
         if start < 0 or text[start : start + 1] != "(":
             return
         if function == "param" and not type_name and not match["scope"].strip():
-            return  # a function of another name
-        arguments = list(_argument_offsets(text, start))
+            return  # a different function with the same name
+        arguments = list(_find_arguments(text, start))
         if kind is NameKind.FRAME_LOOKUP:
             for begin, end in arguments[:2]:
                 self._add_literal(kind, begin, end)
             return
-        named = arguments[1:2] if function in _NODE_FIRST else arguments[:1]
-        if named and kind in _COMMUNICATION and self._add_formatted(kind, type_name, *named[0]):
+        name_arguments = arguments[1:2] if function in _NODE_FIRST_CALLS else arguments[:1]
+        if (
+            name_arguments
+            and kind in _COMMUNICATION_KINDS
+            and self._add_format_pattern(kind, type_name, *name_arguments[0])
+        ):
             return
-        candidates = arguments if is_action else named
-        found = next(((begin, end) for begin, end in candidates if self._literal_text(begin, end) is not None), None)
-        if found is not None:
+        candidates = arguments if is_action else name_arguments
+        name_offsets = next(
+            ((begin, end) for begin, end in candidates if self._get_literal(begin, end) is not None), None
+        )
+        if name_offsets is not None:
             receiver = _RECEIVER.search(text, max(0, match.start("name") - 80), match.start("name"))
-            namespace = self._namespaces.get(receiver["name"], "") if receiver and function in _ROS1 else ""
-            self._add_called(kind, function, type_name, arguments, found, namespace)
-        elif candidates and (function not in _ROS1 or (type_name and kind is not NameKind.PARAMETER)):
+            namespace = self._namespaces.get(receiver["name"], "") if receiver and function in _ROS1_CALLS else ""
+            self._add_named_call(kind, function, type_name, arguments, name_offsets, namespace)
+        elif candidates and (function not in _ROS1_CALLS or (type_name and kind is not NameKind.PARAMETER)):
             begin, end = candidates[0] if not is_action else candidates[min(1, len(candidates) - 1)]
-            expression = SourceName(kind, " ".join(text[begin:end].split()), type_name, self._span(begin, end))
+            expression = SourceName(kind, " ".join(text[begin:end].split()), type_name, self._make_span(begin, end))
             self._names.expressions.append(expression)
 
-    def _add_formatted(self, kind: NameKind, type_name: str, begin: int, end: int) -> bool:
-        """Add the pattern of a name that a call of ``snprintf`` writes, and return whether there is one."""
+    def _add_format_pattern(self, kind: NameKind, type_name: str, begin: int, end: int) -> bool:
+        """Add the pattern of a name that ``snprintf`` writes.
+
+        Returns whether there is one.
+        """
         variable = _VARIABLE.fullmatch(self._text[begin:end])
-        pattern = None if variable is None else format_of(self._text[:begin], variable["name"])
+        pattern = None if variable is None else find_format(self._text[:begin], variable["name"])
         if pattern is None:
             return False
-        self._names.expressions.append(SourceName(kind, pattern, type_name, self._span(begin, end)))
+        self._names.expressions.append(SourceName(kind, pattern, type_name, self._make_span(begin, end)))
         return True
 
-    def _add_called(
+    def _add_named_call(
         self,
         kind: NameKind,
         function: str,
         type_name: str,
         arguments: list[tuple[int, int]],
-        found: tuple[int, int],
+        name_offsets: tuple[int, int],
         namespace: str,
     ) -> None:
         details: list[tuple[Detail, str]] = []
-        others = [self._text[begin:end].strip() for begin, end in arguments[1:]]
+        other_arguments = [self._text[begin:end].strip() for begin, end in arguments[1:]]
         if kind is NameKind.PARAMETER:
             if type_name:
-                details.append((Detail.VALUE_TYPE if function in _ROS2_PARAMETERS else Detail.READ_AS, type_name))
-            type_name = "" if function in _OUTPUTS else self._literal_default(function, arguments)
-        elif kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION) and others and _QOS.fullmatch(others[0]):
-            details.append((Detail.QUEUE if function in _ROS1 else Detail.QOS, " ".join(others[0].split())))
-        if kind is NameKind.PUBLISHER and function in _ROS1 and others[-1:] == ["true"]:
+                details.append((Detail.VALUE_TYPE if function in _ROS2_PARAMETER_CALLS else Detail.READ_AS, type_name))
+            type_name = "" if function in _OUTPUT_CALLS else self._find_literal_default(function, arguments)
+        elif (
+            kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION)
+            and other_arguments
+            and _QOS.fullmatch(other_arguments[0])
+        ):
+            details.append(
+                (Detail.QUEUE if function in _ROS1_CALLS else Detail.QOS, " ".join(other_arguments[0].split()))
+            )
+        if kind is NameKind.PUBLISHER and function in _ROS1_CALLS and other_arguments[-1:] == ["true"]:
             details.append((Detail.LATCH, YES))
         if kind is NameKind.SUBSCRIPTION and not type_name:
-            type_name = self._callback_type(arguments)
-        name = self._literal_text(*found) or ""
+            type_name = self._find_callback_type(arguments)
+        name = self._get_literal(*name_offsets) or ""
         if namespace and name and not name.startswith(("/", "~")):
             name = f"{namespace}{'' if namespace == '~' else '/'}{name}"
-        self._add(kind, name, *found, type_name, tuple(details))
+        self._add(kind, name, *name_offsets, type_name, tuple(details))
         if kind in (NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.ACTION):
             self._add_callback(kind, name, arguments)
 
     def _add_callback(self, kind: NameKind | None, name: str, arguments: list[tuple[int, int]]) -> None:
-        """Add the member function that messages, requests, goals or a timer call, if there is only one."""
+        """Add the member function that messages, requests, goals or a timer call.
+
+        Calls with several functions among their arguments are left out.
+        """
         text = self._text[arguments[0][0] : arguments[-1][1]]
         functions = set(_POINTER.findall(text))
         if len(functions) == 1:
             self._names.callbacks.setdefault(functions.pop(), (kind, name))
 
-    def _callback_type(self, arguments: list[tuple[int, int]]) -> str:
-        """Return the type of the messages that the only callback among the arguments takes, or an empty text."""
+    def _find_callback_type(self, arguments: list[tuple[int, int]]) -> str:
+        """Return the message type of the only callback among the arguments, or an empty text."""
         functions = set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
         words = (self._text[begin:end].strip().lstrip("&") for begin, end in arguments[2:3])
         functions = functions or {word for word in words if word.isidentifier()}
-        return message_type(functions.pop(), [self._text, *self._headers]) if len(functions) == 1 else ""
+        return find_message_type(functions.pop(), [self._text, *self._headers]) if len(functions) == 1 else ""
 
     @cached_property
     def _headers(self) -> list[str]:
         """The headers that may declare members of the classes of the source, without comments."""
-        return [_COMMENT_OR_TEXT.sub(_blank_comment, text) for text in header_texts(Path(self._source.name))]
+        return [_COMMENT_OR_TEXT.sub(_blank_comment, text) for text in read_included_headers(Path(self._source.name))]
 
-    def _literal_default(self, function: str, arguments: list[tuple[int, int]]) -> str:
-        """Return the literal default of a parameter. A function that returns the value takes it as second argument."""
+    def _find_literal_default(self, function: str, arguments: list[tuple[int, int]]) -> str:
+        """Return the literal default of a parameter; empty if there is none.
+
+        Functions that return the value have the default as their second argument.
+        """
         index = _DEFAULT_INDEX.get(function, 1)
         index = index if index < len(arguments) else 1
         if index >= len(arguments):
@@ -275,18 +302,21 @@ class _Reader:
 
     def _read_members(self) -> None:
         """Add the topics and actions with which members and variables are constructed."""
-        for member in made_members(self._text, self._headers):
-            for begin, end in list(_argument_offsets(self._text, member.start))[:3]:
+        for member in find_constructions(self._text, self._headers):
+            for begin, end in list(_find_arguments(self._text, member.start))[:3]:
                 if self._add_literal(member.kind, begin, end, member.type):
                     break
 
     def _read_helper_calls(self) -> None:
-        """Add the parameters that functions of the repository read: the name is one of the first two arguments."""
-        for call in helper_calls(self._text):
+        """Add the parameters that functions of the repository read.
+
+        The name is one of the first two arguments.
+        """
+        for call in find_helper_calls(self._text):
             if call.function in _KINDS:
                 continue
             kind = NameKind.ELEMENT if call.is_of_plugin else NameKind.PARAMETER
-            arguments = list(_argument_offsets(self._text, call.start))
+            arguments = list(_find_arguments(self._text, call.start))
             for index, (begin, end) in enumerate(arguments[:2]):
                 literal = _TEXT.fullmatch(self._text[begin:end])
                 if literal is not None and is_parameter_name(literal["text"]):
@@ -296,18 +326,18 @@ class _Reader:
                     break
 
     def _read_rate(self, match: re.Match[str]) -> None:
-        arguments = list(_argument_offsets(self._text, match.end() - 1))
+        arguments = list(_find_arguments(self._text, match.end() - 1))
         is_timer = match["name"] == "create_timer"
         texts = [" ".join(self._text[slice(*argument)].split()) for argument in arguments]
         index = 1 if is_timer and len(texts) > 1 and not re.search(r"\d", texts[0]) else 0
         if index < len(texts):
             name = match["name"].split()[0]
-            self._names.rates.append((f"{name}({texts[index]})", self._span(*arguments[index])))
+            self._names.rates.append((f"{name}({texts[index]})", self._make_span(*arguments[index])))
             if "imer" in name:
                 self._add_callback(None, "", arguments)
 
-    def _literal_text(self, begin: int, end: int) -> str | None:
-        """Return the text of a literal or of a constant of the source, or None for another expression."""
+    def _get_literal(self, begin: int, end: int) -> str | None:
+        """Return the text of a literal or constant, or None for other expressions."""
         literal = _TEXT.fullmatch(self._text[begin:end])
         if literal is not None:
             return literal["text"]
@@ -319,18 +349,18 @@ class _Reader:
     @cached_property
     def _shared_constants(self) -> Mapping[str, str]:
         """The constants of included headers that the source does not define otherwise."""
-        constants = header_constants(self._headers)
+        constants = read_header_constants(self._headers)
         assigned = set(re.findall(r"\b(\w+)\s*(?:\[[^\]]*\]\s*)?(?:=(?!=)|[{(]\s*\")", self._text))
         return {name: text for name, text in constants.items() if name not in assigned}
 
     def _add_argument(self, kind: NameKind, start: int, index: int) -> None:
-        arguments = list(_argument_offsets(self._text, start))
+        arguments = list(_find_arguments(self._text, start))
         if index < len(arguments):
             self._add_literal(kind, *arguments[index])
 
     def _add_literal(self, kind: NameKind, begin: int, end: int, type_name: str = "") -> bool:
         """Add the name in an argument if it is a literal, and return whether it is."""
-        text = self._literal_text(begin, end)
+        text = self._get_literal(begin, end)
         if text:
             self._add(kind, text, begin, end, type_name)
         return bool(text)
@@ -348,9 +378,9 @@ class _Reader:
         if literal is not None:
             begin, end = begin + literal.start("text"), begin + literal.end("text")
         if name:
-            self._names.add(SourceName(kind, name, type_name, self._span(begin, end), details))
+            self._names.add(SourceName(kind, name, type_name, self._make_span(begin, end), details))
 
-    def _span(self, begin: int, end: int) -> Span:
+    def _make_span(self, begin: int, end: int) -> Span:
         while begin < end and self._text[begin].isspace():
             begin += 1
         return self._source.span(begin, max(end, begin + 1))
@@ -361,9 +391,9 @@ def _find_constants(text: str) -> Mapping[str, str]:
     constants: dict[str, str] = {}
     for match in _CONSTANT.finditer(text):
         name = match["name"] or match["macro"]
-        assigned = len(re.findall(rf"\b{name}\b\s*(?:\[\s*\])?\s*=(?!=)", text))
+        assignment_count = len(re.findall(rf"\b{name}\b\s*(?:\[\s*\])?\s*=(?!=)", text))
         is_output = re.search(rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b", text) is not None
-        if assigned <= 1 and not is_output and name not in constants:
+        if assignment_count <= 1 and not is_output and name not in constants:
             constants[name] = match["text"] if match["macro"] is None else match["value"]
     return constants
 
@@ -387,8 +417,8 @@ def _blank_comment(match: re.Match[str]) -> str:
     return match[0] if match[0].startswith('"') else re.sub(r"[^\n]", " ", match[0])
 
 
-def _closing_offset(text: str, start: int) -> int:
-    """Return the offset of the bracket that closes the bracket at an offset, or the end of the text."""
+def _find_closing_bracket(text: str, start: int) -> int:
+    """Return the offset of the matching closing bracket, or the end of the text."""
     depth, opening = 0, text[start]
     for index in range(start, len(text)):
         depth += (text[index] == opening) - (text[index] == _BRACKETS[opening])
@@ -397,7 +427,7 @@ def _closing_offset(text: str, start: int) -> int:
     return len(text)
 
 
-def _argument_offsets(text: str, start: int) -> Iterator[tuple[int, int]]:
+def _find_arguments(text: str, start: int) -> Iterator[tuple[int, int]]:
     """Yield the offsets of the arguments in the parentheses that begin at an offset."""
     depth, begin, is_text = 0, start + 1, False
     for index in range(start + 1, len(text)):

@@ -10,7 +10,7 @@ _TEMPLATE = re.compile(r"(?:(?:std|boost)::(?:shared_ptr|unique_ptr)|(?:ros::)?M
 _PARAMETER = re.compile(r"(?P<type>.*?[\s&*>])?(?P<name>\w*)", re.DOTALL)
 
 
-def message_type(function: str, texts: Iterable[str]) -> str:
+def find_message_type(function: str, texts: Iterable[str]) -> str:
     """Return the message type of a callback, without its package; empty if it is unknown.
 
     Args:
@@ -20,14 +20,14 @@ def message_type(function: str, texts: Iterable[str]) -> str:
     parameter = r"(?P<parameter>[^(),]*(?:<[^<>()]*>[^(),]*)?)"
     pattern = re.compile(rf"\b{re.escape(function)}\s*\({parameter}\)\s*(?:const\s*)?[;{{]")
     for text in texts:
-        types = {_message(match["parameter"]) for match in pattern.finditer(text)} - {""}
+        types = {_parse_message_type(match["parameter"]) for match in pattern.finditer(text)} - {""}
         if types:
             return types.pop() if len(types) == 1 else ""
     return ""
 
 
-def _message(parameter: str) -> str:
-    """Return the type of a message from a parameter, such as ``const std_msgs::BoolConstPtr& msg``."""
+def _parse_message_type(parameter: str) -> str:
+    """Return the message type of a parameter such as ``const std_msgs::BoolConstPtr& msg``."""
     match = _PARAMETER.fullmatch(parameter.strip())
     type_name = match["type"] or "" if match is not None else ""
     type_name = re.sub(r"\bconst\b|[&*\s]", " ", type_name).strip()

@@ -20,7 +20,7 @@ _MEMBER = re.compile(r"(?P<type>[\w:][^()=]*[\s*&>])(?P<name>\w+)\s*(?:\[[^\]]*\
 _NOT_MEMBERS = frozenset(
     {*("class", "struct", "enum", "union", "using", "typedef", "friend", "template", "namespace", "operator", "extern")}
 )
-"""The words with which declarations begin that declare no data member."""
+"""The first words of declarations that do not declare data members."""
 _TYPE_KEYWORDS = frozenset({"const", "unsigned", "signed", "long", "struct", "typename", "short", "enum", "class"})
 _KEYWORDS = frozenset({"if", "for", "while", "switch", "return", "sizeof", "decltype", "alignas", "static_assert"})
 _OPENING = re.compile(r"[({\[<]")
@@ -55,8 +55,8 @@ class DeclaredMember(NamedTuple):
     """A data member of a class in a header.
 
     Attributes:
-        name: the name with that of its class.
-        type: the type.
+        name: the name, qualified by its class.
+        type: the declared type, without superfluous spaces.
         start: the offset of its name.
     """
 
@@ -77,7 +77,7 @@ def read_declared_functions(text: str, *, is_public: bool = True) -> Iterator[De
             yield from _read_function(chunk, classes, start)
 
 
-def declared_members(text: str, *, is_public: bool = True) -> Iterator[DeclaredMember]:
+def read_declared_members(text: str, *, is_public: bool = True) -> Iterator[DeclaredMember]:
     """Yield the data members of the classes that a header declares.
 
     Args:
@@ -87,19 +87,19 @@ def declared_members(text: str, *, is_public: bool = True) -> Iterator[DeclaredM
     for chunk, classes, start in _read_chunks(text, is_public=is_public):
         declaration = re.sub(r"(?<!:):(?!:)\s*\d+$", "", chunk)
         items = list(_split_parameters(declaration))
-        first = _MEMBER.fullmatch(items[0].partition("=")[0].strip()) if items and classes else None
-        if first is None or not _NOT_MEMBERS.isdisjoint((*first["type"].split(), first["name"])):
+        first_match = _MEMBER.fullmatch(items[0].partition("=")[0].strip()) if items and classes else None
+        if first_match is None or not _NOT_MEMBERS.isdisjoint((*first_match["type"].split(), first_match["name"])):
             continue
-        type_name = re.sub(r"\s*([*&<>,:])\s*", r"\1", " ".join(first["type"].split()))
-        for item in (first["name"], *(item.partition("=")[0].strip(" \n\t*&") for item in items[1:])):
-            place = re.search(rf"\b{re.escape(item.partition('[')[0])}\b(?!\s*(?:::|<))", text[start:])
-            if place is not None:
+        type_name = re.sub(r"\s*([*&<>,:])\s*", r"\1", " ".join(first_match["type"].split()))
+        for item in (first_match["name"], *(item.partition("=")[0].strip(" \n\t*&") for item in items[1:])):
+            name_match = re.search(rf"\b{re.escape(item.partition('[')[0])}\b(?!\s*(?:::|<))", text[start:])
+            if name_match is not None:
                 name = "::".join([*classes, item.partition("[")[0]])
-                yield DeclaredMember(name, type_name, start + place.start())
+                yield DeclaredMember(name, type_name, start + name_match.start())
 
 
 def _read_chunks(text: str, *, is_public: bool) -> Iterator[tuple[str, list[str], int]]:
-    """Yield the beginnings of declarations, each with the names of the classes around it and its offset.
+    """Yield the beginning of each declaration, its enclosing classes and its offset.
 
     Args:
         text: the text of the header without comments.
@@ -131,7 +131,10 @@ def _read_chunks(text: str, *, is_public: bool) -> Iterator[tuple[str, list[str]
 
 
 def _read_scope(chunk: str) -> _Scope:
-    """Return the scope that a text opens. Only namespaces and classes can contain public declarations."""
+    """Return the scope that a text opens.
+
+    Only namespaces and classes can contain public declarations.
+    """
     if _OPEN_SCOPE.search(chunk):
         return _Scope("", is_open=True, access="public")
     match = _SCOPE.search(chunk)
@@ -145,19 +148,19 @@ def _read_function(chunk: str, classes: list[str], start: int) -> Iterator[Decla
     """Yield the declared function, unless the declaration is something else."""
     declaration = _INITIALIZERS.sub("", chunk)
     for match in _FUNCTION.finditer(declaration):
-        end = _closing_offset(declaration, match.end() - 1)
-        rest = declaration[end + 1 :]
+        end = _find_closing_parenthesis(declaration, match.end() - 1)
+        suffix = declaration[end + 1 :]
         is_name = match["name"] not in _KEYWORDS and not match["name"].isupper() and not match["name"].startswith("~")
-        if end < 0 or not _QUALIFIERS.fullmatch(rest) or not is_name or "=" in declaration[: match.start()]:
+        if end < 0 or not _QUALIFIERS.fullmatch(suffix) or not is_name or "=" in declaration[: match.start()]:
             continue
-        parameters = tuple(_parameter_type(text) for text in _split_parameters(declaration[match.end() : end]))
+        parameters = tuple(_parse_parameter_type(text) for text in _split_parameters(declaration[match.end() : end]))
         name = "::".join([*classes, "".join(match["name"].split())])
-        is_override = re.search(r"\b(?:override|final)\b", rest) is not None
-        yield DeclaredFunction(name, parameters, re.search(r"=\s*0\s*$", rest) is not None, is_override, start)
+        is_override = re.search(r"\b(?:override|final)\b", suffix) is not None
+        yield DeclaredFunction(name, parameters, re.search(r"=\s*0\s*$", suffix) is not None, is_override, start)
         return
 
 
-def _parameter_type(text: str) -> str:
+def _parse_parameter_type(text: str) -> str:
     """Return the type of a parameter, with a mark if it has a default."""
     value, _, default = text.partition("=")
     match = _PARAMETER.fullmatch(value.strip())
@@ -168,7 +171,7 @@ def _parameter_type(text: str) -> str:
     return f"{type_name} = ..." if default else type_name
 
 
-def _closing_offset(text: str, start: int) -> int:
+def _find_closing_parenthesis(text: str, start: int) -> int:
     """Return the offset of the parenthesis that closes the parenthesis at an offset, or -1."""
     depth = 0
     for index in range(start, len(text)):

@@ -16,15 +16,15 @@ _ALIASES = (
     re.compile(rf"\busing\s+(?P<name>\w+)\s*=\s*{_CLASS}\s*;"),
     re.compile(rf"\btypedef\s+{_CLASS}\s*(?P<name>\w+)\s*;"),
 )
-_MADE = re.compile(rf"(?:\bmake_(?:unique|shared)\s*<\s*|\bnew\s+){_CLASS}\s*>?\s*(?=\()")
+_CONSTRUCTION = re.compile(rf"(?:\bmake_(?:unique|shared)\s*<\s*|\bnew\s+){_CLASS}\s*>?\s*(?=\()")
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<path>[^">\n]+)[">]', re.MULTILINE)
 _MAX_BYTES = 1 << 20
 _MAX_FOLDERS = 4
 """The maximum number of folders above a source in which its headers are searched."""
 
 
-class MadeMember(NamedTuple):
-    """A place where a member or variable is constructed.
+class Construction(NamedTuple):
+    """The construction of a member or variable.
 
     Attributes:
         kind: the kind of the name.
@@ -37,8 +37,8 @@ class MadeMember(NamedTuple):
     start: int
 
 
-def made_members(text: str, headers: Sequence[str]) -> Iterator[MadeMember]:
-    """Yield the places in a source that construct action servers, action clients and filtered subscriptions.
+def find_constructions(text: str, headers: Sequence[str]) -> Iterator[Construction]:
+    """Yield the constructions of action servers, action clients and filtered subscriptions.
 
     Args:
         text: the source without comments.
@@ -48,25 +48,27 @@ def made_members(text: str, headers: Sequence[str]) -> Iterator[MadeMember]:
     aliases: dict[str, tuple[NameKind, str]] = {}
     for source in (*headers, text):
         for match in (match for pattern in _ALIASES for match in pattern.finditer(source)):
-            aliases[match["name"]] = _action_kind(match["action"]), _normalize_type(match["type"])
+            aliases[match["name"]] = _get_kind(match["action"]), _normalize_type(match["type"])
         for match in _MEMBER.finditer(source):
             if match["action"] or "message_filters" in match["class"]:
-                types[match["variable"]] = _action_kind(match["action"]), _normalize_type(match["type"])
+                types[match["variable"]] = _get_kind(match["action"]), _normalize_type(match["type"])
     for source in (*headers, text):
         for name, alias in aliases.items():
             types.update((match[1], alias) for match in re.finditer(rf"\b{name}\s+(\w+)\s*[;({{,]", source))
     for variable, (kind, type_name) in types.items():
-        for made in re.finditer(rf"\b{variable}\s*\(", text):
-            yield MadeMember(kind, type_name, made.end() - 1)
+        for construction in re.finditer(rf"\b{variable}\s*\(", text):
+            yield Construction(kind, type_name, construction.end() - 1)
     for name, (kind, type_name) in aliases.items():
-        for made in re.finditer(rf"(?:\bmake_(?:unique|shared)\s*<\s*|\bnew\s+)(?:\w+::)*{name}\s*>?\s*\(", text):
-            yield MadeMember(kind, type_name, made.end() - 1)
-    for match in _MADE.finditer(text):
+        for construction in re.finditer(
+            rf"(?:\bmake_(?:unique|shared)\s*<\s*|\bnew\s+)(?:\w+::)*{name}\s*>?\s*\(", text
+        ):
+            yield Construction(kind, type_name, construction.end() - 1)
+    for match in _CONSTRUCTION.finditer(text):
         if match["action"]:
-            yield MadeMember(_action_kind(match["action"]), _normalize_type(match["type"]), match.end())
+            yield Construction(_get_kind(match["action"]), _normalize_type(match["type"]), match.end())
 
 
-def _action_kind(action: str | None) -> NameKind:
+def _get_kind(action: str | None) -> NameKind:
     return {"ActionServer": NameKind.ACTION, "ActionClient": NameKind.ACTION_CLIENT}.get(
         action or "", NameKind.SUBSCRIPTION
     )
@@ -76,7 +78,7 @@ def _normalize_type(text: str) -> str:
     return text.partition(",")[0].rpartition("::")[2].strip()
 
 
-def header_texts(path: Path) -> list[str]:
+def read_included_headers(path: Path) -> list[str]:
     """Return the texts of the included headers beside a source or in an ``include`` folder.
 
     Headers outside of the package are left out, including targets of links and ``..``.

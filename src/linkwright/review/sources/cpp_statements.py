@@ -6,8 +6,8 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from linkwright.review.sources.statements import Statement, statement_of
-from linkwright.review.sources.tokens import Token, TokenKind, bracket_pairs, cpp_tokens
+from linkwright.review.sources.statements import Statement, parse_statement
+from linkwright.review.sources.tokens import Token, TokenKind, match_brackets, tokenize_cpp
 
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n\\]|\\\r?\n|\\.)*", re.MULTILINE)
 _DEFINE = re.compile(r"[ \t]*#[ \t]*define[ \t]+(?P<name>\w+)[ \t]+(?=\S)")
@@ -28,7 +28,7 @@ class _Block:
     Attributes:
         name: the name of its function or class.
         is_function: whether it is in a function.
-        pending: the tokens of the statement that contains the block.
+        pending: the tokens so far of the statement that contains the block.
     """
 
     name: str
@@ -36,42 +36,44 @@ class _Block:
     pending: list[Token] = field(default_factory=list)
 
 
-def cpp_statements(text: str) -> dict[str, list[Statement]]:
-    """Return the statements of a source by the name of their function or class; empty for other statements.
+def read_cpp_statements(text: str) -> dict[str, list[Statement]]:
+    """Return the statements of a source by function or class.
+
+    Other statements have an empty name.
 
     Statements that print, log or throw are left out.
     """
     reader = _Reader()
-    _read(text, reader)
+    _read_source(text, reader)
     return {
-        name: [statement_of(tokens) for tokens in statements if len(tokens) > 1 and not is_output(tokens)]
+        name: [parse_statement(tokens) for tokens in statements if len(tokens) > 1 and not is_output(tokens)]
         for name, statements in reader.blocks.items()
     }
 
 
 def read_cpp_blocks(text: str) -> tuple[Mapping[str, Sequence[Sequence[Token]]], Collection[str]]:
-    """Return the tokens of the statements by the name of their function or class, and the names of the functions.
+    """Return the tokens of the statements by function or class, and the function names.
 
-    Both are empty if the braces do not match, as with branches of the preprocessor.
+    Both are empty if the braces do not match, for example because of preprocessor branches.
     """
     reader = _Reader()
-    is_complete = _read(text, reader)
-    return (reader.blocks, reader.functions) if is_complete else ({}, ())
+    is_balanced = _read_source(text, reader)
+    return (reader.blocks, reader.functions) if is_balanced else ({}, ())
 
 
-def _read(text: str, reader: _Reader) -> bool:
+def _read_source(text: str, reader: _Reader) -> bool:
     """Read a source, and return whether its braces match."""
     for match in _DIRECTIVE.finditer(text):
         define = _DEFINE.match(match[0])
         if define is not None:
-            name = cpp_tokens(text, match.start() + define.start("name"), match.start() + define.end("name"))
-            value = cpp_tokens(text, match.start() + define.end(), match.end())
+            name = tokenize_cpp(text, match.start() + define.start("name"), match.start() + define.end("name"))
+            value = tokenize_cpp(text, match.start() + define.end(), match.end())
             is_function = bool(value) and value[0].start == name[0].end
             if value and not is_function:
-                mark = Token(TokenKind.OPERATOR, "=", value[0].start, has_space=True)
-                reader.add("", [name[0], mark, *value])
+                equals_sign = Token(TokenKind.OPERATOR, "=", value[0].start, has_space=True)
+                reader.add("", [name[0], equals_sign, *value])
     code = _DIRECTIVE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
-    tokens = cpp_tokens(code)
+    tokens = tokenize_cpp(code)
     reader.read(tokens)
     braces = [token.text for token in tokens if token.kind is TokenKind.OPERATOR]
     return braces.count("{") == braces.count("}")
@@ -98,15 +100,15 @@ class _Reader:
 
     def read(self, tokens: Sequence[Token]) -> None:
         """Add the statements of a source without directives of the preprocessor."""
-        pairs = bracket_pairs(tokens)
-        values: set[int] = set()  # the braces around values, not around statements
+        pairs = match_brackets(tokens)
+        value_ends: set[int] = set()  # the braces around values, not around statements
         depths = [0]
         for index, token in enumerate(tokens):
             text = token.text if token.kind is TokenKind.OPERATOR else ""
             if text == "{" and self._is_block(tokens, index, pairs):
                 self._open_block()
                 depths.append(0)
-            elif text == "}" and index not in values and len(self._blocks) > 1:
+            elif text == "}" and index not in value_ends and len(self._blocks) > 1:
                 self._close_block()
                 depths.pop()
             elif (text == ";" and depths[-1] == 0) or (
@@ -115,7 +117,7 @@ class _Reader:
                 self._end_statement()
             else:
                 if text == "{" and index in pairs:
-                    values.add(pairs[index])
+                    value_ends.add(pairs[index])
                 depths[-1] += (text in ("(", "[", "{")) - (text in (")", "]", "}"))
                 self._pending.append(token)
         self._end_statement()
@@ -126,7 +128,7 @@ class _Reader:
         if end is None:
             return True
         previous = tokens[index - 1].text if index else ""
-        if any(token.text in _SCOPES for token in self._pending) and not _starts_with_parenthesis(self._pending):
+        if any(token.text in _SCOPES for token in self._pending) and not _has_parenthesis(self._pending):
             return True
         return previous in (")", "else", "do", "try", "const", "override", "noexcept") or any(
             token.text == ";" for token in tokens[index:end]
@@ -137,12 +139,12 @@ class _Reader:
         header = self._pending
         name, is_function, pending = block.name, block.is_function, header
         if not block.is_function:
-            scope = _scope_name(header)
+            scope = _find_scope_name(header)
             words = {token.text for token in header}
             if scope is not None:
                 name = "::".join(part for part in (block.name, scope) if part)
             elif not words & _CONTROLS and "=" not in words:
-                name = "::".join(part for part in (block.name, _function_name(header)) if part)
+                name = "::".join(part for part in (block.name, _find_function_name(header)) if part)
                 is_function = True
                 self.functions.add(name)
             self.add(name, header)
@@ -153,7 +155,7 @@ class _Reader:
     def _close_block(self) -> None:
         self._end_statement()
         self._pending = self._blocks.pop().pending
-        if self._pending and _parenthesis_depth(self._pending) == 0 and self._pending[0].text in _CONTROLS:
+        if self._pending and _count_open_brackets(self._pending) == 0 and self._pending[0].text in _CONTROLS:
             self._end_statement()
 
     def _end_statement(self) -> None:
@@ -161,24 +163,27 @@ class _Reader:
         self._pending = []
 
 
-def _scope_name(header: Sequence[Token]) -> str | None:
-    """Return the name of the class that a header opens, an empty text for a namespace, or None for others."""
+def _find_scope_name(header: Sequence[Token]) -> str | None:
+    """Return the name of the class that a header opens.
+
+    The result is empty for a namespace, and None for other blocks.
+    """
     words = [token.text for token in header]
     kind = next((word for word in words if word in _SCOPES), None)
-    if kind is None or _starts_with_parenthesis(header):
+    if kind is None or _has_parenthesis(header):
         return None
     if kind in ("namespace", "extern"):
         return ""
     names = words[words.index(kind) + 1 :]
     end = next((index for index, word in enumerate(names) if word in (":", "final", "<")), len(names))
     if end > 1 and names[end - 1].isupper() and not names[end - 2].isupper():
-        end -= 1  # a macro behind the name
+        end -= 1  # a macro follows the name
     return names[end - 1] if end else ""
 
 
-def _function_name(header: Sequence[Token]) -> str:
+def _find_function_name(header: Sequence[Token]) -> str:
     """Return the name before the parameters in the header of a function."""
-    index = _parameters_start(header)
+    index = _find_parameters_start(header)
     start = index
     while start > 0 and (
         start == index or header[start].text == "::" or header[start - 1].text in ("::", "~", "operator")
@@ -187,9 +192,12 @@ def _function_name(header: Sequence[Token]) -> str:
     return "".join(token.text for token in header[start:index])
 
 
-def _parameters_start(header: Sequence[Token]) -> int:
-    """Return the index of the opening parenthesis of the parameters: the first outside of templates and macros."""
-    pairs = bracket_pairs(header)
+def _find_parameters_start(header: Sequence[Token]) -> int:
+    """Return the index of the parenthesis that opens the parameters.
+
+    It is the first parenthesis outside of templates and macros.
+    """
+    pairs = match_brackets(header)
     depth = 0
     for index, token in enumerate(header):
         previous = header[index - 1].text if index else ""
@@ -202,11 +210,11 @@ def _parameters_start(header: Sequence[Token]) -> int:
     return 0
 
 
-def _starts_with_parenthesis(tokens: Sequence[Token]) -> bool:
+def _has_parenthesis(tokens: Sequence[Token]) -> bool:
     return any(token.text == "(" for token in tokens)
 
 
-def _parenthesis_depth(tokens: Sequence[Token]) -> int:
+def _count_open_brackets(tokens: Sequence[Token]) -> int:
     return sum((token.text in "([{") - (token.text in ")]}") for token in tokens if token.kind is TokenKind.OPERATOR)
 
 

@@ -1,4 +1,4 @@
-"""Compare a name that both versions of a source have: its type, default and other properties."""
+"""Compare the properties of a name that both versions of a source have."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ _DEFAULT = " = ..."
 """The end of the text of a function parameter with a default."""
 
 
-def detail_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
-    """Yield the changes of a name, each with the reason why it is breaking or None."""
+def compare_details(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
+    """Yield the changes to a name, each with the reason why it is breaking or None."""
     if old.type != new.type:
-        yield from _type_changes(old, new)
+        yield from _compare_types(old, new)
     old_details, new_details = dict(old.details), dict(new.details)
     for detail in Detail:
         before, after = old_details.get(detail), new_details.get(detail)
@@ -34,13 +34,16 @@ def detail_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, P
             old=before or missing,
             new=after or missing,
         )
-        yield text, _detail_reason(new, detail, before, after)
+        yield text, _find_detail_reason(new, detail, before, after)
 
 
-def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
+def _compare_types(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
     if new.kind is NameKind.FUNCTION:
         reason = phrase("code that calls '{name}' with the old arguments does not build", name=new.name)
-        yield _function_text(new.name, old.type, new.type), None if _accepts_all(old.type, new.type) else reason
+        yield (
+            _format_overload_change(new.name, old.type, new.type),
+            None if _accepts_all(old.type, new.type) else reason,
+        )
     elif new.kind in (NameKind.PARAMETER, NameKind.OPTION, NameKind.ELEMENT):
         text = phrase(
             "{kind} '{name}': default {old} -> {new}",
@@ -59,8 +62,11 @@ def _type_changes(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Ph
         yield text, None if new.kind is NameKind.MEMBER else reason
 
 
-def _function_text(name: str, old: str, new: str) -> Phrase:
-    """Return the change of the parameters of a function. Only overloads that one version lacks are shown."""
+def _format_overload_change(name: str, old: str, new: str) -> Phrase:
+    """Return the change to the parameters of a function.
+
+    Only overloads that one version lacks are shown.
+    """
     overloads = old.split("; "), new.split("; ")
     removed, added = (
         " | ".join(f"({overload})" for overload in own if overload not in other)
@@ -86,15 +92,15 @@ def _split_overloads(text: str) -> list[str]:
 def _accepts(old: list[str], new: list[str]) -> bool:
     required = [parameter for parameter in old if not parameter.endswith(_DEFAULT)]
     types = [parameter.removesuffix(_DEFAULT) for parameter in old]
-    is_same = [parameter.removesuffix(_DEFAULT) for parameter in new[: len(types)]] == types
-    return is_same and all(parameter.endswith(_DEFAULT) for parameter in new[len(required) :])
+    has_equal_types = [parameter.removesuffix(_DEFAULT) for parameter in new[: len(types)]] == types
+    return has_equal_types and all(parameter.endswith(_DEFAULT) for parameter in new[len(required) :])
 
 
-def _detail_reason(name: SourceName, detail: Detail, before: str | None, after: str | None) -> Phrase | None:
+def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, after: str | None) -> Phrase | None:
     """Return the reason why a changed property is breaking, or None if it is not."""
     old, new = before or "", after or ""
     if detail is Detail.QOS:
-        return _qos_reason(name, old, new)
+        return _find_qos_reason(name, old, new)
     if detail is Detail.VALUE_TYPE and name.kind is NameKind.PARAMETER and before and after:
         return phrase("values of the old type are rejected")
     if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:
@@ -102,26 +108,31 @@ def _detail_reason(name: SourceName, detail: Detail, before: str | None, after: 
     if detail is Detail.REQUIRED and after:
         return phrase("callers that do not pass '{name}' get an error", name=name.name)
     if detail is Detail.ARGUMENTS:
-        before_change, after_change = parse_signature(old), parse_signature(new)
-        is_same = before_change is None or after_change is None or after_change.accepts_calls_of(before_change)
-        return None if is_same else phrase("programs that call '{name}' with the old arguments fail", name=name.name)
+        old_signature, new_signature = parse_signature(old), parse_signature(new)
+        is_accepted = old_signature is None or new_signature is None or new_signature.accepts_calls_of(old_signature)
+        return (
+            None if is_accepted else phrase("programs that call '{name}' with the old arguments fail", name=name.name)
+        )
     if detail is Detail.LATCH and before:
         return phrase("subscribers that start later do not get the last message")
     return None
 
 
-def _qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:
-    """Return the reason why another QoS is breaking, or None. A subscription needs what the publisher offers."""
-    was_weak, is_weak = _BEST_EFFORT.search(old), _BEST_EFFORT.search(new)
-    kept, keeps = _TRANSIENT.search(old), _TRANSIENT.search(new)
+def _find_qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:
+    """Return the reason why a different QoS is breaking, or None.
+
+    A subscription needs what the publisher offers.
+    """
+    was_best_effort, is_best_effort = (_BEST_EFFORT.search(text) is not None for text in (old, new))
+    was_transient, is_transient = (_TRANSIENT.search(text) is not None for text in (old, new))
     if name.kind is NameKind.PUBLISHER:
-        if is_weak and not was_weak:
+        if is_best_effort and not was_best_effort:
             return phrase("subscriptions that ask for reliable messages get nothing")
-        if kept and not keeps:
+        if was_transient and not is_transient:
             return phrase("subscriptions that ask for messages from before their start get nothing")
     if name.kind is NameKind.SUBSCRIPTION:
-        if was_weak and not is_weak:
+        if was_best_effort and not is_best_effort:
             return phrase("the node gets nothing from publishers that send with best effort")
-        if keeps and not kept:
+        if is_transient and not was_transient:
             return phrase("the node gets nothing from publishers that keep no messages")
     return None

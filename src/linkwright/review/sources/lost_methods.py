@@ -1,4 +1,4 @@
-"""Find C++ sources that call a method of their own class which the header no longer declares."""
+"""Find C++ sources that call methods which the header of their class no longer declares."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.sources.lost_types import including_files, without_comments
+from linkwright.review.sources.lost_types import blank_comments, find_including_files
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, NameKind
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
@@ -17,32 +17,34 @@ from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 _DEFINITION = re.compile(r"\b(?P<class>\w+)::~?\w+\s*\([^;{}]*\)[^;{}]*\{")
 
 
-def lost_methods(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the sources that call ``this->method()`` although the header of the class lost the method.
+def find_lost_methods(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the sources that call ``this->method()`` for a method that the header lost.
 
     Classes with base classes, which may declare the method, are left out.
     """
-    lost = {file.new_path: found for file in changed_files if file.new_path and (found := _lost(versions, file))}
+    lost = {
+        file.new_path: methods for file in changed_files if file.new_path and (methods := _find_lost(versions, file))
+    }
     if not lost:
         return
     paths = versions.new.paths(CPP_SUFFIXES)
     texts = {path: versions.new.text(path) for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)}
     for header, methods in lost.items():
-        for path in including_files(texts, header):
-            code = without_comments(texts[path])
+        for path in find_including_files(texts, header):
+            code = blank_comments(texts[path])
             for class_name, method in methods:
-                line = _line_of_call(code, class_name, method)
+                line = _find_call_line(code, class_name, method)
                 if line:
-                    yield path, _change(path, header, class_name, method, line)
+                    yield path, _make_change(path, header, class_name, method, line)
 
 
-def _lost(versions: Versions, file: ChangedFile) -> list[tuple[str, str]]:
+def _find_lost(versions: Versions, file: ChangedFile) -> list[tuple[str, str]]:
     """Return the classes and methods that only the old version of a header declares."""
     path = PurePosixPath(file.path)
     if file.old_path is None or path.suffix not in HEADER_SUFFIXES or file.is_submodule:
         return []
-    code = without_comments(versions.new.text(file.new_path or ""))
-    old, new = _methods(versions.old, file.old_path), _methods(versions.new, file.new_path or "")
+    code = blank_comments(versions.new.text(file.new_path or ""))
+    old, new = _read_methods(versions.old, file.old_path), _read_methods(versions.new, file.new_path or "")
     return [
         (class_name, method)
         for class_name, method in sorted(old - new)
@@ -51,24 +53,27 @@ def _lost(versions: Versions, file: ChangedFile) -> list[tuple[str, str]]:
     ]
 
 
-def _methods(version: Version, path: str) -> set[tuple[str, str]]:
+def _read_methods(version: Version, path: str) -> set[tuple[str, str]]:
     """Return the classes and names of the methods and members that a header declares."""
     names = read_source_names(version.file(path))
-    declared = {item.name for item in names.of_kind(NameKind.FUNCTION)} | names.hidden
+    declared = {item.name for item in names.of_kind(NameKind.FUNCTION)} | names.non_public
     parts = (name.split("::") for name in declared)
     return {(part[-2], part[-1]) for part in parts if len(part) > 1}
 
 
-def _line_of_call(code: str, class_name: str, method: str) -> int:
-    """Return the line, from 1, of the first call of a method in a function of its class; 0 if there is none."""
+def _find_call_line(code: str, class_name: str, method: str) -> int:
+    """Return the line of the first call of a method in its class, or 0.
+
+    Lines are counted from 1.
+    """
     for call in re.finditer(rf"\bthis\s*->\s*{re.escape(method)}\s*\(", code):
-        around = [match["class"] for match in _DEFINITION.finditer(code, 0, call.start())]
-        if around and around[-1] == class_name:
+        enclosing = [match["class"] for match in _DEFINITION.finditer(code, 0, call.start())]
+        if enclosing and enclosing[-1] == class_name:
             return code.count("\n", 0, call.start()) + 1
     return 0
 
 
-def _change(path: str, header: str, class_name: str, method: str, line: int) -> Change:
+def _make_change(path: str, header: str, class_name: str, method: str, line: int) -> Change:
     text = phrase(
         "calls the method '{name}', which '{class_name}' in '{file}' does not have",
         name=method,

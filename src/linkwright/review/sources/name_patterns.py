@@ -1,31 +1,36 @@
-"""Read names that sources make from a pattern, such as an f-string or the format of ``snprintf``."""
+"""Read names that sources compute from a pattern.
+
+Patterns are f-strings and the formats of ``snprintf``.
+"""
 
 from __future__ import annotations
 
 import re
 
 _TEXT = re.compile(r"\"(?P<double>(?:\\.|[^\"\\])*)\"|'(?P<single>(?:\\.|[^'\\])*)'")
-_FORMATTED = re.compile(r"\b[fF][rR]?[\"']|\b[rR][fF][\"']")
-_PLACE = re.compile(r"\{[^{}]*\}|%[-+ #0]*\d*(?:\.\d+)?[hlzjt]*[a-zA-Z]|%\(\w+\)[a-z]")
-_OPEN = "{}"
+_F_STRING = re.compile(r"\b[fF][rR]?[\"']|\b[rR][fF][\"']")
+_PLACEHOLDER = re.compile(r"\{[^{}]*\}|%[-+ #0]*\d*(?:\.\d+)?[hlzjt]*[a-zA-Z]|%\(\w+\)[a-z]")
+_UNKNOWN_PART = "{}"
 """The mark for a part of a pattern with an unknown value."""
 
 
-def pattern_of(expression: str) -> str | None:
-    """Return the texts in an expression with ``{}`` for the parts between them, or None if it has no texts.
+def extract_pattern(expression: str) -> str | None:
+    """Return the texts in an expression, joined by ``{}``, or None if it has no texts.
 
     Args:
         expression: the expression that gives a name, in Python or C++.
     """
-    if _FORMATTED.search(expression):
-        expression = re.sub(r"\{[^{}]*\}", _OPEN, expression)  # its parts may have texts of their own
+    if _F_STRING.search(expression):
+        expression = re.sub(r"\{[^{}]*\}", _UNKNOWN_PART, expression)  # its parts may have texts of their own
     texts = [match["double"] if match["single"] is None else match["single"] for match in _TEXT.finditer(expression)]
-    pattern = _OPEN.join(_PLACE.sub(_OPEN, text) for text in texts)
-    return pattern if re.search(r"\w", pattern.replace(_OPEN, "")) else None
+    pattern = _UNKNOWN_PART.join(_PLACEHOLDER.sub(_UNKNOWN_PART, text) for text in texts)
+    return pattern if re.search(r"\w", pattern.replace(_UNKNOWN_PART, "")) else None
 
 
-def format_of(text: str, variable: str) -> str | None:
-    """Return the last format that a C++ source writes into a text, as a literal with quotation marks, or None.
+def find_format(text: str, variable: str) -> str | None:
+    """Return the last format with which a C++ source writes a variable, or None.
+
+    It is a literal with quotation marks.
 
     Args:
         text: the source up to the use of the variable, without comments.

@@ -1,4 +1,7 @@
-"""Define the names in a source that other programs use or pass: topics, parameters, frames, options."""
+"""Define the names in a source that other programs use or pass.
+
+Such names are topics, parameters, frames and options.
+"""
 
 from __future__ import annotations
 
@@ -98,20 +101,20 @@ class SourceNames:
         rates: the texts of rates and periods, each with its location.
         overrides: the names of functions that override a function of a base class.
         is_program: whether the source is a program and not a library.
-        makes_node: whether the source makes a node, also one with a computed name.
+        makes_node: whether the source makes a node, even if the name of the node is computed.
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
         is_error_certain: whether it is a syntax error in all versions of Python.
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
         callbacks: the topic, service or action that calls a function, by the name of the function; its kind is None for
             a timer.
-        plain_classes: the classes of a Python source that certainly have no methods besides their bodies.
-        bound: the names that a Python 3 source defines or imports.
-        undefined: the undefined names that a source uses, each with the location of its first use.
+        self_contained_classes: the classes of a Python source that certainly inherit no methods.
+        bound_names: the names that a Python 3 source defines or imports.
+        undefined_names: the undefined names that a source uses, each with the location of its first use.
         attributes: the attributes that a Python 3 source defines in classes or assigns to objects.
         undefined_methods: the undefined methods that classes of a source call on themselves, each with
-             the location of its first call.
-        hidden: the private and protected members of the classes of a C++ header, with the names of the classes.
-        has_star: whether an ``__init__.py`` imports all names of a module, so that it may have other names, too.
+            the location of its first call.
+        non_public: the private and protected members of the classes of a C++ header, with the names of the classes.
+        has_star_import: whether an ``__init__.py`` imports all names of a module, so that it may have other names.
     """
 
     names: list[SourceName] = field(default_factory=list)
@@ -124,13 +127,13 @@ class SourceNames:
     is_error_certain: bool = True
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)
     callbacks: dict[str, tuple[NameKind | None, str]] = field(default_factory=dict)
-    plain_classes: set[str] = field(default_factory=set)
-    bound: frozenset[str] = frozenset()
-    undefined: dict[str, Span] = field(default_factory=dict)
+    self_contained_classes: set[str] = field(default_factory=set)
+    bound_names: frozenset[str] = frozenset()
+    undefined_names: dict[str, Span] = field(default_factory=dict)
     attributes: frozenset[str] = frozenset()
     undefined_methods: dict[str, Span] = field(default_factory=dict)
-    hidden: frozenset[str] = frozenset()
-    has_star: bool = False
+    non_public: frozenset[str] = frozenset()
+    has_star_import: bool = False
 
     def add(self, name: SourceName) -> None:
         """Add a literal name, or complete an equal name."""

@@ -1,4 +1,4 @@
-"""Read the imports in the ``__init__.py`` of a Python package: the names that it offers, and failing imports."""
+"""Read the imports in the ``__init__.py`` of a Python package."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ PACKAGE_FILE = "__init__.py"
 
 
 def read_imports(python: PythonFile, names: SourceNames) -> None:
-    """Add the public names that an ``__init__.py`` imports from its package or lists in ``__all__``.
+    """Add the public names that an ``__init__.py`` offers.
+
+    It imports them from its package, or lists them in ``__all__``.
 
     Names of other packages are left out, because programs import these names from their own packages.
     """
@@ -27,7 +29,7 @@ def read_imports(python: PythonFile, names: SourceNames) -> None:
     for statement in python.tree.body:
         if isinstance(statement, ast.ImportFrom):
             is_own = statement.level > 0 or (statement.module or "").partition(".")[0] == package
-            names.has_star |= any(alias.name == "*" for alias in statement.names)
+            names.has_star_import |= any(alias.name == "*" for alias in statement.names)
             for alias in statement.names if is_own else ():
                 _add_name(python, names, alias.asname or alias.name, alias)
             if statement.level == 0 and statement.module is not None:
@@ -47,7 +49,7 @@ def _add_name(python: PythonFile, names: SourceNames, name: str, node: ast.expr 
 
 
 def is_installed_package(version: Version, package: str | None, path: str) -> bool:
-    """Return whether a file is the ``__init__.py`` of a Python package that a ROS package installs."""
+    """Return whether a file is the ``__init__.py`` of an installed Python package."""
     return PurePosixPath(path).name == PACKAGE_FILE and is_installed_module(version, package, path)
 
 
@@ -63,7 +65,7 @@ def is_installed_module(version: Version, package: str | None, path: str) -> boo
 
 
 def find_failing_imports(version: Version, package: str, path: str, names: SourceNames) -> Iterator[int]:
-    """Yield the indexes of the absolute imports of an ``__init__.py`` that fail once the package is installed.
+    """Yield the indexes of the absolute imports that fail in an installed package.
 
     They name a module beside the file, which Python 3 finds only if the program runs in that folder.
 

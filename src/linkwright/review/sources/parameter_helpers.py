@@ -1,4 +1,4 @@
-"""Find the parameters that sources read with functions of their own, and the SDF elements that plugins read."""
+"""Find the parameters that sources read with their own functions, and SDF elements."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class ReadElement(NamedTuple):
     """An element of SDF that a plugin reads.
 
     Attributes:
-        name: the tag.
+        name: the tag of the element.
         default: the literal default; empty if there is none.
         start: the offset of the tag.
     """
@@ -36,7 +36,7 @@ class ReadElement(NamedTuple):
 
 
 def reads_parameter(function: str) -> bool:
-    """Return whether the name of a function says that it reads a parameter, such as ``getRequiredParam``."""
+    """Return whether a function name such as ``getRequiredParam`` means to read a parameter."""
     return _FUNCTION.fullmatch(function) is not None
 
 
@@ -59,7 +59,7 @@ class HelperCall(NamedTuple):
     is_of_plugin: bool
 
 
-def helper_calls(text: str) -> Iterator[HelperCall]:
+def find_helper_calls(text: str) -> Iterator[HelperCall]:
     """Yield the calls of functions that read parameters in a C++ source without comments."""
     for match in _CALL.finditer(text):
         if reads_parameter(match["name"]):

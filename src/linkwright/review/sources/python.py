@@ -1,4 +1,7 @@
-"""Read the names in a Python source for rclpy, rospy and argparse, and in dynamic_reconfigure descriptions."""
+"""Read the names in Python sources and dynamic_reconfigure descriptions.
+
+Sources may use rclpy, rospy and argparse.
+"""
 
 from __future__ import annotations
 
@@ -14,20 +17,19 @@ from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, S
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python2 import as_python3
-from linkwright.review.sources.python_methods import defined_attributes, undefined_methods
-from linkwright.review.sources.shared_constants import imported_constants
-from linkwright.review.sources.signatures import is_plain, method_signatures, signature_of
-from linkwright.review.sources.undefined_names import bound_names, undefined_names
+from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
+from linkwright.review.sources.shared_constants import read_imported_constants
+from linkwright.review.sources.signatures import is_self_contained, read_method_signatures, read_signature
+from linkwright.review.sources.undefined_names import find_bound_names, find_undefined_names
 
-_RCLPY = {
+_RCLPY_METHODS = {
     "create_publisher": (NameKind.PUBLISHER, "msg_type", "topic", 2),
     "create_subscription": (NameKind.SUBSCRIPTION, "msg_type", "topic", 3),
     "create_service": (NameKind.SERVICE, "srv_type", "srv_name", -1),
     "create_client": (NameKind.CLIENT, "srv_type", "srv_name", -1),
 }
-"""The methods of nodes with the parameters of the type and of the name, which are the first two, and the index of the
-QoS."""
-_NAME_FIRST = {
+"""The kind of each method of nodes, the keywords of its type and name, and the index of its QoS argument."""
+_NAME_FIRST_CLASSES = {
     "Publisher": NameKind.PUBLISHER,
     "Subscriber": NameKind.SUBSCRIPTION,
     "Service": NameKind.SERVICE,
@@ -36,28 +38,29 @@ _NAME_FIRST = {
     "SimpleActionClient": NameKind.ACTION_CLIENT,
 }
 """The classes of ROS 1 whose first two arguments are the name and the type."""
-_NODE_FIRST = {
+_NODE_FIRST_CLASSES = {
     "ActionServer": NameKind.ACTION,
     "ActionClient": NameKind.ACTION_CLIENT,
     "Subscriber": NameKind.SUBSCRIPTION,
 }
 """The classes of ROS 2 whose first three arguments are the node, the type and the name."""
-_WITH_CALLBACK = {
+_CALLBACK_KEYWORDS = {
     NameKind.SUBSCRIPTION: "callback",
     NameKind.SERVICE: "handler",
     NameKind.ACTION: "execute_cb",
 }
 """The kinds of names with a callback as their third argument, and its name in ROS 1."""
-_ROUTES = ("route", "get", "post", "put", "delete", "patch", "websocket")
-_NODES = ("init_node", "create_node", "Node", "LifecycleNode")
-_RATES = {"Rate": 0, "create_rate": 0, "Timer": 0, "create_timer": 0}
-_LOOKUPS = {
+_ROUTE_METHODS = ("route", "get", "post", "put", "delete", "patch", "websocket")
+_NODE_CALLS = ("init_node", "create_node", "Node", "LifecycleNode")
+_RATE_CALLS = ("Rate", "create_rate", "Timer", "create_timer")
+_TRANSFORM_CALLS = {
     **dict.fromkeys(("lookup_transform", "lookupTransform", "can_transform", "canTransform"), (0, 1)),
     **dict.fromkeys(("waitForTransform", "lookup_transform_async", "lookupTransformFull"), (0, 1)),
 }
+"""The indexes of the frames among the arguments of a lookup."""
 _PARAMETER_CALLS = ("declare_parameter", "get_param", "get_param_cached", "get_parameter_or", "add_parameter")
-_LOOKED_UP = (*_PARAMETER_CALLS, "search_param", "has_param")
-_ITEMS = ("items", "iteritems", "keys", "iterkeys")
+_PARAMETER_NAME_CALLS = (*_PARAMETER_CALLS, "search_param", "has_param")
+_DICTIONARY_METHODS = ("items", "iteritems", "keys", "iterkeys")
 _FRAME_FIELDS = {"frame_id": NameKind.MESSAGE_FRAME, "child_frame_id": NameKind.FRAME}
 _QOS = re.compile(r"\d+|[\w.]*(QoS|qos_profile|QOS)\w*(\(.*\))?", re.DOTALL)
 
@@ -70,11 +73,13 @@ def read_python(source: SourceText, names: SourceNames) -> None:
     """
     python = parse_source(source)
     _Reader(python, names).read()
-    if python.source is source:  # not one that only Python 2 can parse
-        names.bound = frozenset(bound_names(python.tree))
-        names.undefined.update((name, python.span(node)) for name, node in undefined_names(python.tree).items())
-        names.attributes = frozenset(defined_attributes(python.tree))
-        methods = undefined_methods(python.tree).items()
+    if python.source is source:  # not converted from Python 2
+        names.bound_names = frozenset(find_bound_names(python.tree))
+        names.undefined_names.update(
+            (name, python.span(node)) for name, node in find_undefined_names(python.tree).items()
+        )
+        names.attributes = frozenset(find_defined_attributes(python.tree))
+        methods = find_undefined_methods(python.tree).items()
         names.undefined_methods.update((name, python.span(node)) for name, node in methods)
     if PurePosixPath(source.name).name == PACKAGE_FILE:
         read_imports(python, names)
@@ -88,33 +93,33 @@ def read_dynamic_parameters(source: SourceText, names: SourceNames) -> None:
     """
     python = parse_source(source)
     for call in python.calls("add"):
-        name = python.text(_call_argument(call, 0, "name"))
+        name = python.text(_get_argument(call, 0, "name"))
         if name is None:
             continue
         details = [
-            (Detail.VALUE_TYPE, _expression_text(python, _call_argument(call, 1, "paramtype")).removesuffix("_t"))
+            (Detail.VALUE_TYPE, _format_expression(python, _get_argument(call, 1, "paramtype")).removesuffix("_t"))
         ]
         for detail, index, keyword in (
             (Detail.LEVEL, 2, "level"),
             (Detail.MINIMUM, 5, "min"),
             (Detail.MAXIMUM, 6, "max"),
         ):
-            text = _expression_text(python, _call_argument(call, index, keyword))
+            text = _format_expression(python, _get_argument(call, index, keyword))
             if text and text != "None":
                 details.append((detail, text))
         choices = argument_of(call, "edit_method")
         if choices is not None:
             values = (
-                _expression_text(python, item.args[1])
-                for item in _enumeration_constants(python, choices)
+                _format_expression(python, item.args[1])
+                for item in _find_enumeration_constants(python, choices)
                 if len(item.args) > 1
             )
             details.append((Detail.CHOICES, ", ".join(values)))
-        default = _expression_text(python, _call_argument(call, 4, "default"))
+        default = _format_expression(python, _get_argument(call, 4, "default"))
         names.add(SourceName(NameKind.PARAMETER, name, default, python.span(call), tuple(details)))
 
 
-def _enumeration_constants(python: PythonFile, node: ast.expr) -> Iterator[ast.Call]:
+def _find_enumeration_constants(python: PythonFile, node: ast.expr) -> Iterator[ast.Call]:
     """Yield the calls that define the constants of a dynamic_reconfigure enumeration."""
     for part in ast.walk(python.resolved(node)):
         value = python.resolved(part) if isinstance(part, ast.Name) else part
@@ -135,14 +140,14 @@ def parse_source(source: SourceText) -> PythonFile:
         return _SourceFile(SourceText(source.name, text))
 
 
-def _call_argument(call: ast.Call, index: int, keyword: str) -> ast.expr | None:
+def _get_argument(call: ast.Call, index: int, keyword: str) -> ast.expr | None:
     if 0 <= index < len(call.args):
         return call.args[index]
     return argument_of(call, keyword)
 
 
-def _expression_text(python: PythonFile, node: ast.expr | None) -> str:
-    """Return the text of a literal or of a name with a literal value, or else of the expression."""
+def _format_expression(python: PythonFile, node: ast.expr | None) -> str:
+    """Return the text of an expression, or of the literal that it names."""
     if node is None:
         return ""
     value = python.resolved(node)
@@ -158,7 +163,7 @@ def _is_required(call: ast.Call, option: str) -> bool:
 
 
 class _SourceFile(PythonFile):
-    """A Python source that also resolves attributes of classes and objects that are assigned once."""
+    """A Python source that also resolves attributes which are assigned once."""
 
     @cached_property
     def _attributes(self) -> dict[str, ast.expr | None]:
@@ -175,19 +180,22 @@ class _SourceFile(PythonFile):
         return attributes
 
     @cached_property
-    def _imported(self) -> dict[str, ast.expr]:
-        return imported_constants(Path(self.source.name), self.tree)
+    def _imported_constants(self) -> dict[str, ast.expr]:
+        return read_imported_constants(Path(self.source.name), self.tree)
 
     def assigned_expression(self, name: str) -> ast.expr | None:
         """Return the expression assigned to a name or imported as it, or None if it is not certain."""
         if name in self._assignments:
             return super().assigned_expression(name)
-        return self._imported.get(name)
+        return self._imported_constants.get(name)
 
     def resolved(self, node: ast.expr) -> ast.expr:
-        """Return the expression that is assigned to a name or attribute, and any other expression unchanged."""
-        if isinstance(node, ast.Attribute) and ast.unparse(node) in self._imported:
-            return self._imported[ast.unparse(node)]
+        """Return the expression assigned to a name or attribute.
+
+        Other expressions are returned unchanged.
+        """
+        if isinstance(node, ast.Attribute) and ast.unparse(node) in self._imported_constants:
+            return self._imported_constants[ast.unparse(node)]
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             value = self._attributes.get(node.attr)
             if node.attr not in self._attributes:
@@ -236,10 +244,10 @@ class _Reader:
         for statement in tree.body:
             if isinstance(statement, (ast.ClassDef, ast.FunctionDef)) and not statement.name.startswith("_"):
                 kind = NameKind.CLASS if isinstance(statement, ast.ClassDef) else NameKind.FUNCTION
-                signature = signature_of(statement)
+                signature = read_signature(statement)
                 details = () if signature is None else ((Detail.ARGUMENTS, signature.text),)
                 self._names.add(SourceName(kind, statement.name, "", self._python.span(statement), details))
-                if isinstance(statement, ast.ClassDef) and is_plain(statement):
+                if isinstance(statement, ast.ClassDef) and is_self_contained(statement):
                     self._read_methods(statement)
             self._names.is_program |= isinstance(statement, ast.If) and "__main__" in ast.unparse(statement.test)
             self._names.is_program |= isinstance(statement, ast.FunctionDef) and statement.name == "main"
@@ -251,7 +259,7 @@ class _Reader:
             if not isinstance(decorator, ast.Call) or text is None:
                 continue
             method = called_name(decorator).rpartition(".")[2]
-            kind = NameKind.ROUTE if method in _ROUTES and text.startswith("/") else None
+            kind = NameKind.ROUTE if method in _ROUTE_METHODS and text.startswith("/") else None
             if method == "on" and "socketio" in self._python.source.text:
                 kind = NameKind.WEB_EVENT
             if kind is not None:
@@ -259,13 +267,16 @@ class _Reader:
                 self._names.callbacks[function.name] = (kind, text)
 
     def _read_methods(self, definition: ast.ClassDef) -> None:
-        """Add the public methods of a class, except methods that the source passes on, such as callbacks."""
+        """Add the public methods of a class.
+
+        Methods that the source passes on, such as callbacks, are left out.
+        """
         nodes = list(ast.walk(definition))
-        called = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
-        passed = {node.attr for node in nodes if isinstance(node, ast.Attribute) and id(node) not in called}
-        self._names.plain_classes.add(definition.name)
-        for method, signature in method_signatures(definition):
-            if method.name not in passed:
+        called_ids = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
+        passed_on = {node.attr for node in nodes if isinstance(node, ast.Attribute) and id(node) not in called_ids}
+        self._names.self_contained_classes.add(definition.name)
+        for method, signature in read_method_signatures(definition):
+            if method.name not in passed_on:
                 name, details = f"{definition.name}.{method.name}", ((Detail.ARGUMENTS, signature.text),)
                 self._names.add(SourceName(NameKind.FUNCTION, name, "", self._python.span(method), details))
 
@@ -277,18 +288,28 @@ class _Reader:
     def _read_loop(self, loop: ast.For) -> None:
         """Add the parameters that a loop over a dictionary of defaults reads."""
         source = loop.iter
-        if isinstance(source, ast.Call) and isinstance(source.func, ast.Attribute) and source.func.attr in _ITEMS:
+        if (
+            isinstance(source, ast.Call)
+            and isinstance(source.func, ast.Attribute)
+            and source.func.attr in _DICTIONARY_METHODS
+        ):
             source = source.func.value
         defaults = self._python.resolved(source)
         variable = loop.target.elts[0] if isinstance(loop.target, ast.Tuple) else loop.target
         if not isinstance(defaults, ast.Dict) or not isinstance(variable, ast.Name):
             return
         calls = (node for node in ast.walk(loop) if isinstance(node, ast.Call) and node.args)
-        names = [call.args[0] for call in calls if called_name(call).rpartition(".")[2] in _LOOKED_UP]
-        used = [name for name in names if variable.id in (n.id for n in ast.walk(name) if isinstance(n, ast.Name))]
-        if not used:
+        names = [call.args[0] for call in calls if called_name(call).rpartition(".")[2] in _PARAMETER_NAME_CALLS]
+        names_with_variable = [
+            name for name in names if variable.id in (n.id for n in ast.walk(name) if isinstance(n, ast.Name))
+        ]
+        if not names_with_variable:
             return
-        prefix = "~" if isinstance(used[0], ast.BinOp) and self._python.text(used[0].left) == "~" else ""
+        prefix = (
+            "~"
+            if isinstance(names_with_variable[0], ast.BinOp) and self._python.text(names_with_variable[0].left) == "~"
+            else ""
+        )
         for key, value in zip(defaults.keys, defaults.values, strict=True):
             self._add(NameKind.PARAMETER, key, value, prefix=prefix)
 
@@ -296,34 +317,36 @@ class _Reader:
         for keyword in call.keywords:
             if keyword.arg in _FRAME_FIELDS and function not in _PARAMETER_CALLS:
                 self._add_frame(_FRAME_FIELDS[keyword.arg], keyword.value)
-        if function in _RCLPY:
-            kind, type_keyword, name_keyword, qos_index = _RCLPY[function]
-            qos = self._qos_details(_call_argument(call, qos_index, "qos_profile"))
-            self._add(kind, _call_argument(call, 1, name_keyword), _call_argument(call, 0, type_keyword), qos)
-            if kind in _WITH_CALLBACK:
-                self._add_callback(kind, _call_argument(call, 1, name_keyword), _call_argument(call, 2, "callback"))
-        elif function in _NODE_FIRST and len(call.args) > 2 and self._python.text(call.args[0]) is None:
+        if function in _RCLPY_METHODS:
+            kind, type_keyword, name_keyword, qos_index = _RCLPY_METHODS[function]
+            qos = self._read_qos(_get_argument(call, qos_index, "qos_profile"))
+            self._add(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 0, type_keyword), qos)
+            if kind in _CALLBACK_KEYWORDS:
+                self._add_callback(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 2, "callback"))
+        elif function in _NODE_FIRST_CLASSES and len(call.args) > 2 and self._python.text(call.args[0]) is None:
             self._add(
-                _NODE_FIRST[function], _call_argument(call, 2, "action_name"), _call_argument(call, 1, "action_type")
+                _NODE_FIRST_CLASSES[function],
+                _get_argument(call, 2, "action_name"),
+                _get_argument(call, 1, "action_type"),
             )
-            if _NODE_FIRST[function] is NameKind.ACTION:
-                self._add_callback(NameKind.ACTION, call.args[2], _call_argument(call, 3, "execute_callback"))
-        elif function in _NAME_FIRST and (call.args or call.keywords):
+            if _NODE_FIRST_CLASSES[function] is NameKind.ACTION:
+                self._add_callback(NameKind.ACTION, call.args[2], _get_argument(call, 3, "execute_callback"))
+        elif function in _NAME_FIRST_CLASSES and (call.args or call.keywords):
             self._read_ros1_call(call, function)
         elif function in _PARAMETER_CALLS:
             self._read_parameter(call, function)
         elif function == "declare_parameters":
-            self._read_parameters(_call_argument(call, 0, "namespace"), _call_argument(call, 1, "parameters"))
-        elif (function in _NODES and self._python.text(_call_argument(call, 0, "node_name")) is not None) or (
+            self._read_parameters(_get_argument(call, 0, "namespace"), _get_argument(call, 1, "parameters"))
+        elif (function in _NODE_CALLS and self._python.text(_get_argument(call, 0, "node_name")) is not None) or (
             function == "__init__" and self._is_node_constructor(call)
         ):
             self._names.makes_node = True
-            self._add(NameKind.NODE, _call_argument(call, 0, "node_name"), None)
+            self._add(NameKind.NODE, _get_argument(call, 0, "node_name"), None)
         else:
             self._read_other_call(call, function)
 
     def _read_ros1_call(self, call: ast.Call, function: str) -> None:
-        name, types = _call_argument(call, 0, "name"), _call_argument(call, 1, "data_class")
+        name, types = _get_argument(call, 0, "name"), _get_argument(call, 1, "data_class")
         if self._python.text(name) is None and not called_name(call).startswith(("rospy", "actionlib")):
             return
         details = []
@@ -331,20 +354,20 @@ class _Reader:
             value = argument_of(call, keyword)
             if isinstance(value, ast.Constant) and value.value not in (None, False):
                 details.append((detail, YES if value.value is True else str(value.value)))
-        kind = _NAME_FIRST[function]
+        kind = _NAME_FIRST_CLASSES[function]
         self._add(kind, name, types, tuple(details))
-        if kind in _WITH_CALLBACK:
-            self._add_callback(kind, name, _call_argument(call, 2, _WITH_CALLBACK[kind]))
+        if kind in _CALLBACK_KEYWORDS:
+            self._add_callback(kind, name, _get_argument(call, 2, _CALLBACK_KEYWORDS[kind]))
 
     def _read_other_call(self, call: ast.Call, function: str) -> None:
-        if function in _RATES and called_name(call).partition(".")[0] != "threading" and call.args:
+        if function in _RATE_CALLS and called_name(call).partition(".")[0] != "threading" and call.args:
             period = self._python.resolved(call.args[0])
-            text = f"{function}({_expression_text(self._python, period)})"
+            text = f"{function}({_format_expression(self._python, period)})"
             self._names.rates.append((text, self._python.span(call.args[0])))
             if "imer" in function:
-                self._add_callback(None, None, _call_argument(call, 1, "callback"))
-        elif function in _LOOKUPS:
-            for index in _LOOKUPS[function]:
+                self._add_callback(None, None, _get_argument(call, 1, "callback"))
+        elif function in _TRANSFORM_CALLS:
+            for index in _TRANSFORM_CALLS[function]:
                 if index < len(call.args):
                     self._add_frame(NameKind.FRAME_LOOKUP, call.args[index])
         elif function == "sendTransform" and len(call.args) == 5:
@@ -359,7 +382,10 @@ class _Reader:
             self._read_helper_call(call)
 
     def _read_helper_call(self, call: ast.Call) -> None:
-        """Add the parameter that a function of the repository reads: the name is one of the first two arguments."""
+        """Add the parameter that a function of the repository reads.
+
+        The name is one of the first two arguments.
+        """
         for index, argument in enumerate(call.args[:2]):
             text = argument.value if isinstance(argument, ast.Constant) else None
             if isinstance(text, str) and is_parameter_name(text):
@@ -385,17 +411,17 @@ class _Reader:
         for detail, keyword in ((Detail.VALUE_TYPE, "type"), (Detail.CHOICES, "choices")):
             node = argument_of(call, keyword)
             if node is not None:
-                details.append((detail, _expression_text(self._python, node)))
-        text = "" if default is None else _expression_text(self._python, default)
+                details.append((detail, _format_expression(self._python, node)))
+        text = "" if default is None else _format_expression(self._python, default)
         self._names.add(SourceName(NameKind.OPTION, name, text, self._python.span(call.args[0]), tuple(details)))
 
     def _read_parameter(self, call: ast.Call, function: str) -> None:
         index = 2 if function == "get_parameter_or" else 1
         keyword = "value" if function == "declare_parameter" else "default"
-        node, value = _call_argument(call, 0, "name"), _call_argument(call, index, keyword)
+        node, value = _get_argument(call, 0, "name"), _get_argument(call, index, keyword)
         is_ros1 = function.startswith("get_param") and function != "get_parameter_or"
         if is_ros1 and self._python.text(node) is None:
-            return  # a function of another name
+            return  # a different function with the same name
         resolved = None if value is None else self._python.resolved(value)
         details: tuple[tuple[Detail, str], ...] = ()
         if function == "declare_parameter" and isinstance(resolved, (ast.Constant, ast.UnaryOp)):
@@ -422,11 +448,11 @@ class _Reader:
     def _is_node_constructor(self, call: ast.Call) -> bool:
         """Return whether a call of ``__init__`` is in a subclass of a node."""
         classes = (node for node in ast.walk(self._python.tree) if isinstance(node, ast.ClassDef))
-        around = [node for node in classes if node.lineno <= call.lineno <= (node.end_lineno or node.lineno)]
-        return bool(around) and any(ast.unparse(base).endswith("Node") for base in around[-1].bases)
+        enclosing = [node for node in classes if node.lineno <= call.lineno <= (node.end_lineno or node.lineno)]
+        return bool(enclosing) and any(ast.unparse(base).endswith("Node") for base in enclosing[-1].bases)
 
-    def _qos_details(self, node: ast.expr | None) -> tuple[tuple[Detail, str], ...]:
-        text = "" if node is None else _expression_text(self._python, self._python.resolved(node))
+    def _read_qos(self, node: ast.expr | None) -> tuple[tuple[Detail, str], ...]:
+        text = "" if node is None else _format_expression(self._python, self._python.resolved(node))
         return ((Detail.QOS, text),) if _QOS.fullmatch(text) else ()
 
     def _add_frame(self, kind: NameKind, node: ast.expr) -> None:

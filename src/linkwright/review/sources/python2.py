@@ -47,15 +47,21 @@ def as_python3(text: str) -> str:
 
 
 def _expand_tabs(line: str) -> str:
-    """Return a line with spaces for tabs in the indentation. A tab in Python 2 is eight columns."""
+    """Return a line with spaces for tabs in the indentation.
+
+    A tab in Python 2 advances to a multiple of eight columns.
+    """
     content = line.lstrip(" \t\f")
     return line[: len(line) - len(content)].expandtabs(8) + content
 
 
 def _is_statement(text: str, end: int) -> bool:
-    """Return whether the word before an offset begins a Python 2 statement, and is not called or assigned."""
-    rest = text[end:].lstrip(" \t")
-    return not rest.startswith(("=", ".")) or rest.startswith("==")
+    """Return whether the word before an offset begins a Python 2 statement.
+
+    Otherwise, it is called or assigned.
+    """
+    following = text[end:].lstrip(" \t")
+    return not following.startswith(("=", ".")) or following.startswith("==")
 
 
 def _replace_statement(kind: str, part: str) -> str:

@@ -6,16 +6,16 @@ import ast
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import NamedTuple
 
-from linkwright.review.sources.python_methods import defined_attributes
-from linkwright.review.sources.signatures import is_plain
-from linkwright.review.sources.undefined_names import bound_names
+from linkwright.review.sources.python_methods import find_defined_attributes
+from linkwright.review.sources.signatures import is_self_contained
+from linkwright.review.sources.undefined_names import find_bound_names
 
-_DYNAMIC = frozenset({"setattr", "__dict__", "__setattr__", "__getattribute__", "vars"})
-"""The names by which a module can give objects other attributes."""
+_DYNAMIC_NAMES = frozenset({"setattr", "__dict__", "__setattr__", "__getattribute__", "vars"})
+"""The names with which a module can give objects further attributes."""
 
 
 class ModuleClasses(NamedTuple):
-    """The classes of a module that certainly have no methods besides those that the module defines.
+    """The classes of a module that have only the methods which it defines.
 
     Attributes:
         path: the path of the module.
@@ -31,8 +31,8 @@ class FailingCall(NamedTuple):
 
     Attributes:
         path: the path of the module that defines the class.
-        class_name: the class.
-        method: the method.
+        class_name: the name of the object's class.
+        method: the name of the missing method.
         node: the method in the call.
     """
 
@@ -42,62 +42,68 @@ class FailingCall(NamedTuple):
     node: ast.Attribute
 
 
-def classes_of(path: str, tree: ast.Module) -> ModuleClasses:
+def read_classes(path: str, tree: ast.Module) -> ModuleClasses:
     """Return the classes of a module without base classes and decorators."""
     names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
     names |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-    defined = frozenset(defined_attributes(tree))
-    if not _DYNAMIC.isdisjoint(names | defined):
+    defined = frozenset(find_defined_attributes(tree))
+    if not _DYNAMIC_NAMES.isdisjoint(names | defined):
         return ModuleClasses(path, {})
-    classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and is_plain(node)]
+    classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and is_self_contained(node)]
     count = [node.name for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))].count
     return ModuleClasses(path, {node.name: defined for node in classes if count(node.name) == 1})
 
 
-def failing_calls(tree: ast.Module, module: Callable[[str, int], ModuleClasses | None]) -> Iterator[FailingCall]:
-    """Yield the calls of methods that the objects of imported classes do not have, except those below ``try``.
+def find_failing_calls(
+    tree: ast.Module, find_module: Callable[[str, int], ModuleClasses | None]
+) -> Iterator[FailingCall]:
+    """Yield the calls of methods that the objects of imported classes lack.
+
+    Calls inside ``try`` are left out.
 
     Args:
         tree: the file with the calls.
-        module: the function that returns a module of the repository from its name and the number of dots before it.
+        find_module: the function that returns a module from its name and the number of dots before it.
     """
-    bound = list(bound_names(tree))
+    bound_names = list(find_bound_names(tree))
     classes: dict[str, tuple[str, str, frozenset[str]]] = {}
     for statement in tree.body:
-        found = module(statement.module or "", statement.level) if isinstance(statement, ast.ImportFrom) else None
-        if found is not None and isinstance(statement, ast.ImportFrom):
+        module_classes = (
+            find_module(statement.module or "", statement.level) if isinstance(statement, ast.ImportFrom) else None
+        )
+        if module_classes is not None and isinstance(statement, ast.ImportFrom):
             classes.update(
-                (alias.asname or alias.name, (found.path, alias.name, found.attributes[alias.name]))
+                (alias.asname or alias.name, (module_classes.path, alias.name, module_classes.attributes[alias.name]))
                 for alias in statement.names
-                if alias.name in found.attributes and bound.count(alias.asname or alias.name) == 1
+                if alias.name in module_classes.attributes and bound_names.count(alias.asname or alias.name) == 1
             )
-    objects = _objects(tree, classes.keys()) if classes else {}
-    guarded = {id(each) for node in ast.walk(tree) if isinstance(node, ast.Try)
-               for part in node.body for each in ast.walk(part)}  # fmt: skip
-    set_elsewhere = {node.attr for node in ast.walk(tree)
+    objects = _find_objects(tree, classes.keys()) if classes else {}
+    guarded_ids = {id(inner) for node in ast.walk(tree) if isinstance(node, ast.Try)
+               for part in node.body for inner in ast.walk(part)}  # fmt: skip
+    assigned_attributes = {node.attr for node in ast.walk(tree)
                      if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load)}  # fmt: skip
     for node in ast.walk(tree) if objects else ():
-        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute) or id(node) in guarded:
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute) or id(node) in guarded_ids:
             continue
         class_name, method = objects.get(ast.unparse(node.func.value), ""), node.func.attr
         path, name, attributes = classes.get(class_name, ("", "", frozenset()))
-        if path and not method.startswith("__") and method not in attributes and method not in set_elsewhere:
+        if path and not method.startswith("__") and method not in attributes and method not in assigned_attributes:
             yield FailingCall(path, name, method, node.func)
 
 
-def _objects(tree: ast.Module, classes: Collection[str]) -> dict[str, str]:
-    """Return the classes of the variables and attributes that are only assigned objects of one class."""
-    made = {
+def _find_objects(tree: ast.Module, classes: Collection[str]) -> dict[str, str]:
+    """Return the class of each variable that only gets objects of one class."""
+    constructed_classes = {
         id(target): node.value.func.id
         for node in ast.walk(tree)
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and isinstance(node.value.func, ast.Name)
         for target in node.targets
     }
-    assigned: dict[str, set[str]] = {}
+    classes_by_target: dict[str, set[str]] = {}
     for node in ast.walk(tree):
         if isinstance(node, (ast.Name, ast.Attribute)) and not isinstance(node.ctx, ast.Load):
-            assigned.setdefault(ast.unparse(node), set()).add(made.get(id(node), ""))
+            classes_by_target.setdefault(ast.unparse(node), set()).add(constructed_classes.get(id(node), ""))
         elif isinstance(node, ast.arg):
-            assigned.setdefault(node.arg, set()).add("")
-    pairs = ((target, names.pop()) for target, names in assigned.items() if len(names) == 1)
+            classes_by_target.setdefault(node.arg, set()).add("")
+    pairs = ((target, names.pop()) for target, names in classes_by_target.items() if len(names) == 1)
     return {target: name for target, name in pairs if name in classes}

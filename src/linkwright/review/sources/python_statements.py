@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import SourceText
 from linkwright.review.sources.python import parse_source
-from linkwright.review.sources.statements import Statement, statement_of
-from linkwright.review.sources.tokens import python_tokens
+from linkwright.review.sources.statements import Statement, parse_statement
+from linkwright.review.sources.tokens import tokenize_python
 
 _OUTPUT = re.compile(
     r"(?:print|pprint|warn|log\w*|_?log(?:ger)?|debug|info|warning|error|critical|exception|fatal|echo|write|"
@@ -19,8 +19,10 @@ _OUTPUT = re.compile(
 """The functions whose strings are for human readers."""
 
 
-def python_statements(source: SourceText) -> dict[str, list[Statement]]:
-    """Return the statements of a source by the name of their function or class; empty for the module.
+def read_python_statements(source: SourceText) -> dict[str, list[Statement]]:
+    """Return the statements of a source by function or class.
+
+    Statements of the module have an empty name.
 
     Raises:
         SyntaxError: the text is neither Python 3 nor Python 2.
@@ -32,58 +34,58 @@ def python_statements(source: SourceText) -> dict[str, list[Statement]]:
     for line in text.splitlines(keepends=True):
         line_starts.append(line_starts[-1] + len(line))
     reader = _Reader(text, line_starts)
-    for name, start, end in reader.parts(python.tree.body, ""):
-        tokens = python_tokens(text, start, end)
+    for name, start, end in reader.read_parts(python.tree.body, ""):
+        tokens = tokenize_python(text, start, end)
         if tokens:
-            functions.setdefault(name, []).append(statement_of(tokens))
+            functions.setdefault(name, []).append(parse_statement(tokens))
     return functions
 
 
 class _Reader:
     def __init__(self, text: str, line_starts: Sequence[int]) -> None:
         self._lines = text.splitlines()
-        self._starts = line_starts
+        self._line_starts = line_starts
 
-    def parts(self, body: Sequence[ast.stmt], scope: str) -> Iterator[tuple[str, int, int]]:
-        """Yield the function name, start and end offset of each statement without nested statements."""
+    def read_parts(self, body: Sequence[ast.stmt], scope: str) -> Iterator[tuple[str, int, int]]:
+        """Yield the scope, start and end of each statement without nested statements."""
         for node in body:
             if _is_for_readers(node):
                 continue
-            blocks = blocks_of(node)
+            blocks = get_blocks(node)
             if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-                inner = f"{scope}.{node.name}" if scope else node.name
+                inner_scope = f"{scope}.{node.name}" if scope else node.name
                 decorators = (
-                    self._offset(decorator.end_lineno or 0, decorator.end_col_offset or 0)
+                    self._to_offset(decorator.end_lineno or 0, decorator.end_col_offset or 0)
                     for decorator in node.decorator_list
                 )
-                start = max([self._offset(node.lineno, node.col_offset), *decorators])
-                yield inner, start, self._start(blocks[0][0])
-                yield from self.parts(node.body, inner)
+                start = max([self._to_offset(node.lineno, node.col_offset), *decorators])
+                yield inner_scope, start, self._find_start(blocks[0][0])
+                yield from self.read_parts(node.body, inner_scope)
                 continue
-            start = self._offset(node.lineno, node.col_offset)
+            start = self._to_offset(node.lineno, node.col_offset)
             if not blocks:
-                yield scope, start, self._offset(node.end_lineno or node.lineno, node.end_col_offset or 0)
+                yield scope, start, self._to_offset(node.end_lineno or node.lineno, node.end_col_offset or 0)
                 continue
-            yield scope, start, self._start(blocks[0][0])
+            yield scope, start, self._find_start(blocks[0][0])
             for block in blocks:
-                yield from self.parts(block, scope)
+                yield from self.read_parts(block, scope)
 
-    def _start(self, node: ast.stmt) -> int:
+    def _find_start(self, node: ast.stmt) -> int:
         """Return the offset of the first decorator of a statement, or of the statement itself."""
-        places = [(node.lineno, node.col_offset)]
+        positions = [(node.lineno, node.col_offset)]
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-            places += [(decorator.lineno, decorator.col_offset - 1) for decorator in node.decorator_list]
-        return self._offset(*min(places))
+            positions += [(decorator.lineno, decorator.col_offset - 1) for decorator in node.decorator_list]
+        return self._to_offset(*min(positions))
 
-    def _offset(self, line: int, column: int) -> int:
+    def _to_offset(self, line: int, column: int) -> int:
         """Return the offset in characters of a line and a column, which counts bytes in UTF-8."""
         content = self._lines[line - 1]
         if not content.isascii():
             column = len(content.encode()[: max(column, 0)].decode(errors="ignore"))
-        return self._starts[line - 1] + column
+        return self._line_starts[line - 1] + column
 
 
-def blocks_of(node: ast.stmt) -> list[list[ast.stmt]]:
+def get_blocks(node: ast.stmt) -> list[list[ast.stmt]]:
     """Return the blocks of a compound statement."""
     blocks = [getattr(node, name, []) for name in ("body", "orelse", "finalbody")]
     for child in (*getattr(node, "handlers", []), *getattr(node, "cases", [])):
@@ -99,11 +101,14 @@ def _is_for_readers(node: ast.stmt) -> bool:
         return False
     if isinstance(node.value, ast.Constant):
         return True
-    return any(_OUTPUT.fullmatch(name) or name == "get_logger" for name in called_names(node.value))
+    return any(_OUTPUT.fullmatch(name) or name == "get_logger" for name in list_called_names(node.value))
 
 
-def called_names(call: ast.expr) -> list[str]:
-    """Return the names in a called function, the last name first, such as ``info`` and ``get_logger``."""
+def list_called_names(call: ast.expr) -> list[str]:
+    """Return the names in a called function, the last name first.
+
+    They are ``info`` and ``get_logger`` for a call of a logger.
+    """
     function = call.func if isinstance(call, ast.Call) else None
     names: list[str] = []
     while function is not None:

@@ -11,11 +11,11 @@ from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON
 from linkwright.review.sources.python import read_dynamic_parameters, read_python
 
 _MAX_BYTES = 1 << 20
-_PYTHON_LINE = b"python"
+_PYTHON_NAME = b"python"
 _FORMATTED_TEXT = "f-string"
 """The beginning of the messages about errors in formatted texts."""
 
-_HEAD = 500
+_HEADER_CHARACTERS = 500
 """The number of characters at the beginning of a source in which generators leave their mark."""
 _GENERATED = re.compile(
     r"^[ \t]*(?:#|//|/?\*).*\b(?:auto-?generated|(?:generated|created)\s+(?:by|from)|do not edit)\b",
@@ -25,7 +25,7 @@ _GENERATED = re.compile(
 
 def is_generated(text: str) -> bool:
     """Return whether the comments at the beginning of a source say that a program generates it."""
-    return _GENERATED.search(text[:_HEAD]) is not None
+    return _GENERATED.search(text[:_HEADER_CHARACTERS]) is not None
 
 
 def try_read_source(path: Path) -> SourceText | None:
@@ -75,4 +75,4 @@ def is_program_text(path: Path) -> bool:
         return False
     if path.suffix == DYNAMIC_SUFFIX:
         return b"ParameterGenerator" in head
-    return head.startswith(b"#!") and _PYTHON_LINE in head.splitlines()[0]
+    return head.startswith(b"#!") and _PYTHON_NAME in head.splitlines()[0]

@@ -10,14 +10,14 @@ from linkwright.review.breaking import frame_reason, name_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 
-_CLIENTS = (NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME)
-_HEADERS = "include"
+_CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME)
+_HEADER_FOLDER = "include"
 
 
 def is_used_by_others(kind: NameKind, path: str, names: SourceNames) -> bool:
     """Return whether other files can use the names of a kind in a source.
 
-    C++ classes count if they are in a header for other packages, Python functions if they can be imported.
+    C++ definitions count in headers for other packages, and Python functions in modules that are not programs.
 
     Args:
         kind: the kind of the names.
@@ -29,11 +29,11 @@ def is_used_by_others(kind: NameKind, path: str, names: SourceNames) -> bool:
     pure_path = PurePosixPath(path)
     if pure_path.suffix == PYTHON_SUFFIX:
         return not names.is_program or kind is NameKind.CLASS
-    return pure_path.suffix in CPP_SUFFIXES and _HEADERS in pure_path.parts
+    return pure_path.suffix in CPP_SUFFIXES and _HEADER_FOLDER in pure_path.parts
 
 
-def removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -> Phrase | None:
-    """Return the reason why removing names is breaking, or None if other programs do not use them.
+def find_removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -> Phrase | None:
+    """Return the reason why removing names is breaking, or None.
 
     Args:
         items: the names, all of the same kind.
@@ -41,7 +41,7 @@ def removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -
         path: the path of the old source.
     """
     kind = items[0].kind
-    if kind in _CLIENTS:
+    if kind in _CLIENT_KINDS:
         return None
     text = joined_first([item.name for item in items], MAX_NAMES)
     if kind is NameKind.PARAMETER:

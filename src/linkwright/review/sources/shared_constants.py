@@ -1,4 +1,4 @@
-"""Read text constants that sources share: those of included headers and of imported Python modules."""
+"""Read text constants of included headers and imported Python modules."""
 
 from __future__ import annotations
 
@@ -25,63 +25,63 @@ _MAX_USERS = 50
 """The maximum number of unchanged sources that are compared because of a changed constant."""
 
 
-def header_constants(texts: Sequence[str]) -> dict[str, str]:
+def read_header_constants(texts: Sequence[str]) -> dict[str, str]:
     """Return the text constants of headers by name. A name with several values is left out.
 
     Args:
         texts: the texts of the headers without comments.
     """
-    found: dict[str, set[str]] = {}
+    values_by_name: dict[str, set[str]] = {}
     for text in texts:
         for match in _CONSTANT.finditer(text):
             value = match["text"] if match["name"] else match["value"]
-            found.setdefault(match["name"] or match["macro"], set()).add(value)
-    return {name: values.pop() for name, values in found.items() if len(values) == 1}
+            values_by_name.setdefault(match["name"] or match["macro"], set()).add(value)
+    return {name: values.pop() for name, values in values_by_name.items() if len(values) == 1}
 
 
-def imported_constants(path: Path, tree: ast.Module) -> dict[str, ast.expr]:
-    """Return the text constants that a Python source imports from modules of its folder or its package.
+def read_imported_constants(path: Path, tree: ast.Module) -> dict[str, ast.expr]:
+    """Return the text constants that a source imports from its folder or package.
 
     The keys are the names in the source, such as ``SCAN``, or ``topics.SCAN`` for a constant of an imported module.
     """
     constants: dict[str, ast.expr] = {}
     for node in tree.body:
         if isinstance(node, ast.ImportFrom):
-            own = _module_constants(path, node.module or "", node.level)
+            own = _read_module_constants(path, node.module or "", node.level)
             for alias in node.names:
                 local = alias.asname or alias.name
                 if alias.name in own:
                     constants[local] = own[alias.name]
                     continue
                 module = f"{node.module}.{alias.name}" if node.module else alias.name
-                inner = _module_constants(path, module, node.level)
+                inner = _read_module_constants(path, module, node.level)
                 constants |= {f"{local}.{name}": value for name, value in inner.items()}
         elif isinstance(node, ast.Import):
             for alias in node.names:
-                own = _module_constants(path, alias.name, 0)
+                own = _read_module_constants(path, alias.name, 0)
                 constants |= {f"{alias.asname or alias.name}.{name}": value for name, value in own.items()}
     return constants
 
 
-def _module_constants(path: Path, module: str, level: int) -> Mapping[str, ast.expr]:
+def _read_module_constants(path: Path, module: str, level: int) -> Mapping[str, ast.expr]:
     """Return the text constants of a module that a source imports.
 
     The result is empty for a module outside of the package, including targets of links and ``..``.
     """
     parts = module.split(".") if module else []
     folder = path.parents[level - 1] if 0 < level <= len(path.parents) else path.parent
-    places = [folder.joinpath(*parts)]
+    bases = [folder.joinpath(*parts)]
     if not level and parts and parts[0] == folder.name:
-        places.append(folder.parent.joinpath(*parts))
+        bases.append(folder.parent.joinpath(*parts))
     package = enclosing_package(path.parent)
     base = (path.parent if package is None else package[1]).resolve()
-    files = (place.with_name(f"{place.name}{PYTHON_SUFFIX}").resolve() for place in places if parts)
+    files = (base_path.with_name(f"{base_path.name}{PYTHON_SUFFIX}").resolve() for base_path in bases if parts)
     file = next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
-    return {} if file is None else _python_constants(str(file), file.stat().st_mtime_ns)
+    return {} if file is None else _read_python_constants(str(file), file.stat().st_mtime_ns)
 
 
 @lru_cache(maxsize=256)
-def _python_constants(path: str, _modified: int) -> Mapping[str, ast.expr]:
+def _read_python_constants(path: str, _modified_ns: int) -> Mapping[str, ast.expr]:
     """Return the names at the top of a Python file that are assigned a text once."""
     file = Path(path)
     try:
@@ -90,18 +90,20 @@ def _python_constants(path: str, _modified: int) -> Mapping[str, ast.expr]:
         tree = PythonFile(SourceText(path, file.read_text("utf-8"))).tree
     except (OSError, SyntaxError, ValueError, RecursionError):
         return {}
-    stored = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
+    assigned_names = [
+        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    ]
     return {
         target.id: node.value
         for node in tree.body
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
         for target in node.targets
-        if isinstance(target, ast.Name) and stored.count(target.id) == 1
+        if isinstance(target, ast.Name) and assigned_names.count(target.id) == 1
     }
 
 
-def users_of_changed_constants(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[ChangedFile]:
-    """Yield the unchanged sources that use a constant of a changed header or module, whose value differs.
+def find_constant_users(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[ChangedFile]:
+    """Yield the unchanged sources that use a constant whose value changed.
 
     Only sources of the same package are searched.
     """
@@ -111,7 +113,10 @@ def users_of_changed_constants(versions: Versions, changed_files: Sequence[Chang
         path = PurePosixPath(file.path)
         if None in (file.old_path, file.new_path) or path.suffix not in (*HEADER_SUFFIXES, PYTHON_SUFFIX):
             continue
-        old, new = _constants(versions.old, file.old_path or ""), _constants(versions.new, file.new_path or "")
+        old, new = (
+            _read_constants(versions.old, file.old_path or ""),
+            _read_constants(versions.new, file.new_path or ""),
+        )
         names = [name for name, value in new.items() if name in old and old[name] != value]
         if not names:
             continue
@@ -120,16 +125,16 @@ def users_of_changed_constants(versions: Versions, changed_files: Sequence[Chang
         pattern = re.compile(rf"\b(?:{'|'.join(map(re.escape, names))})\b")
         for user in versions.new.paths(suffixes, versions.new.package_of(file.path) or ""):
             text = versions.new.text(user)
-            is_part = user not in changed and TEST_FOLDERS.isdisjoint(PurePosixPath(user).parts)
-            if is_part and word in text and pattern.search(text) and versions.old.file(user).is_file():
+            is_searched = user not in changed and TEST_FOLDERS.isdisjoint(PurePosixPath(user).parts)
+            if is_searched and word in text and pattern.search(text) and versions.old.file(user).is_file():
                 users[user] = None
     yield from (ChangedFile(user, user) for user in list(users)[:_MAX_USERS])
 
 
-def _constants(version: Version, path: str) -> dict[str, str]:
+def _read_constants(version: Version, path: str) -> dict[str, str]:
     """Return the text constants of a header or a Python module."""
     file = version.file(path)
     if not path.endswith(PYTHON_SUFFIX):
-        return header_constants([version.text(path)])
-    values = _python_constants(str(file), file.stat().st_mtime_ns) if file.is_file() else {}
+        return read_header_constants([version.text(path)])
+    values = _read_python_constants(str(file), file.stat().st_mtime_ns) if file.is_file() else {}
     return {name: str(value.value) for name, value in values.items() if isinstance(value, ast.Constant)}

@@ -1,4 +1,4 @@
-"""Compare the parameters of Python functions: which calls fit, and which calls another version accepts."""
+"""Compare the parameters of Python functions with calls and with other versions."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ class Signature:
     Attributes:
         text: the parameters as written, in parentheses and without annotations.
         positional: the names of the parameters that take positional arguments.
-        unnamed: the number of positional-only parameters.
-        required: the number of required positional parameters.
+        positional_only_count: the number of positional-only parameters.
+        required_count: the number of required positional parameters.
         keywords: the names of the keyword-only parameters.
         required_keywords: the names of the required keyword-only parameters.
-        has_rest: whether the function takes any other positional arguments (``*args``).
-        has_keywords: whether the function takes any other keyword arguments (``**kwargs``).
+        has_varargs: whether the function takes any number of positional arguments (``*args``).
+        has_kwargs: whether the function takes any keyword argument (``**kwargs``).
     """
 
     text: str
     positional: tuple[str, ...]
-    unnamed: int
-    required: int
+    positional_only_count: int
+    required_count: int
     keywords: tuple[str, ...]
     required_keywords: tuple[str, ...]
-    has_rest: bool
-    has_keywords: bool
+    has_varargs: bool
+    has_kwargs: bool
 
     def fits(self, call: ast.Call) -> bool:
         """Return whether a call fits the function. A call with uncertain arguments fits."""
@@ -39,39 +39,47 @@ class Signature:
             return True
         count = len(call.args)
         given = set(self.positional[:count])
-        named = {*self.positional[self.unnamed :], *self.keywords}
-        is_known = all(name in named or self.has_keywords for name in names)
-        is_complete = {*self.positional[: self.required], *self.required_keywords} <= given | set(names)
-        return is_known and is_complete and given.isdisjoint(names) and (count <= len(self.positional) or self.has_rest)
+        named = {*self.positional[self.positional_only_count :], *self.keywords}
+        is_known = all(name in named or self.has_kwargs for name in names)
+        is_complete = {*self.positional[: self.required_count], *self.required_keywords} <= given | set(names)
+        return (
+            is_known and is_complete and given.isdisjoint(names) and (count <= len(self.positional) or self.has_varargs)
+        )
 
     def accepts_calls_of(self, other: Signature) -> bool:
-        """Return whether this version accepts all calls of another version that use no argument names."""
-        has_room = len(self.positional) >= len(other.positional) or self.has_rest
-        rest = set(other.keywords) - {*self.keywords, *self.positional}
+        """Return whether a function accepts all calls of another version.
+
+        Calls with keyword arguments for positional parameters are not considered.
+        """
+        has_room = len(self.positional) >= len(other.positional) or self.has_varargs
+        missing_keywords = set(other.keywords) - {*self.keywords, *self.positional}
         return (
-            self.required <= other.required
+            self.required_count <= other.required_count
             and has_room
             and set(self.required_keywords) <= set(other.keywords)
-            and (not rest or self.has_keywords)
-            and self.has_rest >= other.has_rest
-            and self.has_keywords >= other.has_keywords
+            and (not missing_keywords or self.has_kwargs)
+            and self.has_varargs >= other.has_varargs
+            and self.has_kwargs >= other.has_kwargs
         )
 
 
-_NONE = Signature("()", (), 0, 0, (), (), has_rest=False, has_keywords=False)
+_NO_PARAMETERS = Signature("()", (), 0, 0, (), (), has_varargs=False, has_kwargs=False)
 
 
-def is_plain(definition: ast.ClassDef) -> bool:
-    """Return whether a class certainly has no methods besides its body."""
+def is_self_contained(definition: ast.ClassDef) -> bool:
+    """Return whether a class certainly has no methods other than those in its body."""
     bases = [ast.unparse(base) for base in definition.bases]
     names = {node.name for node in definition.body if isinstance(node, ast.FunctionDef)}
-    is_bare = not definition.decorator_list and not definition.keywords
-    return is_bare and bases in ([], ["object"]) and "__getattr__" not in names
+    is_undecorated = not definition.decorator_list and not definition.keywords
+    return is_undecorated and bases in ([], ["object"]) and "__getattr__" not in names
 
 
-def method_signatures(definition: ast.ClassDef) -> Iterator[tuple[ast.FunctionDef, Signature]]:
-    """Yield the public methods, without decorators, of a class without base classes, with their parameters."""
-    if not is_plain(definition):
+def read_method_signatures(definition: ast.ClassDef) -> Iterator[tuple[ast.FunctionDef, Signature]]:
+    """Yield the public undecorated methods of a class and their parameters.
+
+    Classes with base classes are left out.
+    """
+    if not is_self_contained(definition):
         return
     for node in definition.body:
         is_public = isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
@@ -79,8 +87,11 @@ def method_signatures(definition: ast.ClassDef) -> Iterator[tuple[ast.FunctionDe
             yield node, _make_signature(node.args, first=1)
 
 
-def signature_of(definition: ast.stmt) -> Signature | None:
-    """Return the parameters of a function, or of the constructor of a class, or None if they are not certain."""
+def read_signature(definition: ast.stmt) -> Signature | None:
+    """Return the parameters of a function or class, or None if they are uncertain.
+
+    The parameters of a class are those of its constructor.
+    """
     if isinstance(definition, (ast.FunctionDef, ast.AsyncFunctionDef)) and not definition.decorator_list:
         return _make_signature(definition.args, first=0)
     if not isinstance(definition, ast.ClassDef) or definition.decorator_list or definition.keywords:
@@ -91,7 +102,7 @@ def signature_of(definition: ast.stmt) -> Signature | None:
     if "__init__" in methods:
         is_certain = not methods["__init__"].decorator_list
         return _make_signature(methods["__init__"].args, first=1) if is_certain else None
-    return _NONE if is_plain(definition) else None
+    return _NO_PARAMETERS if is_self_contained(definition) else None
 
 
 def parse_signature(text: str) -> Signature | None:
@@ -100,7 +111,7 @@ def parse_signature(text: str) -> Signature | None:
         (definition,) = ast.parse(f"def f{text}: ...").body
     except (SyntaxError, ValueError):
         return None
-    return signature_of(definition)
+    return read_signature(definition)
 
 
 def _make_signature(arguments: ast.arguments, first: int) -> Signature:

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from linkwright.review.list_changes import change_text, differing_excerpts
-from linkwright.review.sources.tokens import Token, TokenKind, bracket_pairs, join_tokens
+from linkwright.review.sources.tokens import Token, TokenKind, join_tokens, match_brackets
 
-_PLACE = "\0"
+_LITERAL_MARK = "\0"
 """The mark for a literal in the shape of a statement. Sources do not contain this character."""
 _LITERAL_WORDS = frozenset({"True", "False", "true", "false", "None", "nullptr"})
-_SWITCHES = {"True": "1", "true": "1", "False": "0", "false": "0"}
+_BOOLEAN_NUMBERS = {"True": "1", "true": "1", "False": "0", "false": "0"}
 _CONSTANT = re.compile(r"_?[A-Z][A-Z0-9_]+")
 _JOINERS = frozenset({".", "::", "->"})
 _ASSIGNMENTS = frozenset({"=", "+=", "-=", "*=", "/=", "%=", "|=", "&=", "//=", "**=", ":="})
@@ -25,16 +25,16 @@ _KEYWORDS = frozenset(
 )
 _COMPARISONS = frozenset({"==", "!=", "<", ">", "<=", ">="})
 _SIGNS = frozenset({"-", "+"})
-_PROSE_WORDS = 3
+_MIN_PROSE_WORDS = 3
 """The minimum number of words of a sentence for human readers."""
 _HASH = re.compile(r'"[0-9a-fA-F]{32,}"')
 _TEXTS_FOR_READERS = frozenset({"help", "description", "epilog", "doc", "metavar", "usage"})
 """The keyword arguments whose strings are for human readers."""
-_MAX_TEMPLATE = 40
+_MAX_TEMPLATE_TOKENS = 40
 """The maximum number of tokens in the arguments of a template."""
-_MAX_FIRST = 30
+_MAX_FIRST_ARGUMENT_CHARACTERS = 30
 """The maximum number of characters of the shown first argument of a call, which often names the thing."""
-_MAX_EXPRESSION = 60
+_MAX_EXPRESSION_CHARACTERS = 60
 """The maximum number of characters of the shown expression around a literal."""
 
 
@@ -60,7 +60,10 @@ class Literal(NamedTuple):
         return self.value.startswith('"')
 
     def differs_from(self, other: Literal) -> bool:
-        """Return whether two literals have different values of the same kind. A constant may have any value."""
+        """Return whether two literals have different values of the same kind.
+
+        A constant may have any value.
+        """
         return self.value != other.value and self.constant == other.constant
 
 
@@ -86,7 +89,7 @@ class Statement(NamedTuple):
     Attributes:
         tokens: the tokens of the statement.
         literals: the literals that are compared.
-        shape: the text of the statement with a mark in place of each of these literals.
+        shape: the text of the statement with a mark for each of these literals.
     """
 
     tokens: tuple[Token, ...]
@@ -98,12 +101,12 @@ class Statement(NamedTuple):
         """The texts by which equal statements are found."""
         return (self.shape, *(literal.value for literal in self.literals))
 
-    def text(self, first: int, last: int) -> str:
+    def get_text(self, first: int, last: int) -> str:
         """Return the text of the tokens from a first to a last index, both included."""
         return join_tokens(self.tokens[first : last + 1])
 
 
-def statement_of(tokens: Sequence[Token]) -> Statement:
+def parse_statement(tokens: Sequence[Token]) -> Statement:
     """Return the statement that the tokens form."""
     literals = tuple(_find_literals(tokens))
     parts: list[str] = []
@@ -112,7 +115,7 @@ def statement_of(tokens: Sequence[Token]) -> Statement:
     while index < len(tokens):
         literal = starts.get(index)
         if literal is not None:
-            parts.append(_PLACE)
+            parts.append(_LITERAL_MARK)
             index = literal.last + 1
             continue
         is_last_comma = tokens[index].text == "," and tokens[index + 1 : index + 2] and tokens[index + 1].text in ")]}"
@@ -124,12 +127,12 @@ def statement_of(tokens: Sequence[Token]) -> Statement:
 
 def _find_literals(tokens: Sequence[Token]) -> Iterator[Literal]:
     """Yield the literals of a statement, except keys and assigned names."""
-    index = _assigned_end(tokens)
-    pairs = bracket_pairs(tokens)
+    index = _find_assignment_end(tokens)
+    pairs = match_brackets(tokens)
     while index < len(tokens):
-        last = _list_end(tokens, index, pairs)
+        last = _find_list_end(tokens, index, pairs)
         if last is None:
-            last = _literal_end(tokens, index)
+            last = _find_literal_end(tokens, index)
         if last is not None and not _is_key(tokens, last) and not _is_for_readers(tokens, index, last):
             # the kind of a number decides how it is divided
             is_divided = "/" in (
@@ -142,7 +145,7 @@ def _find_literals(tokens: Sequence[Token]) -> Iterator[Literal]:
         index = index + 1 if last is None else last + 1
 
 
-def _assigned_end(tokens: Sequence[Token]) -> int:
+def _find_assignment_end(tokens: Sequence[Token]) -> int:
     """Return the index of the first token after the last assignment outside of brackets, or 0."""
     depth = end = 0
     for index, token in enumerate(tokens):
@@ -153,8 +156,8 @@ def _assigned_end(tokens: Sequence[Token]) -> int:
     return end
 
 
-def _list_end(tokens: Sequence[Token], index: int, pairs: dict[int, int]) -> int | None:
-    """Return the index of the closing bracket if a list of literals begins at an index, or None."""
+def _find_list_end(tokens: Sequence[Token], index: int, pairs: dict[int, int]) -> int | None:
+    """Return the index of the bracket that closes a list of literals, or None."""
     end = pairs.get(index, -1)
     if tokens[index].text not in ("[", "(", "{") or end < index + 2:
         return None
@@ -164,9 +167,9 @@ def _list_end(tokens: Sequence[Token], index: int, pairs: dict[int, int]) -> int
             return None  # arguments, or the index of an item
     position, count = index + 1, 0
     while position < end:
-        last = _list_end(tokens, position, pairs)
+        last = _find_list_end(tokens, position, pairs)
         if last is None and tokens[position].kind is not TokenKind.WORD:
-            last = _literal_end(tokens, position)
+            last = _find_literal_end(tokens, position)
         elif last is None and tokens[position].text in _LITERAL_WORDS:
             last = position
         if last is None or tokens[last + 1].text not in (",", *")]}"):
@@ -177,8 +180,8 @@ def _list_end(tokens: Sequence[Token], index: int, pairs: dict[int, int]) -> int
     return None if is_grouped else end
 
 
-def _literal_end(tokens: Sequence[Token], index: int) -> int | None:
-    """Return the index of the last token of a literal that begins at an index, or None if there is none."""
+def _find_literal_end(tokens: Sequence[Token], index: int) -> int | None:
+    """Return the index of the last token of a literal, or None if none begins here."""
     token = tokens[index]
     if token.kind is TokenKind.NUMBER or token.text in _LITERAL_WORDS:
         return index
@@ -196,11 +199,11 @@ def _literal_end(tokens: Sequence[Token], index: int) -> int | None:
             or previous.text in _KEYWORDS
         )
         return index + 1 if is_sign else None
-    return _constant_end(tokens, index)
+    return _find_constant_end(tokens, index)
 
 
-def _constant_end(tokens: Sequence[Token], index: int) -> int | None:
-    """Return the index of the last token of a constant such as ``Mode.FAST``, or None if there is none."""
+def _find_constant_end(tokens: Sequence[Token], index: int) -> int | None:
+    """Return the index of the last token of a constant such as ``Mode.FAST``, or None."""
     if tokens[index].kind is not TokenKind.WORD or tokens[index].text in _KEYWORDS:
         return None
     previous = tokens[index - 1] if index else None
@@ -234,13 +237,13 @@ def _is_for_readers(tokens: Sequence[Token], first: int, last: int) -> bool:
     return (
         is_named
         or is_formatted
-        or len(value.split(None, _PROSE_WORDS)) >= _PROSE_WORDS
+        or len(value.split(None, _MIN_PROSE_WORDS)) >= _MIN_PROSE_WORDS
         or _HASH.fullmatch(value) is not None
     )
 
 
 def _normalize_literal(tokens: Sequence[Token], *, is_divided: bool = False) -> str:
-    """Return a literal in normalized form, without the kind of quotation marks, spaces and a trailing comma."""
+    """Return a literal without spaces, kind of quotation marks and trailing comma."""
     parts: list[str] = []
     for index, token in enumerate(tokens):
         if token.kind is TokenKind.TEXT:
@@ -251,13 +254,16 @@ def _normalize_literal(tokens: Sequence[Token], *, is_divided: bool = False) -> 
         elif token.text == "," and tokens[index + 1].text in ")]}":
             continue
         else:
-            text = _SWITCHES.get(token.text, token.text)
+            text = _BOOLEAN_NUMBERS.get(token.text, token.text)
             parts.append(normalize_number(text, is_divided=is_divided) if token.kind is TokenKind.NUMBER else text)
     return "".join(parts).replace('""', "") or '""'
 
 
 def normalize_number(text: str, *, is_divided: bool) -> str:
-    """Return a number in normalized form: ``0.20`` is ``.2``, and ``1.0`` is ``1`` unless it is divided."""
+    """Return a number in normalized form.
+
+    ``0.20`` becomes ``.2``, and ``1.0`` becomes ``1`` unless it is divided.
+    """
     match = re.fullmatch(r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)[fFlLuU]*", text.replace("'", ""))
     if match is None:
         return text.lower()
@@ -265,44 +271,51 @@ def normalize_number(text: str, *, is_divided: bool) -> str:
     return f"{float(match['number']):.12g}{'.' if is_real else ''}"
 
 
-# --- wording --------------------------------------------------------------------------------------------------------
+# --- reports --------------------------------------------------------------------------------------------------------
 
 
-def literal_differences(old: Statement, new: Statement) -> Iterator[Difference]:
+def find_literal_differences(old: Statement, new: Statement) -> Iterator[Difference]:
     """Yield the literals that differ between two statements of the same shape."""
     pairs = list(zip(old.literals, new.literals, strict=True))
-    brackets = bracket_pairs(new.tokens)
+    brackets = match_brackets(new.tokens)
     changed = [pair for pair in pairs if pair[0].differs_from(pair[1])]
     index = 0
     while index < len(changed):
         (old_literal, new_literal) = changed[index]
-        start, end = _expression_around(new.tokens, new_literal, brackets)
+        start, end = _find_expression(new.tokens, new_literal, brackets)
         group = [pair for pair in changed[index:] if pair[1].last <= end]
         index += len(group)
-        texts = (old.text(old_literal.first, old_literal.last), new.text(new_literal.first, new_literal.last))
+        texts = (old.get_text(old_literal.first, old_literal.last), new.get_text(new_literal.first, new_literal.last))
         token = new.tokens[new_literal.first]
         is_compared = start == new_literal.first or new.tokens[new_literal.first - 1].text in _COMPARISONS
         if len(group) == 1 and end == new_literal.last and is_compared:
-            before = new.text(start, new_literal.first - 1)
+            before = new.get_text(start, new_literal.first - 1)
             expression = f"{before}{' ' if before and token.has_space else ''}{texts[0]} -> {texts[1]}"
         else:
             first, last = old_literal.first - (new_literal.first - start), group[-1][0].last + end - group[-1][1].last
-            expression = " -> ".join(differing_excerpts(old.text(first, last), new.text(start, end)))
-        if len(expression) > 2 * _MAX_EXPRESSION and len(group) == 1:
+            expression = " -> ".join(differing_excerpts(old.get_text(first, last), new.get_text(start, end)))
+        if len(expression) > 2 * _MAX_EXPRESSION_CHARACTERS and len(group) == 1:
             expression = " -> ".join(differing_excerpts(*texts))
-        if len(expression) > 2 * _MAX_EXPRESSION and new_literal.last > new_literal.first and len(group) == 1:
-            label = _with_context(new, start, end, "[...]", brackets)
-            yield Difference(change_text(label, *map(_as_list, texts)), *texts, token)
+        if (
+            len(expression) > 2 * _MAX_EXPRESSION_CHARACTERS
+            and new_literal.last > new_literal.first
+            and len(group) == 1
+        ):
+            label = _add_context(new, start, end, "[...]", brackets)
+            yield Difference(change_text(label, *map(_format_list, texts)), *texts, token)
             continue
-        yield Difference(_with_context(new, start, end, expression, brackets), *texts, token)
+        yield Difference(_add_context(new, start, end, expression, brackets), *texts, token)
 
 
-def _as_list(text: str) -> str:
+def _format_list(text: str) -> str:
     return f"[{text.strip()[1:-1].strip().rstrip(',')}]"
 
 
-def _expression_around(tokens: Sequence[Token], literal: Literal, brackets: dict[int, int]) -> tuple[int, int]:
-    """Return the indexes of the first and last token of the expression around a literal, within its brackets."""
+def _find_expression(tokens: Sequence[Token], literal: Literal, brackets: dict[int, int]) -> tuple[int, int]:
+    """Return the first and last token of the expression around a literal.
+
+    The expression ends at the brackets around the literal.
+    """
     start, end = literal.first, literal.last
     is_in_template = end + 1 < len(tokens) and tokens[end + 1].text == ">" and start > 0
     if is_in_template and tokens[start - 1].text in ("<", ","):
@@ -329,48 +342,48 @@ def _ends_expression(token: Token) -> bool:
     return is_keyword or (token.kind is TokenKind.OPERATOR and token.text in (*_DELIMITERS, "&&", "||"))
 
 
-def _with_context(new: Statement, start: int, end: int, expression: str, brackets: dict[int, int]) -> str:
+def _add_context(new: Statement, start: int, end: int, expression: str, brackets: dict[int, int]) -> str:
     """Return a changed expression with the assigned name or the called function."""
     tokens = new.tokens
     before = tokens[start - 1] if start else None
     opening = next((index for index in range(start - 1, -1, -1) if brackets.get(index, -1) > end), None)
     if before is not None and before.text == ":" and opening is not None and tokens[opening].text == "{":
-        return f"{_entry_path(tokens, start - 1, brackets)} {expression}"
+        return f"{_find_entry_path(tokens, start - 1, brackets)} {expression}"
     if before is None or before.kind is TokenKind.WORD:
         word = before.text if before is not None and before.text in ("return", "case") else ""
         return f"{word} {expression}".strip()
     if before.text in _ASSIGNMENTS:
-        name = _name_before(tokens, start - 2, brackets)
+        name = _find_name_before(tokens, start - 2, brackets)
         if opening is None or tokens[opening].text != "(":
             sign = "" if before.text in ("=", ":=") else f"{before.text} "
             return f"{name} {sign}{expression}".strip()
         expression = f"{name}={expression}"
         start -= 2
-    return expression if opening is None else _as_argument(tokens, opening, (start, end), expression, brackets)
+    return expression if opening is None else _format_argument(tokens, opening, (start, end), expression, brackets)
 
 
-def _as_argument(
-    tokens: Sequence[Token], opening: int, place: tuple[int, int], expression: str, brackets: dict[int, int]
+def _format_argument(
+    tokens: Sequence[Token], opening: int, changed_range: tuple[int, int], expression: str, brackets: dict[int, int]
 ) -> str:
     """Return a changed expression with the function or list around it."""
-    name = _name_before(tokens, opening - 1, brackets)
+    name = _find_name_before(tokens, opening - 1, brackets)
     if not name or tokens[opening - 1].text in _KEYWORDS:
         return expression
     closing = brackets[opening]
-    if tokens[opening].text == "{" and (opening, closing) == (place[0] - 1, place[1] + 1):
+    if tokens[opening].text == "{" and (opening, closing) == (changed_range[0] - 1, changed_range[1] + 1):
         return f"{name} {expression}"
-    commas = _find_commas(tokens, opening, place[0], brackets)
-    left = "..., " if commas else ""
+    commas = _find_commas(tokens, opening, changed_range[0], brackets)
+    left_text = "..., " if commas else ""
     if commas and tokens[opening].text == "(":
         first = join_tokens(tokens[opening + 1 : commas[0]])
-        if len(first) <= _MAX_FIRST:
-            left = f"{first}, " if len(commas) == 1 else f"{first}, ..., "
-    right = "" if closing == place[1] + 1 else ", ..."
-    return f"{name}{tokens[opening].text}{left}{expression}{right}{tokens[closing].text}"
+        if len(first) <= _MAX_FIRST_ARGUMENT_CHARACTERS:
+            left_text = f"{first}, " if len(commas) == 1 else f"{first}, ..., "
+    right_text = "" if closing == changed_range[1] + 1 else ", ..."
+    return f"{name}{tokens[opening].text}{left_text}{expression}{right_text}{tokens[closing].text}"
 
 
 def _find_commas(tokens: Sequence[Token], opening: int, end: int, brackets: dict[int, int]) -> list[int]:
-    """Return the indexes of the commas between the arguments from an opening bracket to an index."""
+    """Return the indexes of the commas between an opening bracket and an index."""
     commas = []
     index = opening + 1
     while index < end:
@@ -380,7 +393,7 @@ def _find_commas(tokens: Sequence[Token], opening: int, end: int, brackets: dict
     return commas
 
 
-def _entry_path(tokens: Sequence[Token], colon: int, brackets: dict[int, int]) -> str:
+def _find_entry_path(tokens: Sequence[Token], colon: int, brackets: dict[int, int]) -> str:
     """Return the path of a dictionary entry: the assigned name of the dictionary and the keys."""
     keys: list[str] = []
     while True:
@@ -391,12 +404,15 @@ def _entry_path(tokens: Sequence[Token], colon: int, brackets: dict[int, int]) -
             break
         colon = opening - 1
     is_assigned = opening is not None and opening > 1 and tokens[opening - 1].text == "="
-    name = _name_before(tokens, opening - 2, brackets) if is_assigned and opening is not None else ""
+    name = _find_name_before(tokens, opening - 2, brackets) if is_assigned and opening is not None else ""
     return f"{name} {'.'.join(keys)}".strip()
 
 
-def _name_before(tokens: Sequence[Token], index: int, brackets: dict[int, int]) -> str:
-    """Return the name, such as ``self.rate`` or ``items[0]``, that ends at an index; empty if there is none."""
+def _find_name_before(tokens: Sequence[Token], index: int, brackets: dict[int, int]) -> str:
+    """Return the name that ends at an index; empty if there is none.
+
+    Names may be ``self.rate`` or ``items[0]``.
+    """
     parts: list[Token] = []
     while index >= 0:
         token = tokens[index]
@@ -405,7 +421,7 @@ def _name_before(tokens: Sequence[Token], index: int, brackets: dict[int, int]) 
             index = brackets[index] - 1
             continue
         if token.text == ">" and not parts:
-            index = _before_template(tokens, index)
+            index = _find_template_start(tokens, index)
             continue
         if token.kind is TokenKind.OPERATOR or token.text in _KEYWORDS:
             break
@@ -417,14 +433,14 @@ def _name_before(tokens: Sequence[Token], index: int, brackets: dict[int, int]) 
         index -= 1
     name = join_tokens(parts)
     if index > 0 and tokens[index].text == ":" and tokens[index - 1].kind is TokenKind.WORD:
-        name = _name_before(tokens, index - 1, brackets)  # the name before an annotation
-    return name if len(name) <= _MAX_EXPRESSION else ""
+        name = _find_name_before(tokens, index - 1, brackets)  # the name before an annotation
+    return name if len(name) <= _MAX_EXPRESSION_CHARACTERS else ""
 
 
-def _before_template(tokens: Sequence[Token], index: int) -> int:
-    """Return the index before the arguments of a template that end at an index, or -1 if there are none."""
+def _find_template_start(tokens: Sequence[Token], index: int) -> int:
+    """Return the index before template arguments that end at an index, or -1."""
     depth = 0
-    for start in range(index, max(index - _MAX_TEMPLATE, -1), -1):
+    for start in range(index, max(index - _MAX_TEMPLATE_TOKENS, -1), -1):
         text = tokens[start].text
         depth += (text == ">") - (text == "<")
         if depth <= 0:

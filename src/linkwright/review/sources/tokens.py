@@ -1,4 +1,4 @@
-"""Split a C++ or Python source into tokens: words, literals and operators, without comments."""
+"""Split a C++ or Python source into words, literals and operators."""
 
 from __future__ import annotations
 
@@ -57,12 +57,12 @@ class Token(NamedTuple):
         return self.start + len(self.text)
 
 
-def python_tokens(text: str, start: int = 0, end: int | None = None) -> list[Token]:
+def tokenize_python(text: str, start: int = 0, end: int | None = None) -> list[Token]:
     """Return the tokens of a part of a Python source."""
     return _tokenize(_PYTHON, text, start, end)
 
 
-def cpp_tokens(text: str, start: int = 0, end: int | None = None) -> list[Token]:
+def tokenize_cpp(text: str, start: int = 0, end: int | None = None) -> list[Token]:
     """Return the tokens of a part of a C++ source. Preprocessor directives are read like code."""
     return _tokenize(_CPP, text, start, end)
 
@@ -86,7 +86,7 @@ def join_tokens(tokens: Sequence[Token]) -> str:
     return "".join(parts)
 
 
-def bracket_pairs(tokens: Sequence[Token]) -> dict[int, int]:
+def match_brackets(tokens: Sequence[Token]) -> dict[int, int]:
     """Return the index of the matching bracket for each bracket that has one."""
     pairs: dict[int, int] = {}
     opened: list[int] = []

@@ -22,7 +22,7 @@ from linkwright.review.sources.names import (
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Version
 
-_SEARCHES = re.compile(r"\bGLOB(?:_RECURSE)?\b|\baux_source_directory\b", re.IGNORECASE)
+_SOURCE_SEARCH = re.compile(r"\bGLOB(?:_RECURSE)?\b|\baux_source_directory\b", re.IGNORECASE)
 """The commands of CMake that find sources by patterns."""
 _COUNTERPARTS = {
     NameKind.PUBLISHER: NameKind.SUBSCRIPTION,
@@ -39,7 +39,7 @@ class UnchangedSources:
     """The unchanged sources of a package, without tests, launch files and unbuilt copies.
 
     Args:
-        version: the version.
+        version: the version of the repository.
         package: the folder of the package.
         changed: the paths of the changed sources.
     """
@@ -52,35 +52,37 @@ class UnchangedSources:
 
     def has_text(self, name: str) -> bool:
         """Return whether one of the sources contains a text in quotation marks."""
-        return any(True for _ in self._paths_with(name))
+        return any(True for _ in self._find_paths(name))
 
-    def has_same(self, item: SourceName) -> bool:
+    def has_name(self, item: SourceName) -> bool:
         """Return whether one of the sources has a name of the same kind."""
-        paths = self._paths_with(item.name)
-        return any(item.name == other.name for path in paths for other in self._of(path, item.kind))
+        paths = self._find_paths(item.name)
+        return any(item.name == other.name for path in paths for other in self._read_names(path, item.kind))
 
-    def user(self, item: SourceName) -> str | None:
-        """Return the path of a source that uses the other end of a topic, service or action, or None for none."""
+    def find_user(self, item: SourceName) -> str | None:
+        """Return the path of a source that uses the other end of a name, or None."""
         kind = _COUNTERPARTS[item.kind]
         names = dict.fromkeys((item.name, item.name.lstrip("/"), f"/{item.name}"))
-        paths = (path for name in names for path in self._paths_with(name))
-        return next((path for path in paths if any(is_same_topic(item, other) for other in self._of(path, kind))), None)
+        paths = (path for name in names for path in self._find_paths(name))
+        return next(
+            (path for path in paths if any(is_same_topic(item, other) for other in self._read_names(path, kind))), None
+        )
 
-    def _of(self, path: str, kind: NameKind) -> Iterator[SourceName]:
+    def _read_names(self, path: str, kind: NameKind) -> Iterator[SourceName]:
         if path not in self._names:
             self._names[path] = read_source_names(self._version.file(path))
         return self._names[path].of_kind(kind)
 
-    def _paths_with(self, name: str) -> Iterator[str]:
+    def _find_paths(self, name: str) -> Iterator[str]:
         texts = (f'"{name}"', f"'{name}'")
         return (path for path, content in self._texts.items() if any(text in content for text in texts))
 
     @cached_property
     def _texts(self) -> dict[str, str]:
         paths = self._version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX), self._package)
-        return {path: self._version.text(path) for path in paths if self._is_part(PurePosixPath(path))}
+        return {path: self._version.text(path) for path in paths if self._is_searched(PurePosixPath(path))}
 
-    def _is_part(self, path: PurePosixPath) -> bool:
+    def _is_searched(self, path: PurePosixPath) -> bool:
         if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
             return False
         return path.as_posix() not in self._changed and self._is_built(path)
@@ -101,37 +103,40 @@ class UnchangedSources:
         if has_cmake or facts is None or not facts.is_complete:
             return None
         names = python_packages(self._version, self._package)
-        places = [f"{part}{name}" for name in names for part in ("", "src/")]
-        return [PurePosixPath(self._package) / place for place in (*places, *facts.files.values())]
+        paths = [f"{part}{name}" for name in names for part in ("", "src/")]
+        return [PurePosixPath(self._package) / path for path in (*paths, *facts.files.values())]
 
     @cached_property
     def _built_sources(self) -> frozenset[str] | None:
         """The C++ sources that the package builds, or None if they are unknown."""
         facts = package_facts(self._version, self._package)
         text = self._version.text(f"{self._package}/{CMAKE_FILE}".lstrip("/"))
-        if facts is None or not facts.targets or _SEARCHES.search(text):
+        if facts is None or not facts.targets or _SOURCE_SEARCH.search(text):
             return None
         paths = (source for parts in facts.targets.values() for source in parts.sources)
         return frozenset((PurePosixPath(self._package) / path).as_posix() for path in paths)
 
 
-def counterpart(kind: NameKind) -> NameKind | None:
-    """Return the kind of name at the other end of a topic, service or action, or None for other names."""
+def get_counterpart(kind: NameKind) -> NameKind | None:
+    """Return the kind at the other end of a topic, service or action, or None."""
     return _COUNTERPARTS.get(kind)
 
 
 def is_same_topic(item: SourceName, other: SourceName) -> bool:
-    """Return whether two names of a package lead to the same topic, service or action outside of namespaces."""
+    """Return whether two names mean the same topic, service or action.
+
+    Namespaces are ignored.
+    """
     return item.name.lstrip("/") == other.name.lstrip("/")
 
 
-def user_reason(kind: NameKind, path: str, name: str) -> Phrase:
-    """Return the reason why removing a name is breaking while another source of the package uses it.
+def make_user_reason(kind: NameKind, path: str, name: str) -> Phrase:
+    """Return the reason why removing a name breaks a source that still uses it.
 
     Args:
         kind: the kind of the removed name.
         path: the path of the other source.
-        name: the name.
+        name: the removed name.
     """
     values = {"file": PurePosixPath(path).name, "name": name}
     if kind is NameKind.PUBLISHER:

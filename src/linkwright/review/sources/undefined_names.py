@@ -6,7 +6,7 @@ import ast
 import builtins
 from collections.abc import Iterator
 
-_PYTHON_2 = frozenset(
+_PYTHON_2_BUILTINS = frozenset(
     {
         *(
             "unicode",
@@ -25,12 +25,12 @@ _PYTHON_2 = frozenset(
     }
 )
 """The builtins of Python 2, and builtins that other programs add."""
-_DYNAMIC = frozenset({"globals", "exec", "execfile", "setattr", "builtins", "__builtins__", "vars"})
-"""The names by which a source can define others."""
+_DYNAMIC_NAMES = frozenset({"globals", "exec", "execfile", "setattr", "builtins", "__builtins__", "vars"})
+"""The names with which a source can define further names."""
 
 
-def bound_names(tree: ast.AST) -> Iterator[str]:
-    """Yield a name for each place where a source binds it; ``*`` for all names of a module."""
+def find_bound_names(tree: ast.AST) -> Iterator[str]:
+    """Yield each name as often as a source binds it; ``*`` for all names of a module."""
     for node in ast.walk(tree):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             yield node.name
@@ -44,30 +44,30 @@ def bound_names(tree: ast.AST) -> Iterator[str]:
             yield from node.names
         elif isinstance(name := getattr(node, "name", None), str):
             yield name  # of an error, a pattern or the parameter of a type
-        elif isinstance(rest := getattr(node, "rest", None), str):
-            yield rest
+        elif isinstance(rest_name := getattr(node, "rest", None), str):
+            yield rest_name  # of a mapping pattern
 
 
-def undefined_names(tree: ast.AST) -> dict[str, ast.Name]:
+def find_undefined_names(tree: ast.AST) -> dict[str, ast.Name]:
     """Return the first use of each name that the source certainly does not define.
 
     Uses in annotations, which need not be evaluated, and inside ``try`` are left out.
     """
-    bound = set(bound_names(tree))
-    used = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
-    names = {node.id for node in used} - bound - set(dir(builtins)) - _PYTHON_2
-    if "*" in bound or not _DYNAMIC.isdisjoint(node.id for node in used):
+    bound_names = set(find_bound_names(tree))
+    uses = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
+    names = {node.id for node in uses} - bound_names - set(dir(builtins)) - _PYTHON_2_BUILTINS
+    if "*" in bound_names or not _DYNAMIC_NAMES.isdisjoint(node.id for node in uses):
         return {}
     names = {name for name in names if not name.startswith("__")}
-    skipped = {id(inner) for part in _uncertain_parts(tree) for inner in ast.walk(part)} if names else set()
-    found: dict[str, ast.Name] = {}
-    for node in sorted(used, key=lambda node: (node.lineno, node.col_offset)):
-        if node.id in names and id(node) not in skipped:
-            found.setdefault(node.id, node)
-    return found
+    skipped_ids = {id(inner) for part in _find_uncertain_parts(tree) for inner in ast.walk(part)} if names else set()
+    first_uses: dict[str, ast.Name] = {}
+    for node in sorted(uses, key=lambda node: (node.lineno, node.col_offset)):
+        if node.id in names and id(node) not in skipped_ids:
+            first_uses.setdefault(node.id, node)
+    return first_uses
 
 
-def _uncertain_parts(tree: ast.AST) -> Iterator[ast.AST]:
+def _find_uncertain_parts(tree: ast.AST) -> Iterator[ast.AST]:
     """Yield the annotations, and the statements whose errors are caught."""
     for node in ast.walk(tree):
         for name in ("annotation", "returns"):
