@@ -43,7 +43,7 @@ def test_node_that_another_action_starts_is_not_missing(repository, compare, rep
         text = text.replace(old, new)
     repository.commit({"arm/launch/arm.launch": JOY})
     repository.write({"arm/launch/arm.launch": text})
-    unused = "argument 'local' is not used any more"
+    unused = "argument 'local' is no longer used"
     assert [sentence for sentence in breaking(compare(repository)) if sentence != unused] == expected
 
 
@@ -165,7 +165,7 @@ def test_switch_that_stops_several_actions_names_all_of_them_and_static_transfor
     ((_, change),) = compare(repository).breaking_changes
     assert str(change.reason) == (
         "by default, include of '$(find laser)/laser.launch', node 'laser/filter', "
-        "node 'tf/static_transform_publisher' of 'laser' do not start any more"
+        "node 'tf/static_transform_publisher' of 'laser' no longer start"
     )
 
 
@@ -182,5 +182,5 @@ SPAWNS = f'<launch><node pkg="rviz2" exec="rviz2"/>{SPAWN}</launch>'
         (SPAWN.replace("<node", '<node if="false"'), True),
     ],
 )
-def test_robot_that_is_not_spawned_any_more_is_breaking(review_changes, new, is_breaking):
+def test_robot_that_is_no_longer_spawned_is_breaking(review_changes, new, is_breaking):
     assert bool(review_changes("arm.launch.xml", SPAWNS, SPAWN, new)[1]) is is_breaking

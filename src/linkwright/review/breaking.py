@@ -49,7 +49,7 @@ def _joint_reason(difference: Difference, old: Robot) -> Phrase | None:
     if difference.property != "type" or difference.old not in MOVING_TYPES:
         return None
     if difference.new not in MOVING_TYPES:
-        return phrase("'{name}' has no position in /joint_states any more", name=difference.name)
+        return phrase("'{name}' no longer has a position in /joint_states", name=difference.name)
     if (difference.old == _LINEAR) != (difference.new == _LINEAR):
         return phrase("the positions of '{name}' change between rad and m", name=difference.name)
     return None

@@ -145,7 +145,7 @@ class FilePair:
         elif new is not None and not new.is_certain:
             self.add_unreadable(self.versions.new, new)
         elif new is not None:
-            text = phrase("cannot be read any more: {reason}", reason=new.text)
+            text = phrase("can no longer be read: {reason}", reason=new.text)
             reason = phrase("launch files and programs that use the file fail")
             location = Location(new.path or self.new_path, new.line, new.column) if new.line else None
             self.changes.append(Change(text, Effect.BREAKING, reason, location, cases))

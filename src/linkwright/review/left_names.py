@@ -34,13 +34,9 @@ def find_left_names(
         for element in user.walk():
             name = element.text().strip().rpartition(_SCOPE)[2]
             if LINK_TAG.search(element.tag) and name in links:
-                yield _make_change(
-                    user, element, phrase("the link '{name}' does not exist any more", name=name), location
-                )
+                yield _make_change(user, element, phrase("the link '{name}' no longer exists", name=name), location)
             elif JOINT_TAG.search(element.tag) and name in joints:
-                yield _make_change(
-                    user, element, phrase("the joint '{name}' does not exist any more", name=name), location
-                )
+                yield _make_change(user, element, phrase("the joint '{name}' no longer exists", name=name), location)
 
 
 def _make_change(

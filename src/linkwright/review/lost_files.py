@@ -72,7 +72,7 @@ def _lost_targets(
     ):
         if targets:
             names = list_names(files_and_folders(targets, new.files))
-            yield Change(phrase("not installed any more: {names}", names=names), Effect.BREAKING, reason)
+            yield Change(phrase("no longer installed: {names}", names=names), Effect.BREAKING, reason)
 
 
 def _relative_to_package(facts: BuildFacts, path: str) -> str:

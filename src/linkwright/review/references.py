@@ -59,6 +59,6 @@ def _is_lost(versions: Versions, path: str, package: str, subpath: str, lost: Co
 
 
 def _make_change(path: str, package: str, subpath: str, span: Span) -> Change:
-    text = phrase("names '{file}' of '{package}', which does not exist any more", file=subpath, package=package)
+    text = phrase("names '{file}' of '{package}', which no longer exists", file=subpath, package=package)
     reason = phrase("the launch file does not find the file")
     return Change(text, Effect.BREAKING, reason, Location(path, span.line, span.column))

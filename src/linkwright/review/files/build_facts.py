@@ -145,7 +145,7 @@ class EnvironmentVariables:
                 pair.add(text, pair.location(span))
         for name, span in self._spans.items():
             if name not in new._spans:
-                text = phrase("environment variable '{name}' does not decide any more what is built", name=name)
+                text = phrase("environment variable '{name}' no longer decides what is built", name=name)
                 reason = phrase("a value that a user sets for '{name}' has no effect", name=name)
                 pair.add(text, pair.location(span, is_old=True), reason)
 
@@ -435,7 +435,7 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             pair.add(phrase("installed now: {names}", names=list_names(names)), None)
     if removed:
         names = files_and_folders(removed, new.files)
-        text = phrase("not installed any more: {names}", names=list_names(names))
+        text = phrase("no longer installed: {names}", names=list_names(names))
         pair.add(text, None, phrase("programs that look for the files do not find them"))
 
 

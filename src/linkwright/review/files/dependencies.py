@@ -114,7 +114,7 @@ def _is_metapackage(manifest: Manifest) -> bool:
 def _lost_reason(manifest: Manifest) -> Phrase:
     """Return the reason why it is breaking that dependents no longer get a package through this one."""
     if _is_metapackage(manifest):
-        return phrase("installing the package does not install them any more")
+        return phrase("installing the package no longer installs them")
     return phrase("packages that have them only through this package do not build")
 
 

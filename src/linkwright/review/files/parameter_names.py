@@ -73,7 +73,7 @@ class NameRules:
         removed = _name_items(old) - _name_items(new)
         removed -= {name for name in removed if any(may_be(item, name) for item in _name_items(new))}
         if _TRANSFORMS.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
-            return phrase("the node does not publish its transform any more")
+            return phrase("the node no longer publishes its transform")
         is_offered = offers_frame(parameter)
         if is_offered:
             removed -= self._new_frames
@@ -227,7 +227,7 @@ def renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -
     if node is None or part_names(part)[:-1] == part_names(new_part)[:-1]:
         return _renamed_node_reason(part, new_part, values)
     if new_node is not None and matches_node(new_node, node):
-        return phrase("values that are set under the old names have no effect any more")
+        return phrase("values that are set under the old names no longer have an effect")
     return phrase("the node '{name}' starts without these parameters", name=node)
 
 

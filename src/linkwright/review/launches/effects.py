@@ -96,11 +96,11 @@ def removal_reason(
     if entry.kind == "remapping":
         return _remapping_reason(entry.name, entry.settings.get("to"), None, outline, outline)
     if _is_spawner(entry):
-        return None if _spawns_as_many(outline, new) else phrase("the robot or model is not spawned any more")
+        return None if _spawns_as_many(outline, new) else phrase("the robot or model is no longer spawned")
     if entry.kind not in ("node", "include") or offers_nothing(entry):
         return None
     if entry.kind == "include":
-        return phrase("its nodes do not start any more") if stops_nodes else None
+        return phrase("its nodes no longer start") if stops_nodes else None
     if any(_starts_same_node(entry, other, outline, new) for other in new.entries):
         return None
     if entry.name.startswith(_JOINT_STATES) and any(other.name.startswith(_JOINT_STATES) for other in new.entries):
@@ -195,7 +195,7 @@ def setting_reason(
     if entry.kind in ("node", "include") and setting == CONDITION and (_is_spawner(entry) or not offers_nothing(entry)):
         held = condition_holds(old_outline.resolve(old or ""))
         does_not_hold = condition_holds(new_outline.resolve(new or "")) is False
-        return phrase("by default, it does not start any more") if held and does_not_hold else None
+        return phrase("by default, it no longer starts") if held and does_not_hold else None
     if entry.kind != "node" or offers_nothing(entry):
         return None
     if setting.startswith(REMAPPING):
@@ -296,9 +296,9 @@ def _default_reason(
         dict.fromkeys(title(entry) for entry, setting, _ in _sort_by_importance(uses) if setting == CONDITION)
     )
     if len(stopped) > 1:
-        return phrase("by default, {entries} do not start any more", entries=joined_first(stopped, MAX_NAMES))
+        return phrase("by default, {entries} no longer start", entries=joined_first(stopped, MAX_NAMES))
     if stopped:
-        return phrase("by default, {entry} does not start any more", entry=stopped[0])
+        return phrase("by default, {entry} no longer starts", entry=stopped[0])
     reason = next((reason for _, _, reason in uses), None)
     if reason is None and old_value and _NAME_ARGUMENT.search(argument.name) and "/" not in f"{old_value}{new_value}":
         return name_reason(old_value)

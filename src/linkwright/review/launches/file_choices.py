@@ -51,7 +51,7 @@ class FileChoices:
             names = quoted_names(sorted(lost))
             is_used = (is_known and old_file != new_file) or any(map(self._is_passed, lost))
             reason = phrase("the value that a caller passes for {names} chooses another file", names=names)
-            text = phrase("{names} does not choose the file '{file}' any more", names=names, file=after)
+            text = phrase("{names} no longer chooses the file '{file}'", names=names, file=after)
             if is_known and old_file != new_file:
                 text = phrase(
                     "{change}; by default, it is '{new}' instead of '{old}'", change=text, old=old_file, new=new_file

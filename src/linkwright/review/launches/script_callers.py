@@ -129,5 +129,5 @@ def _launch_changes(version: Version, path: str, ignoring: set[str]) -> Iterator
 
 def _ignored(program: str, location: Location) -> Change:
     name = PurePosixPath(program).name
-    text = phrase("arguments are passed to '{program}', which does not read them any more", program=name)
+    text = phrase("arguments are passed to '{program}', which no longer reads them", program=name)
     return Change(text, Effect.BREAKING, phrase("the program starts without the values"), location)

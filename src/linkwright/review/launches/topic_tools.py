@@ -47,7 +47,7 @@ def forwarding_reason(
 
 
 def _input_reason(name: str) -> Phrase:
-    return phrase("the messages of '{name}' are not forwarded any more", name=name)
+    return phrase("the messages of '{name}' are no longer forwarded", name=name)
 
 
 def _may_be_among(name: str, names: list[str]) -> bool:

@@ -164,5 +164,5 @@ def _file_changes(file: ChangedFile, old: Outline | Phrase | None, new: Outline 
         if names:
             yield Change(phrase("macro '{name}' added", name=names[0]), other_names=tuple(names[1:]))
     if isinstance(old, Outline) and new is not None and not isinstance(new, Outline):
-        text = phrase("the file cannot be read any more: {reason}", reason=new)
+        text = phrase("the file can no longer be read: {reason}", reason=new)
         yield Change(text, Effect.BREAKING, phrase("descriptions that include the file cannot be expanded"))

@@ -148,7 +148,7 @@ class _Pair:
         """Yield the change that the new version cannot be parsed, unless another version of Python may parse it."""
         names = self.new.names(self.file.new_path)
         if names.error_line and names.is_error_certain:
-            text = phrase("cannot be parsed any more")
+            text = phrase("can no longer be parsed")
             reason = phrase("programs that run or import the file fail")
             yield Change(text, Effect.BREAKING, reason, Location(self.file.path, names.error_line, 1))
 
@@ -267,7 +267,7 @@ class _Pair:
             yield self._change(text, lost[0].span, self.old, self._removal_reason(lost, old_names))
         kept = [item for item in removed if item.name in hidden]
         if kept:
-            text = phrase("{kind} not public any more: {names}", kind=kind.plural, names=_names_text(kept))
+            text = phrase("{kind} no longer public: {names}", kind=kind.plural, names=_names_text(kept))
             yield self._change(text, kept[0].span, self.old, self._removal_reason(kept, old_names))
 
     def _removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
@@ -379,11 +379,11 @@ class _Pair:
         """Yield the names and methods that are still used but no longer defined or imported."""
         for name, span in new_names.undefined.items() if self.file.old_path is not None else ():
             if name in old_names.bound:
-                text = phrase("'{name}' is used, but nothing defines or imports it any more", name=name)
+                text = phrase("'{name}' is used, but is no longer defined or imported", name=name)
                 yield self._change(text, span, self.new, phrase("the code that uses the name fails"))
         for name, span in new_names.undefined_methods.items():
             if name in old_names.attributes:
-                text = phrase("calls its method '{name}', which nothing defines any more", name=name)
+                text = phrase("calls its method '{name}', which is no longer defined", name=name)
                 yield self._change(text, span, self.new, phrase("the call fails"))
 
     @staticmethod
