@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.reports.sections import summary_text
+from linkwright.review.reports.sections import format_summary
 from tests.repositories import Repository
 from tests.review.conftest import breaking, sentences, subject
 
@@ -73,7 +73,7 @@ def test_changes_of_several_files_are_counted_in_each(repository: Repository, co
     repository.write({path: text.replace(SCRIPT, "").replace(' default="false"', "") for path, text in files.items()})
     result = compare(repository)
     assert len(sentences(subject(result, "arm/launch/a.launch"))) == 2
-    assert str(summary_text(result)).startswith("3 breaking changes, 6 changes, ")
+    assert str(format_summary(result)).startswith("3 breaking changes, 6 changes, ")
 
 
 ADDED = """<launch>

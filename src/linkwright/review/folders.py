@@ -45,7 +45,10 @@ def finding_with_package_uris(finding: Diagnostic, shares: Mapping[str, Path]) -
 
 
 def _change_texts(value: _Value, change: Callable[[str], str]) -> _Value:
-    """Return a text, or a tuple or mapping of texts, with all texts and arguments of phrases changed."""
+    """Return a text, or a tuple or mapping of texts, with each text changed.
+
+    The arguments of phrases are also changed.
+    """
     if isinstance(value, Phrase):
         if change(str(value)) == str(value):
             return value

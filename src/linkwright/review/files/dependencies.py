@@ -42,7 +42,9 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
     """Report changed dependencies and conditions, with the same change of several packages in one line."""
     names = PackageNames(find_renamed_packages(pair.versions))
     new_elements = _elements_by_key(new)
-    old_elements = {_Key(tag, names.of_package(name)): found for (tag, name), found in _elements_by_key(old).items()}
+    old_elements = {
+        _Key(tag, names.translate_package(name)): found for (tag, name), found in _elements_by_key(old).items()
+    }
     edits: dict[_Edit, list[_Key]] = {}
     for package in dict.fromkeys(key.package for key in (*new_elements, *old_elements)):
         before, after = (

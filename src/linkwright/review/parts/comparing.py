@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Effect, ExpandedPlace, Subject, SubjectKind
-from linkwright.review.failures import failure_problem
+from linkwright.review.changes import Change, Effect, ExpandedElement, Subject, SubjectKind
+from linkwright.review.failures import make_problem
 from linkwright.review.parts.contents import compare_contents, comparison_of
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.interface import (
@@ -56,7 +56,7 @@ def compare_parts(
         try:
             part = comparer.subject(file, is_compared=number is not None)
         except Exception as error:  # noqa: BLE001 - whatever it is, the other files are compared
-            problems = [failure_problem(error)]
+            problems = [make_problem(error)]
             part = Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, [], problems=problems)
         if number is None:
             result.append(part)
@@ -72,7 +72,7 @@ def compare_parts(
 
 class _Comparer:
     def __init__(
-        self, versions: Versions, expanded: Collection[ExpandedPlace], is_complete: Callable[[str], bool]
+        self, versions: Versions, expanded: Collection[ExpandedElement], is_complete: Callable[[str], bool]
     ) -> None:
         self._versions = versions
         self._expanded = expanded

@@ -5,26 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.descriptions import Description
-from linkwright.review.changes import FILE, ExpandedPlace
+from linkwright.review.changes import FILE, ExpandedElement
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element
 
 
-def expanded_places(versions: Versions, old: Description, new: Description) -> Iterator[ExpandedPlace]:
+def expanded_places(versions: Versions, old: Description, new: Description) -> Iterator[ExpandedElement]:
     """Yield the elements of changed files that two expansions use: written elements, macro calls and includes."""
     for version, description in ((versions.old, old), (versions.new, new)):
         paths = {file.old_path if version.is_old else file.new_path for file in versions.changed_files}
         yield from _used_places(version, description, {path for path in paths if path})
 
 
-def _used_places(version: Version, description: Description, paths: set[str]) -> Iterator[ExpandedPlace]:
+def _used_places(version: Version, description: Description, paths: set[str]) -> Iterator[ExpandedElement]:
     names: dict[str, str] = {}
     for file in description.files:
         path = version.relative(file)
         if path in paths:
             names[str(file)] = path
-            yield ExpandedPlace(path, FILE, version.is_old)
+            yield ExpandedElement(path, FILE, version.is_old)
     if not names:
         return
     seen: set[int] = set()
@@ -38,7 +38,7 @@ def _used_places(version: Version, description: Description, paths: set[str]) ->
             yield from _element_place(call_frame.site, names, version)
 
 
-def _element_place(element: Element, names: dict[str, str], version: Version) -> Iterator[ExpandedPlace]:
+def _element_place(element: Element, names: dict[str, str], version: Version) -> Iterator[ExpandedElement]:
     path = None if element.source is None else names.get(element.source.name)
     if path is not None:
-        yield ExpandedPlace(path, element.offset, version.is_old)
+        yield ExpandedElement(path, element.offset, version.is_old)
