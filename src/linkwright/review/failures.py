@@ -36,7 +36,7 @@ def make_problem(error: Exception) -> Problem:
 
 
 def _format_bug(error: Exception) -> Phrase:
-    """Return the line about a bug, with the location in Linkwright where the exception was raised."""
+    """Return the line about a bug, with the location of the exception in Linkwright."""
     frames = [frame for frame in extract_tb(error.__traceback__) if Path(frame.filename).is_relative_to(_ROOT)]
     location = f"{Path(frames[-1].filename).relative_to(_ROOT).as_posix()}:{frames[-1].lineno}" if frames else "-"
     return phrase(

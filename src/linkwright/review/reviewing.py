@@ -151,7 +151,7 @@ class _Reviewer:
     def run(self, workers: int) -> Review:
         pairs = list(self._find_pairs())
         expanded = [pair for pair in pairs if pair[0].kind in _EXPANDED_KINDS]
-        with _process_pool(workers if len(expanded) >= _MIN_PARALLEL_DESCRIPTIONS else 1) as submit:
+        with _open_process_pool(workers if len(expanded) >= _MIN_PARALLEL_DESCRIPTIONS else 1) as submit:
             subjects = [submit(compare_file, self._versions, *pair, self._drawings) for pair in pairs]
             findings = [
                 submit(find_findings, version, self._make_check_targets(version, expanded))
@@ -442,7 +442,7 @@ def _list_reported_paths(subjects: Sequence[Subject]) -> set[str]:
 
 
 @contextmanager
-def _process_pool(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
+def _open_process_pool(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
     """Yield a function that submits a call to a pool of processes.
 
     It returns a function that waits for the result.

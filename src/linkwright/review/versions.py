@@ -163,10 +163,10 @@ class Version:
 
     def with_relative_paths(self, finding: Diagnostic) -> Diagnostic:
         """Return a finding with paths of files in the repository relative to the root."""
-        notes = tuple(note._replace(span=self._relative_span(note.span)) for note in finding.notes)
-        return finding.with_changes(span=self._relative_span(finding.span), notes=notes)
+        notes = tuple(note._replace(span=self._make_span_relative(note.span)) for note in finding.notes)
+        return finding.with_changes(span=self._make_span_relative(finding.span), notes=notes)
 
-    def _relative_span(self, span: Span | None) -> Span | None:
+    def _make_span_relative(self, span: Span | None) -> Span | None:
         return None if span is None else span._replace(file=self.relative(span.file) or span.file)
 
     @cached_property

@@ -44,7 +44,7 @@ def compare_descriptions(pair: FilePair) -> None:
     """Compare two versions of a description with each set of argument values."""
     groups: dict[Hashable, _Group] = {}
     collisions: list[Change] = []
-    for case in _cases_to_compare(pair, groups):
+    for case in _find_cases_to_compare(pair, groups):
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
             continue
@@ -76,7 +76,7 @@ def compare_descriptions(pair: FilePair) -> None:
     pair.changes += collisions
 
 
-def _cases_to_compare(pair: FilePair, groups: Sized) -> Iterator[Case]:
+def _find_cases_to_compare(pair: FilePair, groups: Sized) -> Iterator[Case]:
     """Yield the cases of callers, and inverted boolean arguments if these show no change."""
     compared = []
     for case in find_cases(pair):
