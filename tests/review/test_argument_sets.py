@@ -137,7 +137,7 @@ def test_robot_that_breaks_with_every_set_is_one_breaking_change(package, compar
     package.commit({"arm_description/launch/arm.launch.py": LAUNCH})
     package.write({PATH: ARM.replace("</robot>", "<<<<<<< ours\n</robot>")})
     (sentence,) = breaking(compare(package))
-    assert sentence.startswith(f"cannot be read any more: {PATH}:")
+    assert sentence.startswith(f"can no longer be read: {PATH}:")
 
 
 ROOT_ROBOT = """<?xml version="1.0"?>

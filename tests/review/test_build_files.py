@@ -45,10 +45,10 @@ FILES = {
         ("scripts/home.py DEST", "scripts/home.py scripts/up.py DEST", ["installed executables added: 'up.py'"], False),
         (" EXPORT export_arm", "", ["exported targets removed: 'arm_core'"], True),
         ("install(DIRECTORY launch config", "install(DIRECTORY launch",
-         ["not installed any more: 'share/arm/config/'"], True),
+         ["no longer installed: 'share/arm/config/'"], True),
         ("config DESTINATION share/${PROJECT_NAME}", "DESTINATION share/${PROJECT_NAME}/more",
          ["installed in share/arm/more/launch instead of share/arm/launch: 'arm.launch.xml'",
-          "not installed any more: 'share/arm/config/'"], True),
+          "no longer installed: 'share/arm/config/'"], True),
         ("msg/Load.msg ", "", ["built interfaces removed: 'msg/Load.msg'"], True),
         ("(arm_base plugins", "(arm_tools plugins",
          ["exported plugin descriptions: 'plugins.xml': arm_base -> arm_tools"], True),
@@ -183,15 +183,15 @@ home = "arm.tools:Home"
         ("setup.cfg", "install_scripts=$base/lib/arm", "install_scripts=$base/bin",
          ["settings: 'install.install_scripts': $base/lib/arm -> $base/bin"]),
         ("setup.cfg", "launch/*.launch.py", "launch/arm.launch.py",
-         ["not installed any more: 'share/arm/launch/all.launch.py'"]),
+         ["no longer installed: 'share/arm/launch/all.launch.py'"]),
         ("pyproject.toml", 'tuner = "arm.tuner:main"\n', "", ["installed executables removed: 'tuner'"]),
         ("pyproject.toml", 'home = "', 'rest = "', ["entry points added: 'arm_tools: rest'",
                                                    "entry points removed: 'arm_tools: home'"]),
         ("pyproject.toml", '["launch/*.launch.py"]', '["launch/arm.launch.py"]',
-         ["not installed any more: 'share/arm/launch/all.launch.py'"]),
+         ["no longer installed: 'share/arm/launch/all.launch.py'"]),
         ("pyproject.toml", '"1.0.0"', '"1.1.0"', ["settings: 'version': 1.0.0 -> 1.1.0"]),
         ("pyproject.toml", "[project]", "[tool.ruff]\nline-length = 120\n[project]", []),
-        ("pyproject.toml", "[project]", "[project", ["cannot be read any more"]),
+        ("pyproject.toml", "[project]", "[project", ["can no longer be read"]),
     ],
 )  # fmt: skip
 def test_changes_of_settings_of_python_packages_are_reported(repository, compare, name, old, new, expected):
@@ -240,9 +240,9 @@ PYTHON_FILES = {
          ["installed executables: 'driver': arm.driver:main -> arm.nodes.driver:main"], False),
         ("launch/*.launch.py", "launch/a*.launch.py", [], False),
         ("glob('launch/*.launch.py')", "['launch/arm.launch.py']",
-         ["not installed any more: 'share/arm/launch/all.launch.py'"], True),
+         ["no longer installed: 'share/arm/launch/all.launch.py'"], True),
         ("        ('share/' + package_name + '/config', glob('config/*.yaml')),\n", "",
-         ["not installed any more: 'share/arm/config/'"], True),
+         ["no longer installed: 'share/arm/config/'"], True),
         ("'home = arm", "'rest = arm", ["entry points added: 'arm.tools: rest'",
                                         "entry points removed: 'arm.tools: home'"], True),
         ("'1.0.0'", "'1.1.0'", ["settings: 'version': 1.0.0 -> 1.1.0"], False),
@@ -259,11 +259,11 @@ def test_changes_of_setup_files_are_reported(repository, compare, old, new, expe
     assert bool(breaking(result)) is is_breaking
 
 
-def test_setup_file_that_is_no_python_any_more_is_breaking(repository, compare):
+def test_setup_file_that_is_no_longer_python_is_breaking(repository, compare):
     repository.commit(PYTHON_FILES)
     repository.write({"a/setup.py": SETUP + "setup("})
     (sentence,) = breaking(compare(repository))
-    assert sentence.startswith("cannot be read any more")
+    assert sentence.startswith("can no longer be read")
 
 
 EXPORTS = PACKAGE_XML.replace(
@@ -364,7 +364,7 @@ def test_added_and_removed_dependencies_have_their_conditions(repository, compar
         ("exec_depend", "depend", False),
     ],
 )
-def test_dependency_that_others_get_no_more_through_the_package_is_breaking(repository, compare, old, new, is_breaking):
+def test_dependency_that_is_no_longer_exported_by_the_package_is_breaking(repository, compare, old, new, is_breaking):
     text = EXPORTS.replace("exec_depend>", f"{old}>")
     repository.commit({"a/package.xml": text})
     repository.write({"a/package.xml": text.replace(f"{old}>", f"{new}>")})
@@ -379,7 +379,7 @@ def test_all_conditions_of_a_dependency_are_compared(repository, compare):
     found, breaking_ones = find_dependency_changes(repository, compare, (lines[0], new), (lines[1], ""))
     assert found == [
         "exec_depend bridge: if $SIMULATOR == 'old'; if $SIMULATOR == 'new' -> always",
-        "environment variable 'SIMULATOR' does not decide any more what is built",
+        "environment variable 'SIMULATOR' no longer decides what is built",
     ]
     assert breaking_ones == found[1:]
 

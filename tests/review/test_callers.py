@@ -101,7 +101,7 @@ def test_an_import_of_a_module_that_is_gone_is_breaking(repository, compare):
     repository.commit({**FILES, "arm/arm/node.py": CALLER, "arm/arm/other.py": "import plans\nimport arm\n"})
     repository.write({"arm/arm/plans.py": None})
     result = compare(repository)
-    sentence = "imports 'arm/arm/plans.py', which does not exist any more"
+    sentence = "imports 'arm/arm/plans.py', which no longer exists"
     assert sentences(subject(result, "arm/arm/node.py")) == [sentence, sentence]
     assert breaking(result).count(sentence) == 2
 
@@ -198,7 +198,7 @@ def test_a_class_that_calls_a_removed_method_of_itself_fails(repository, compare
     source = SELF_CALLER.replace(text, other_text)
     repository.commit({"scripts/arm.py": source})
     repository.write({"scripts/arm.py": source.replace("def move", "def go")})
-    found = ["calls its method 'move', which nothing defines any more"] if is_breaking else []
+    found = ["calls its method 'move', which is no longer defined"] if is_breaking else []
     assert breaking(compare(repository)) == found
 
 

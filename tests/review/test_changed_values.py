@@ -191,7 +191,7 @@ def test_a_source_with_a_syntax_error_loses_no_names(repository, compare, is_new
     repository.write({"rover/a.py": invalid if is_new else valid})
     result = compare(repository)
     (subject,) = result.subjects
-    assert breaking(result) == ["cannot be parsed any more"] * is_new
+    assert breaking(result) == ["can no longer be parsed"] * is_new
     assert len(subject.changes) == is_new
     (problem,) = subject.problems
     assert str(problem.text) == f"the {expected} version has a syntax error in line 3; its names are not known"

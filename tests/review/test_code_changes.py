@@ -215,11 +215,11 @@ def send(text):
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("import math\n", "", "'math' is used, but nothing defines or imports it any more"),
-        ("def send(text)", "def post(text)", "'send' is used, but nothing defines or imports it any more"),
+        ("import math\n", "", "'math' is used, but is no longer defined or imported"),
+        ("def send(text)", "def post(text)", "'send' is used, but is no longer defined or imported"),
     ],
 )
-def test_a_name_that_nothing_defines_any_more_is_breaking(repository, compare, old, new, expected):
+def test_name_that_is_no_longer_defined_is_breaking(repository, compare, old, new, expected):
     repository.commit({**MANIFEST, "arm/scripts/half.py": USER})
     repository.write({"arm/scripts/half.py": USER.replace(old, new)})
     assert breaking(compare(repository)) == [expected]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.diagnostics import phrase
-from linkwright.review.quantities import figure_of
+from linkwright.review.quantities import compare_quantity
 from tests.repositories import MACRO
 from tests.review.conftest import subject
 
@@ -58,5 +58,5 @@ def test_slide_reaches_farthest_at_a_limit(package, compare, upper):
     ],
 )
 def test_quantity_has_the_digits_that_tell_both_versions_apart(old, new, texts):
-    (figure,) = figure_of(phrase("mass"), "kg", old, new)
+    (figure,) = compare_quantity(phrase("mass"), "kg", old, new)
     assert (figure.old, figure.new) == texts

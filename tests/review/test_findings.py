@@ -132,7 +132,7 @@ def generate_launch_description():
         {"arm_description/launch/arm_launch.py": None, "arm_description/launch/arm.launch.py": launch_text("alpha")}
     )
     result = compare(package, "HEAD~1..HEAD")
-    sentence = "names 'launch/arm_launch.py' of 'arm_description', which does not exist any more"
+    sentence = "names 'launch/arm_launch.py' of 'arm_description', which no longer exists"
     assert sorted(subject.path for subject, change in result.breaking_changes if str(change.sentence) == sentence) == [
         "arm_description/launch/all.launch.py",
         "arm_description/launch/all.launch.xml",

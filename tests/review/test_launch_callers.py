@@ -179,7 +179,7 @@ def test_action_that_is_appended_to_a_list_is_no_other_code(review_changes):
 WITH_NODE = PART.replace('"1")]', '"1"), Node(package="arm", executable="hand")]')
 
 
-@pytest.mark.parametrize(("part", "reason"), [(WITH_NODE, "its nodes do not start any more"), (PART, None)])
+@pytest.mark.parametrize(("part", "reason"), [(WITH_NODE, "its nodes no longer start"), (PART, None)])
 def test_removed_include_stops_its_nodes(review_changes_with_reasons, part, reason):
     line = '        IncludeLaunchDescription(PathJoinSubstitution([ThisLaunchFileDir(), "part.launch.py"])),\n'
     new = READING.replace(line, "")

@@ -20,7 +20,7 @@ CALLER = """<launch>
   <include file="$(find-pkg-share arm)/launch/arm.launch.xml"><arg name="description" value="x"/></include>
 </launch>
 """
-SENTENCE = "'description' does not choose the file '$(find-pkg-share $(var viewer))/config/view.rviz' any more"
+SENTENCE = "'description' no longer chooses the file '$(find-pkg-share $(var viewer))/config/view.rviz'"
 
 
 @pytest.fixture

@@ -358,7 +358,7 @@ def test_program_of_the_same_package_is_not_a_replacement(review_changes):
     ("old", "new", "expected", "reason"),
     [
         ('<arg name="real" default="true"/>', '<arg name="real" default="false"/>',
-         "argument 'real': default true -> false", "by default, node 'arm/driver.py' does not start any more"),
+         "argument 'real': default true -> false", "by default, node 'arm/driver.py' no longer starts"),
         ('<arg name="side" default="left"/>', '<arg name="side" default="right"/>',
          "argument 'side': default left -> right",
          "programs that use the names of the node, its topics or its services do not find them"),

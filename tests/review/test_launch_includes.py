@@ -22,8 +22,8 @@ FILE = """<launch>
 </launch>
 """
 SAFETY, PART_INCLUDE, MODEL_INCLUDE, LASER, RVIZ = (line + "\n" for line in FILE.splitlines()[2:7])
-STOPS = "its nodes do not start any more"
-CAMERA_STOPS = "by default, 'arm/camera.py' does not start any more"
+STOPS = "its nodes no longer start"
+CAMERA_STOPS = "by default, 'arm/camera.py' no longer starts"
 
 
 @pytest.fixture
@@ -108,7 +108,7 @@ def test_include_of_another_file_of_a_package_with_most_arguments_replaces_the_o
     assert found == {
         f"include of '$(find laser)/old.launch' replaced by include of '{file}'": None,
         f"include of '{file}': target $(arg target) removed": None,
-        "argument 'target' is not used any more": "a value that a caller passes for 'target' has no effect",
+        "argument 'target' is no longer used": "a value that a caller passes for 'target' has no effect",
     }
 
 
@@ -127,7 +127,7 @@ def test_include_of_another_package_or_with_other_arguments_does_not_replace_the
 def test_argument_in_an_expression_is_used_and_one_in_a_comment_is_not(repository, compare, use):
     text = use if "<" in use else f'    <arg name="x" value="{use}"/>'
     found = _find_driver_changes(repository, compare, DRIVER.replace(TARGET, text))
-    assert ("argument 'target' is not used any more" in found) is ("<" in use)
+    assert ("argument 'target' is no longer used" in found) is ("<" in use)
 
 
 @pytest.mark.parametrize(
@@ -145,9 +145,7 @@ def test_value_that_switches_off_a_node_of_an_included_file_is_breaking(review_r
     assert review_reasons(old, new) == {expected: CAMERA_STOPS}
 
 
-@pytest.mark.parametrize(
-    ("line", "reason"), [(SAFETY, "by default, it does not start any more"), (MODEL_INCLUDE, None)]
-)
+@pytest.mark.parametrize(("line", "reason"), [(SAFETY, "by default, it no longer starts"), (MODEL_INCLUDE, None)])
 def test_condition_that_does_not_hold_is_breaking_for_a_file_with_nodes(review_reasons, line, reason):
     assert list(review_reasons(line, line.replace("/>", ' if="false"/>')).values()) == [reason]
 

@@ -46,7 +46,7 @@ def review_reasons(repository, compare):
         ('add_argument("-p", "--port", "--serial-port")', 'add_argument("--no-port", action="store_true")'),
     ],
 )
-def test_option_that_a_script_does_not_accept_any_more_is_breaking_where_it_is_passed(review_reasons, old, new):
+def test_option_that_a_script_no_longer_accepts_is_breaking_where_it_is_passed(review_reasons, old, new):
     assert review_reasons(SCRIPT.replace(old, new)) == {
         "'--port' is passed to 'driver.py'": "'driver.py' does not accept '--port'"
     }

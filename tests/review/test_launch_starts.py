@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.reports.sections import summary_text
+from linkwright.review.reports.sections import format_summary
 from tests.repositories import Repository
 from tests.review.conftest import breaking, sentences, subject
 
@@ -43,7 +43,7 @@ def test_node_that_another_action_starts_is_not_missing(repository, compare, rep
         text = text.replace(old, new)
     repository.commit({"arm/launch/arm.launch": JOY})
     repository.write({"arm/launch/arm.launch": text})
-    unused = "argument 'local' is not used any more"
+    unused = "argument 'local' is no longer used"
     assert [sentence for sentence in breaking(compare(repository)) if sentence != unused] == expected
 
 
@@ -73,7 +73,7 @@ def test_changes_of_several_files_are_counted_in_each(repository: Repository, co
     repository.write({path: text.replace(SCRIPT, "").replace(' default="false"', "") for path, text in files.items()})
     result = compare(repository)
     assert len(sentences(subject(result, "arm/launch/a.launch"))) == 2
-    assert str(summary_text(result)).startswith("3 breaking changes, 6 changes, ")
+    assert str(format_summary(result)).startswith("3 breaking changes, 6 changes, ")
 
 
 ADDED = """<launch>
@@ -165,7 +165,7 @@ def test_switch_that_stops_several_actions_names_all_of_them_and_static_transfor
     ((_, change),) = compare(repository).breaking_changes
     assert str(change.reason) == (
         "by default, include of '$(find laser)/laser.launch', node 'laser/filter', "
-        "node 'tf/static_transform_publisher' of 'laser' do not start any more"
+        "node 'tf/static_transform_publisher' of 'laser' no longer start"
     )
 
 
@@ -182,5 +182,5 @@ SPAWNS = f'<launch><node pkg="rviz2" exec="rviz2"/>{SPAWN}</launch>'
         (SPAWN.replace("<node", '<node if="false"'), True),
     ],
 )
-def test_robot_that_is_not_spawned_any_more_is_breaking(review_changes, new, is_breaking):
+def test_robot_that_is_no_longer_spawned_is_breaking(review_changes, new, is_breaking):
     assert bool(review_changes("arm.launch.xml", SPAWNS, SPAWN, new)[1]) is is_breaking

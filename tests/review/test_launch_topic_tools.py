@@ -7,7 +7,7 @@ import pytest
 from tests.review.conftest import subject
 
 GONE = "programs that use the name '{}' do not find it"
-NOT_FORWARDED = "the messages of '{}' are not forwarded any more"
+NOT_FORWARDED = "the messages of '{}' are no longer forwarded"
 
 
 @pytest.mark.parametrize(

@@ -38,10 +38,10 @@ FILES = {
 @pytest.mark.parametrize(
     ("changes", "expected", "is_breaking"),
     [
-        ({"a/include/arm/motor.hpp": None}, ["not installed any more: 'include/arm/motor.hpp'"], True),
+        ({"a/include/arm/motor.hpp": None}, ["no longer installed: 'include/arm/motor.hpp'"], True),
         ({"a/include/arm/motor.hpp": None, "a/include/arm/motors.hpp": "#define MOTORS 6\n"},
-         ["not installed any more: 'include/arm/motor.hpp'"], True),
-        ({"a/scripts/home.sh": None}, ["not installed any more: 'lib/arm/home.sh'"], True),
+         ["no longer installed: 'include/arm/motor.hpp'"], True),
+        ({"a/scripts/home.sh": None}, ["no longer installed: 'lib/arm/home.sh'"], True),
         ({"a/arm/tools.py": None}, ["installed Python modules removed: 'arm.tools'"], True),
         ({"a/arm/tools.py": None, "a/arm/helpers.py": "RATE = 10\n"},
          ["Python module 'arm.tools' renamed to 'arm.helpers'"], True),
@@ -49,7 +49,7 @@ FILES = {
         ({"a/src/motor.cpp": None}, [], False),
     ],
 )  # fmt: skip
-def test_files_that_are_not_installed_any_more_are_reported(repository, compare, changes, expected, is_breaking):
+def test_files_that_are_no_longer_installed_are_reported(repository, compare, changes, expected, is_breaking):
     repository.commit(FILES)
     repository.commit(changes)
     result = compare(repository, "HEAD~1..HEAD")

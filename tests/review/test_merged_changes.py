@@ -10,7 +10,7 @@ import pytest
 from linkwright.diagnostics import phrase
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
 from linkwright.review.merging import merge_changes, name_edit
-from linkwright.review.reports.sections import cases_text, sentence_of
+from linkwright.review.reports.sections import format_cases, format_change
 from tests.repositories import ARM, MACRO
 from tests.review.conftest import breaking, sentences, subject
 
@@ -42,7 +42,7 @@ def test_links_and_joints_with_a_new_prefix_are_a_line_each(package, compare):
     )
     package.write({SEGMENT: text, ROBOT: ARM.replace('parent link="lower"', 'parent link="left_lower"')})
     result = compare(package)
-    lines = [sentence_of(change) for _, change in result.breaking_changes]
+    lines = [format_change(change) for _, change in result.breaking_changes]
     assert [str(line) for line in lines] == [
         "link 'upper' renamed to 'left_upper'; also 'middle -> left_middle', 'lower -> left_lower'",
         (
@@ -61,7 +61,7 @@ def test_joints_of_an_uncalled_macro_with_new_names_are_one_line(package, compar
     package.commit({path: tool})
     package.write({path: tool.replace("name}_1", "name}_a1").replace("name}_2", "name}_a2")})
     (found,) = subject(compare(package), path).changes
-    assert str(sentence_of(found)) == (
+    assert str(format_change(found)) == (
         "macro 'finger': joint ${name}_a1 name: ${name}_1 -> ${name}_a1; also '${name}_2 -> ${name}_a2'"
     )
     assert str(found.reason).endswith("'${name}_1' do not find it; likewise for the others")
@@ -71,7 +71,7 @@ def test_values_of_an_inertial_are_one_line(package, compare):
     package.write({SEGMENT: MACRO.replace('mass value="2"', 'mass value="3"').replace('iyy="0.1"', 'iyy="0.2"')})
     (found,) = subject(compare(package), ROBOT).changes
     expected = "link 'upper': inertial: mass 2 -> 3 kg, iyy 0.1 -> 0.2 kg m2; also 'middle', 'lower'"
-    assert str(sentence_of(found)) == expected
+    assert str(format_change(found)) == expected
 
 
 def test_same_change_in_files_of_other_argument_sets_is_one_line(repository, compare):
@@ -98,7 +98,7 @@ def test_limits_of_a_joint_are_one_line(package, compare):
     expected = (
         "joint 'upper_joint': limit: lower -1.5 -> -1 rad, upper 1.5 -> 1 rad; also 'middle_joint', 'lower_joint'"
     )
-    assert str(sentence_of(found)) == expected
+    assert str(format_change(found)) == expected
 
 
 def test_joint_without_limits_has_no_limits_of_zero(package, compare):
@@ -161,7 +161,7 @@ def test_parameters_that_hardware_gains_are_one_line(repository, compare):
     repository.write({"a/urdf/r.urdf": robot.format(hardware.format(added))})
     (found,) = subject(compare(repository), "a/urdf/r.urdf").changes
     expected = "extension 'ros2_control arm': hardware param ip added: 1.2.3.4; also 'param port 80'"
-    assert str(sentence_of(found)) == expected
+    assert str(format_change(found)) == expected
 
 
 ALL_ARGUMENT_SETS = ("sim:=true tool:=a", "sim:=true tool:=b", "sim:=false tool:=a", "")
@@ -183,7 +183,7 @@ ALL_ARGUMENT_SETS = ("sim:=true tool:=a", "sim:=true tool:=b", "sim:=false tool:
 )
 def test_argument_that_causes_a_change_is_named(cases, all_cases, expected):
     subject_of_all = Subject(SubjectKind.DESCRIPTION, "r.urdf", "r.urdf", "r.urdf", cases=all_cases)
-    assert str(cases_text(Change(phrase("robot"), cases=cases), subject_of_all)) == expected
+    assert str(format_cases(Change(phrase("robot"), cases=cases), subject_of_all)) == expected
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.reports.sections import other_files
+from linkwright.review.reports.sections import list_other_files
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
@@ -32,7 +32,7 @@ def find_moved_files(repository, compare, old_rule: str, new_rule: str):
 def test_files_that_are_installed_at_the_same_place_are_one_line(repository, compare):
     result = find_moved_files(repository, compare, "examples/launch", "launch")
     assert result.subjects == []
-    assert [(path, str(state)) for path, state in other_files(result)] == [
+    assert [(path, str(state)) for path, state in list_other_files(result)] == [
         ("arm/CMakeLists.txt", "None"),
         ("arm/launch/", "4 files, moved from arm/examples/launch/, installed at the same place"),
     ]

@@ -264,11 +264,11 @@ def test_yaml_with_too_many_values_is_a_problem(repository, compare):
     assert "more than 20000 values" in problem.text
 
 
-def test_file_that_cannot_be_read_any_more_is_breaking(repository, compare):
+def test_file_that_can_no_longer_be_read_is_breaking(repository, compare):
     repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
     repository.commit({"a/config/c.yaml": "a: [1"})
     (sentence,) = breaking(compare(repository, "HEAD~1..HEAD"))
-    assert sentence.startswith("cannot be read any more: while parsing")
+    assert sentence.startswith("can no longer be read: while parsing")
     repository.commit({"a/config/c.yaml": PARAMETERS})
     result = compare(repository, "HEAD~1..HEAD")
     (sentence,) = sentences(subject(result, "a/config/c.yaml"))

@@ -43,7 +43,7 @@ def test_other_calls_read_no_parameter(repository, compare, call):
     assert "parameters" not in " ".join(sentences(subject(compare(repository), "arm/src/a.cpp")))
 
 
-def test_an_element_that_a_plugin_reads_no_more_is_breaking(repository, compare):
+def test_element_that_a_plugin_no_longer_reads_is_breaking(repository, compare):
     repository.commit({**MANIFEST, "arm/src/a.cpp": HEAD.format('_sdf->Get<double>("noise");')})
     repository.write({"arm/src/a.cpp": HEAD.format('_sdf->Get<double>("noise_level");')})
     (sentence,) = breaking(compare(repository))

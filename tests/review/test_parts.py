@@ -68,7 +68,7 @@ def library(package):
         (" side:=left", "", "macro 'gripper': parameter side removed", "calls that pass it cannot be expanded"),
         ("side:=left", "side:=right", "macro 'gripper': default of parameter side left -> right", None),
         ("side:=left", "side:=left mass:=1", "macro 'gripper': parameter mass:=1 added", None),
-        ("side:=left", "side", "macro 'gripper': parameter side has no default any more",
+        ("side:=left", "side", "macro 'gripper': parameter side no longer has a default",
          "calls that do not pass it cannot be expanded"),
     ],
 )  # fmt: skip
@@ -161,7 +161,7 @@ def test_other_condition_is_a_change(library, compare):
         ('default="none"/>', 'default="none"/>\n  <xacro:arg name="paint" default="red"/>',
          "argument 'paint' added, with the default 'red'", False),
         ('default="none"', 'default="no"', "default of argument 'tool' none -> no", False),
-        ('name="tool" default="none"', 'name="tool"', "argument 'tool' has no default any more", True),
+        ('name="tool" default="none"', 'name="tool"', "argument 'tool' no longer has a default", True),
     ],
 )  # fmt: skip
 def test_arguments_of_a_robot_are_compared(package, compare, old, new, sentence, is_breaking):
@@ -211,10 +211,10 @@ def test_robot_that_cannot_be_expanded_is_compared_as_it_is_written(package, com
     assert review_subject.problems
 
 
-def test_part_that_is_no_xml_any_more_is_breaking(package, compare):
+def test_part_that_is_no_longer_xml_is_breaking(package, compare):
     package.write({SEGMENT: MACRO.replace("</xacro:macro>", "")})
     (change,) = subject(compare(package), SEGMENT).changes
-    assert str(change.sentence).startswith("the file cannot be read any more: ")
+    assert str(change.sentence).startswith("the file can no longer be read: ")
     assert str(change.reason) == "descriptions that include the file cannot be expanded"
 
 

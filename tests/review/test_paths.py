@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from linkwright.review.paths import PathComparison, compare_paths, find_differing_paths
-from linkwright.review.reports.path_plots import path_plot
+from linkwright.review.reports.path_plots import draw_path_plot
 
 
 def make_line(speed: float, period: float = 0.1, seconds: float = 4.0, y: float = 0.0) -> np.ndarray:
@@ -55,7 +55,7 @@ def test_typical_pair_is_the_median_and_the_farthest_is_always_shown():
 
 def test_plot_has_the_same_scale_on_both_axes_and_each_path():
     square = np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 1.0, 1.0]])
-    plot = path_plot(make_comparison((square, square + np.array([0.0, 0.0, 0.1]))))
+    plot = draw_path_plot(make_comparison((square, square + np.array([0.0, 0.0, 0.1]))))
     points = re.findall(r"<polyline class='path old thick' points='([^']*)'", plot)[0]
     (x0, y0), (x1, y1), (x2, y2) = (map(float, point.split(",")) for point in points.split())
     assert (x1 - x0, y1 - y2) == pytest.approx((y1 - y2, x2 - x0), abs=0.2)
@@ -66,13 +66,13 @@ def test_plot_has_the_same_scale_on_both_axes_and_each_path():
 
 def test_plot_of_a_robot_that_stood_still_has_a_frame():
     standing_path = make_line(0.0)
-    plot = path_plot(make_comparison((standing_path, standing_path + np.array([0.0, 0.0, 0.001]))))
+    plot = draw_path_plot(make_comparison((standing_path, standing_path + np.array([0.0, 0.0, 0.001]))))
     assert "nan" not in plot
     assert ">0.001 m<" in plot
 
 
 def test_path_names_are_escaped():
     path_comparison = PathComparison("<b>'", "n=<i>", [compare_paths("<s>", make_line(1.0), make_line(2.0))])
-    plot = path_plot(path_comparison)
+    plot = draw_path_plot(path_comparison)
     assert not re.search("<(b|i|s)>", plot)
     assert "aria-label='paths of both versions, &lt;b&gt;&#x27;, n=&lt;i&gt;'" in plot

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.reports.sections import other_files
+from linkwright.review.reports.sections import list_other_files
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
@@ -64,7 +64,7 @@ def test_what_follows_from_the_new_name_of_a_package_is_one_change(repository, c
     (change,) = result.subjects[0].changes
     assert set(change.other_names) >= {"arm_tools_core -> arm_gear_core", "arm_tools/Grip -> arm_gear/Grip"}
     assert [str(note) for note in result.notes if "follow" in str(note)]
-    assert [(path, str(state)) for path, state in other_files(result)] == [
+    assert [(path, str(state)) for path, state in list_other_files(result)] == [
         ("arm_gear/src/", "4 files, moved with the package from arm_tools/"),
         ("robot/package.xml", "None"),
     ]

@@ -83,8 +83,8 @@ def test_removed_rviz_configuration_is_breaking(repository, compare):
     assert breaking(compare(repository)) == ["RViz configuration removed"]
 
 
-def test_rviz_configuration_without_manager_cannot_be_read_any_more(repository, compare):
+def test_rviz_configuration_without_manager_can_no_longer_be_read(repository, compare):
     repository.commit({"rviz/arm.rviz": RVIZ})
     repository.write({"rviz/arm.rviz": "- 1\n"})
     found = subject(compare(repository), "rviz/arm.rviz")
-    assert sentences(found) == ["cannot be read any more: it has no 'Visualization Manager'"]
+    assert sentences(found) == ["can no longer be read: it has no 'Visualization Manager'"]

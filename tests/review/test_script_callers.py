@@ -17,7 +17,7 @@ p.parse_args()
 """
 SCRIPT = "arm/scripts/driver.py"
 MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
-IGNORED = "arguments are passed to 'driver.py', which does not read them any more"
+IGNORED = "arguments are passed to 'driver.py', which no longer reads them"
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,7 @@ IGNORED = "arguments are passed to 'driver.py', which does not read them any mor
         ("arm/arm.launch", '<launch><node pkg="arm" type="driver.py" name="d" args="a:=b"/></launch>', False),
     ],
 )
-def test_arguments_that_a_program_reads_no_more_are_lost(repository, compare, path, text, is_breaking):
+def test_arguments_that_a_program_no_longer_reads_are_lost(repository, compare, path, text, is_breaking):
     repository.commit({**MANIFEST, SCRIPT: READING, path: text})
     repository.write({SCRIPT: IGNORING})
     assert (IGNORED in breaking(compare(repository))) == is_breaking

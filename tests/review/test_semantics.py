@@ -145,7 +145,7 @@ def test_semantic_description_that_xacro_refuses_is_breaking(calls, compare):
     calls.write({DEFINED: MACROS.replace("${first}", "${first.__class__}")})
     result = compare(calls)
     (change,) = subject(result, CALLED).changes
-    assert str(change.sentence).startswith("cannot be read any more: arm_description/config/macros.xacro:2: ")
+    assert str(change.sentence).startswith("can no longer be read: arm_description/config/macros.xacro:2: ")
     assert change.reason is not None
 
 

@@ -120,7 +120,7 @@ HEADER_PACKAGE = {
     [
         ("center", "middle", "public member 'Link::center' (double) renamed to 'Link::middle' (double)", True),
         ("  std::vector<int> sizes;\nprivate:\n", "private:\n  std::vector<int> sizes;\n",
-         "public members not public any more: 'Link::sizes' (std::vector<int>)", True),
+         "public members no longer public: 'Link::sizes' (std::vector<int>)", True),
         (", rate = 2.0", "", "public members removed: 'Link::rate' (double)", True),
         ("  double step{0.1};\n", "", "public members removed: 'Link::step' (double)", True),
         ("  double center;\n  double step{0.1};\n  double speed, rate = 2.0;\n  std::vector<int> sizes;\n",

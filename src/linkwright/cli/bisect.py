@@ -82,11 +82,11 @@ def _search(history: History, check: PartCheck | CommandCheck, unchanged: Phrase
 
 
 def _print_change(check: PartCheck | CommandCheck, change: FoundCommit) -> None:
-    from linkwright.review.bisecting import PartCheck, difference_text, undecided_text
+    from linkwright.review.bisecting import PartCheck, format_part_difference, format_undecided_count
 
     print(change.title)
     if isinstance(check, PartCheck):
         for difference in check.differences(change.before):
-            print(f"  {localized(difference_text(difference))}")
+            print(f"  {localized(format_part_difference(difference))}")
     if change.undecided:
-        print(localized(undecided_text(change.undecided)))
+        print(localized(format_undecided_count(change.undecided)))

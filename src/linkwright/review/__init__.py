@@ -1,4 +1,4 @@
-"""Review a range of commits: the changes of descriptions, worlds, launch files, parameters and interfaces."""
+"""Review a range of commits: changes to descriptions, worlds, launch files, parameters and interfaces."""
 
 from linkwright.review.changes import Change, Effect, Figure, Review, Subject, SubjectKind
 from linkwright.review.reviewing import review

@@ -28,12 +28,12 @@ _RESAMPLES = 4_000
 _PERCENTILES = (2.5, 97.5)
 """The limits of the interval: it contains the mean difference with a probability of 95 %."""
 _SEED, _ROW, _ERROR = "seed", "row", "error"
-_MAX_PATHS = 4
+_MAX_DRAWN_COMPARISONS = 4
 """The number of comparisons of paths that a report draws."""
 _BOOLEANS = {"true": 1.0, "false": 0.0}
 
 Row = Mapping[str, str]
-Parameters = tuple[str, ...]
+ParameterValues = tuple[str, ...]
 Array = NDArray[np.float64]
 
 
@@ -60,7 +60,7 @@ class _Runs:
     """
 
     parameters: Sequence[str]
-    by_parameters: Mapping[Parameters, _Run]
+    by_parameters: Mapping[ParameterValues, _Run]
 
 
 def compare_behavior(versions: Versions, path: str, seeds: int | None = None) -> Subject:
@@ -74,17 +74,19 @@ def compare_behavior(versions: Versions, path: str, seeds: int | None = None) ->
         seeds: the number of seeds; None for the number in the scenario.
     """
     problems: list[Problem] = []
-    old = _run(versions.old, path, seeds, problems)
-    new = _run(versions.new, path, seeds, problems)
+    old = _run_scenario(versions.old, path, seeds, problems)
+    new = _run_scenario(versions.new, path, seeds, problems)
     if old is None or new is None:
         return Subject(SubjectKind.SCENARIO, path, path, path, problems=problems)
     old_runs = old.by_parameters if old.parameters == new.parameters else {}
-    paths = _path_comparisons(old_runs, new)
-    changes = [*_find_changes(old_runs, new.by_parameters), *_path_changes(paths)]
-    return Subject(SubjectKind.SCENARIO, path, path, path, changes, problems=problems, paths=paths[:_MAX_PATHS])
+    paths = _compare_all_paths(old_runs, new)
+    changes = [*_compare_results(old_runs, new.by_parameters), *_make_path_changes(paths)]
+    return Subject(
+        SubjectKind.SCENARIO, path, path, path, changes, problems=problems, paths=paths[:_MAX_DRAWN_COMPARISONS]
+    )
 
 
-def _run(version: Version, path: str, seeds: int | None, problems: list[Problem]) -> _Runs | None:
+def _run_scenario(version: Version, path: str, seeds: int | None, problems: list[Problem]) -> _Runs | None:
     """Return the runs of the scenario in a version, or None if there are none."""
     with ScratchFolder("sweep") as folder:
         table, paths_file = Path(folder) / "table.csv", Path(folder) / "paths.json"
@@ -110,37 +112,41 @@ def _run(version: Version, path: str, seeds: int | None, problems: list[Problem]
     return _Runs(parameters[:-1], runs)
 
 
-def _find_changes(old: Mapping[Parameters, _Run], new: Mapping[Parameters, _Run]) -> Iterator[Change]:
+def _compare_results(old: Mapping[ParameterValues, _Run], new: Mapping[ParameterValues, _Run]) -> Iterator[Change]:
     pairs = [(old[key].row, run.row) for key, run in new.items() if key in old]
     if not pairs:
         yield Change(phrase("the versions have no run with the same parameters and seed"))
         return
-    failed = [sum(bool(row[_ERROR]) for row in rows) for rows in zip(*pairs, strict=True)]
-    if failed[0] != failed[1]:
-        text = phrase("{old} -> {new} of {count} runs failed", old=failed[0], new=failed[1], count=len(pairs))
-        reason = phrase("runs of the scenario end with an error") if failed[1] > failed[0] else None
+    failure_counts = [sum(bool(row[_ERROR]) for row in rows) for rows in zip(*pairs, strict=True)]
+    if failure_counts[0] != failure_counts[1]:
+        text = phrase(
+            "{old} -> {new} of {count} runs failed", old=failure_counts[0], new=failure_counts[1], count=len(pairs)
+        )
+        reason = phrase("runs of the scenario end with an error") if failure_counts[1] > failure_counts[0] else None
         yield Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason)
     names = [name for name in pairs[0][1] if name in pairs[0][0]]
     for name in names[names.index(_SEED) + 1 :]:
         if name != _ERROR:
-            yield from _result_changes(name, [(old_row[name], new_row[name]) for old_row, new_row in pairs])
+            yield from _compare_result(name, [(old_row[name], new_row[name]) for old_row, new_row in pairs])
 
 
-def _result_changes(name: str, pairs: Sequence[tuple[str, str]]) -> Iterator[Change]:
-    """Yield the change of a result, if any of its values differs."""
-    known = [pair for pair in pairs if all(pair)]
-    if all(old == new for old, new in known):
+def _compare_result(name: str, pairs: Sequence[tuple[str, str]]) -> Iterator[Change]:
+    """Yield the change in a result, if any of its values differs."""
+    complete_pairs = [pair for pair in pairs if all(pair)]
+    if all(old == new for old, new in complete_pairs):
         return
-    if all(value in _BOOLEANS for pair in known for value in pair):
-        yield _boolean_change(name, known)
+    if all(value in _BOOLEANS for pair in complete_pairs for value in pair):
+        yield _compare_booleans(name, complete_pairs)
         return
     try:
-        values = np.array([[float(value) for value in pair] for pair in known])
+        values = np.array([[float(value) for value in pair] for pair in complete_pairs])
     except ValueError:
-        count = sum(old != new for old, new in known)
-        yield Change(phrase("{result}: {count} of {total} values differ", result=name, count=count, total=len(known)))
+        count = sum(old != new for old, new in complete_pairs)
+        yield Change(
+            phrase("{result}: {count} of {total} values differ", result=name, count=count, total=len(complete_pairs))
+        )
         return
-    low, high = _confidence_interval(values[:, 1] - values[:, 0])
+    low, high = _compute_confidence_interval(values[:, 1] - values[:, 0])
     old_mean, new_mean = values.mean(axis=0)
     text = phrase(
         "{result}: mean {old:.4g} -> {new:.4g}, difference {low:.3g} to {high:.3g}",
@@ -153,18 +159,25 @@ def _result_changes(name: str, pairs: Sequence[tuple[str, str]]) -> Iterator[Cha
     yield Change(phrase("{change}, within the noise", change=text) if low <= 0.0 <= high else text)
 
 
-def _boolean_change(name: str, pairs: Sequence[tuple[str, str]]) -> Change:
-    """Return the change of a boolean result. A result that was always true in the old version is a bound."""
-    counts = [sum(value == "true" for value in values) for values in zip(*pairs, strict=True)]
+def _compare_booleans(name: str, pairs: Sequence[tuple[str, str]]) -> Change:
+    """Return the change in a boolean result.
+
+    A result that was always true in the old version counts as a requirement.
+    """
+    true_counts = [sum(value == "true" for value in values) for values in zip(*pairs, strict=True)]
     text = phrase(
-        "{result}: true in {old} -> {new} of {count} runs", result=name, old=counts[0], new=counts[1], count=len(pairs)
+        "{result}: true in {old} -> {new} of {count} runs",
+        result=name,
+        old=true_counts[0],
+        new=true_counts[1],
+        count=len(pairs),
     )
-    if counts[0] < len(pairs) or counts[1] == len(pairs):
+    if true_counts[0] < len(pairs) or true_counts[1] == len(pairs):
         return Change(text)
     return Change(text, Effect.BREAKING, phrase("it was true in all runs of the old version"))
 
 
-def _confidence_interval(differences: Array) -> tuple[float, float]:
+def _compute_confidence_interval(differences: Array) -> tuple[float, float]:
     """Return the lower and upper limits of the mean of paired differences.
 
     Args:
@@ -178,20 +191,23 @@ def _confidence_interval(differences: Array) -> tuple[float, float]:
 # --- paths -----------------------------------------------------------------------------------------------------------
 
 
-def _path_comparisons(old: Mapping[Parameters, _Run], new: _Runs) -> list[PathComparison]:
-    """Return the paths that differ, for each name and each set of parameters. Random parameters are ignored."""
-    keys = [key for key in new.by_parameters if key in old]
-    listed = [index for index in range(len(new.parameters)) if _is_fixed(keys, index)]
+def _compare_all_paths(old: Mapping[ParameterValues, _Run], new: _Runs) -> list[PathComparison]:
+    """Return the paths that differ, for each name and each set of parameters.
+
+    Random parameters are ignored.
+    """
+    shared_keys = [key for key in new.by_parameters if key in old]
+    fixed_indexes = [index for index in range(len(new.parameters)) if _is_fixed(shared_keys, index)]
     groups: dict[tuple[str, str], list[tuple[str, Array, Array]]] = defaultdict(list)
-    for key in keys:
+    for key in shared_keys:
         old_paths, new_paths = old[key].paths, new.by_parameters[key].paths
-        values = " ".join(f"{new.parameters[index]}={key[index]}" for index in listed)
+        values = " ".join(f"{new.parameters[index]}={key[index]}" for index in fixed_indexes)
         for name in (name for name in new_paths if name in old_paths):
             groups[name, values].append((key[-1], old_paths[name], new_paths[name]))
     return find_differing_paths(groups)
 
 
-def _is_fixed(keys: Sequence[Parameters], index: int) -> bool:
+def _is_fixed(keys: Sequence[ParameterValues], index: int) -> bool:
     """Return whether a parameter has the same values for each seed, so that it is not random."""
     values: dict[str, set[str]] = defaultdict(set)
     for key in keys:
@@ -199,9 +215,9 @@ def _is_fixed(keys: Sequence[Parameters], index: int) -> bool:
     return len({frozenset(texts) for texts in values.values()}) == 1
 
 
-def _path_changes(comparisons: Sequence[PathComparison]) -> Iterator[Change]:
-    yield from map(_path_change, comparisons[:_MAX_PATHS])
-    count = len(comparisons) - _MAX_PATHS
+def _make_path_changes(comparisons: Sequence[PathComparison]) -> Iterator[Change]:
+    yield from map(_make_path_change, comparisons[:_MAX_DRAWN_COMPARISONS])
+    count = len(comparisons) - _MAX_DRAWN_COMPARISONS
     if count > 0:
         yield Change(
             counted(
@@ -212,7 +228,7 @@ def _path_changes(comparisons: Sequence[PathComparison]) -> Iterator[Change]:
         )
 
 
-def _path_change(comparison: PathComparison) -> Change:
+def _make_path_change(comparison: PathComparison) -> Change:
     farthest = comparison.farthest
     text: Phrase = phrase(
         "{result}: paths up to {distance:.3g} m apart (seed {seed}, after {time:.3g} s)",

@@ -23,7 +23,7 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.git_repository import SHALLOW_HINT, GitRepository
 from linkwright.review.frames import SharedFrames
-from linkwright.review.robots.descriptions import sentence_of_difference
+from linkwright.review.robots.descriptions import format_difference
 from linkwright.urdf import Robot
 
 _SKIPPED_STATUS = 125
@@ -31,7 +31,10 @@ _SKIPPED_STATUS = 125
 
 
 class UndecidedError(Exception):
-    """Raised by a check that cannot judge a commit, for example because the description cannot be expanded."""
+    """Raised by a check that cannot judge a commit.
+
+    For example, the description cannot be expanded.
+    """
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ class FoundCommit:
 
     Attributes:
         commit: the hash of the commit.
-        before: the hash of a previous commit with another outcome: the first parent, or the last judged commit.
+        before: the hash of a previous commit with a different outcome: the first parent, or the last judged commit.
         title: the short hash, date, author and subject.
         undecided: the number of commits that could not be judged. One of them may be the first.
     """
@@ -73,14 +76,14 @@ class History:
         hint = phrase("`linkwright bisect` searches the commits of a git repository")
         self._repository = GitRepository(real_path.parent, display_path(file), hint, downloads_lfs=False)
         self.new = self._repository.require_commit(new)
-        self._names = self._names_of(real_path.relative_to(self._repository.root).as_posix())
+        self._names = self._list_names(real_path.relative_to(self._repository.root).as_posix())
         self._require_file(self.new, new)
-        self.old = self._repository.require_commit(old) if old else self._first_commit()
+        self.old = self._repository.require_commit(old) if old else self._find_first_commit()
         self._require_ancestor(old, new)
         self._require_file(self.old, old or self.old)
 
     def name_in(self, commit: str) -> str | None:
-        """Return the name of the file in a commit, relative to the root, or None if it does not exist."""
+        """Return the path of the file in a commit, relative to the root, or None if there is none."""
         return next((name for name in self._names if self._repository.contains(commit, name)), None)
 
     def files(self, commit: str) -> CommitFiles:
@@ -88,7 +91,9 @@ class History:
         return CommitFiles(self._repository, commit, commit[:9], must_be_complete=False)
 
     def search(self, judge: Callable[[str], bool], on_step: Callable[[int], object]) -> FoundCommit | None:
-        """Return the first commit with the outcome of the newest, or None if the oldest commit has that outcome, too.
+        """Return the first commit with the outcome of the newest commit.
+
+        The result is None if the oldest commit also has that outcome.
 
         Args:
             judge: a function that returns the outcome of a commit, and raises `UndecidedError` if it cannot.
@@ -101,19 +106,19 @@ class History:
             outcome = judge(self.new)
             is_unchanged = judge(self.old) == outcome
         except UndecidedError as error:
-            raise self._undecided_end(error) from error.__cause__
+            raise self._make_undecided_error(error) from error.__cause__
         if is_unchanged:
             return None
         first, earlier = self.new, [self.old]
         undecided: set[str] = set()
         while True:
-            candidates = self._candidates(first, earlier)
+            candidates = self._list_candidates(first, earlier)
             on_step(len(candidates) + 1)
             commit = next((candidate for candidate in candidates if candidate not in undecided), None)
             if commit is None:
                 parent = self._repository.resolve(f"{first}^")
                 before = parent if parent in earlier else earlier[-1]
-                return FoundCommit(first, before, self._title(first), len(undecided & set(candidates)))
+                return FoundCommit(first, before, self._read_title(first), len(undecided & set(candidates)))
             try:
                 has_outcome = judge(commit) == outcome
             except UndecidedError:
@@ -148,7 +153,7 @@ class History:
             hint = SHALLOW_HINT
         raise LinkwrightError(Diagnostic("REV114", message, hint=hint))
 
-    def _undecided_end(self, error: UndecidedError) -> LinkwrightError:
+    def _make_undecided_error(self, error: UndecidedError) -> LinkwrightError:
         """Return the error for an oldest or newest commit that cannot be judged."""
         cause = error.__cause__
         notes = (
@@ -158,22 +163,22 @@ class History:
         hint = phrase("name commits that can be judged with `--old` and `--new`")
         return LinkwrightError(Diagnostic("REV113", message, notes=notes, hint=hint))
 
-    def _candidates(self, first: str, earlier: Sequence[str]) -> list[str]:
+    def _list_candidates(self, first: str, earlier: Sequence[str]) -> list[str]:
         """Return the candidates besides `first`, from the middle of the history outward."""
         excluded = [f"^{commit}" for commit in earlier]
         lines = self._repository.run("rev-list", "--bisect-all", first, *excluded).stdout.splitlines()
         return [commit for commit in (line.split(" ")[0] for line in lines) if commit != first]
 
-    def _title(self, commit: str) -> str:
+    def _read_title(self, commit: str) -> str:
         return self._repository.run("log", "--max-count=1", "--format=%h %as %an: %s", commit).stdout.strip()
 
-    def _names_of(self, name: str) -> list[str]:
+    def _list_names(self, name: str) -> list[str]:
         """Return the names of the file in the history, the newest first."""
         arguments = ("log", "--follow", "--name-only", "-z", "--format=", "--", name)
         names = self._repository.run(*arguments).stdout.split("\0")
         return list(dict.fromkeys([name, *filter(None, names)]))
 
-    def _first_commit(self) -> str:
+    def _find_first_commit(self) -> str:
         """Return the commit that added the file to the history of the newest commit."""
         name = self.name_in(self.new) or self._names[0]
         commits = self._repository.run("log", "--follow", "--format=%H", self.new, "--", name).stdout.split()
@@ -201,9 +206,9 @@ class PartCheck:
         self._name = name
         self._new_files = history.files(history.new)
         try:
-            self._new = self._model(self._new_files, history.new)
+            self._new = self._read_model(self._new_files, history.new)
             self._robot = self._new.read_robot()
-            _require_part(self._robot, name)
+            _require_link_or_joint(self._robot, name)
         except BaseException:
             self.close()
             raise
@@ -217,23 +222,23 @@ class PartCheck:
         return not self.differences(commit)
 
     def differences(self, commit: str) -> list[Difference | Phrase]:
-        """Return the differences of the link or joint between a commit and the newest one.
+        """Return the differences in the link or joint between a commit and the newest one.
 
         Raises:
             UndecidedError: the description of the commit cannot be read.
         """
         files = self._history.files(commit)
         try:
-            old = self._model(files, commit)
+            old = self._read_model(files, commit)
             robot = old.read_robot()
             comparison = Pair(old, self._new).compare(robot, self._robot)
-            return list(self._relevant(comparison, robot))
+            return list(self._select_relevant(comparison, robot))
         except LinkwrightError as error:
             raise UndecidedError from error
         finally:
             files.close()
 
-    def _relevant(self, comparison: Comparison, old: Robot) -> Iterator[Difference | Phrase]:
+    def _select_relevant(self, comparison: Comparison, old: Robot) -> Iterator[Difference | Phrase]:
         for difference in comparison.differences:
             is_renamed = difference.kind == "renamed" and difference.old == self._name
             if difference.subject in ("link", "joint") and (difference.name == self._name or is_renamed):
@@ -244,7 +249,7 @@ class PartCheck:
             if distance is not None:
                 yield phrase("link '{name}': moved by {distance:.4g} m", name=self._name, distance=distance)
 
-    def _model(self, files: CommitFiles, commit: str) -> Model:
+    def _read_model(self, files: CommitFiles, commit: str) -> Model:
         name = self._history.name_in(commit)
         if name is None:
             raise UndecidedError
@@ -252,7 +257,7 @@ class PartCheck:
         return Model(path, self._values, files.finder(path.parent), files)
 
 
-def _require_part(robot: Robot, name: str) -> None:
+def _require_link_or_joint(robot: Robot, name: str) -> None:
     names = [*robot.links, *robot.joints]
     if name not in names:
         message = phrase("the robot has no link or joint '{name}'", name=name)
@@ -297,12 +302,12 @@ class CommandCheck:
         return result.returncode == 0
 
 
-def difference_text(difference: Difference | Phrase) -> Phrase:
+def format_part_difference(difference: Difference | Phrase) -> Phrase:
     """Return a difference in one line."""
-    return difference if isinstance(difference, Phrase) else sentence_of_difference(difference)
+    return difference if isinstance(difference, Phrase) else format_difference(difference)
 
 
-def undecided_text(count: int) -> Phrase:
+def format_undecided_count(count: int) -> Phrase:
     """Return the line about commits that could not be judged."""
     return counted(
         "one commit before it cannot be judged and may be the first",

@@ -1,4 +1,4 @@
-"""Decide which changes of a description are breaking, by the names that other programs use."""
+"""Decide which changes to a description are breaking, by the names that other programs use."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Collection
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, interfaces_of
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.names_in_plugins import NAME_TAGS, used_name
+from linkwright.review.names_in_plugins import NAME_TAGS, extract_used_name
 from linkwright.urdf import Robot
 
 MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
@@ -17,8 +17,8 @@ _INTERFACE = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+) (?P<kind>command|
 _PART = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+)(?P<name> @name)?")
 
 
-def breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phrase | None:
-    """Return the reason why a difference breaks programs that use the robot, or None if it does not.
+def find_breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phrase | None:
+    """Return why a difference breaks programs that use the robot, or None if it does not.
 
     Args:
         difference: the difference between both versions.
@@ -26,20 +26,20 @@ def breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phrase | 
         new: the robot of the new version.
     """
     if difference.subject == "link":
-        return _link_reason(difference)
+        return _find_link_reason(difference)
     if difference.subject == "joint":
-        return _joint_reason(difference, old)
+        return _find_joint_reason(difference, old)
     if difference.subject == "extension":
-        return extension_reason(difference, interfaces_of(old.extensions) - interfaces_of(new.extensions))
+        return find_extension_reason(difference, interfaces_of(old.extensions) - interfaces_of(new.extensions))
     return None
 
 
-def _link_reason(difference: Difference) -> Phrase | None:
+def _find_link_reason(difference: Difference) -> Phrase | None:
     name = difference.old if difference.kind == "renamed" else difference.name
     return frame_reason(name or "") if difference.kind in ("removed", "renamed") else None
 
 
-def _joint_reason(difference: Difference, old: Robot) -> Phrase | None:
+def _find_joint_reason(difference: Difference, old: Robot) -> Phrase | None:
     if difference.kind in ("removed", "renamed"):
         name = (difference.old if difference.kind == "renamed" else difference.name) or ""
         joint = old.joints.get(name)
@@ -49,7 +49,7 @@ def _joint_reason(difference: Difference, old: Robot) -> Phrase | None:
     if difference.property != "type" or difference.old not in MOVING_TYPES:
         return None
     if difference.new not in MOVING_TYPES:
-        return phrase("'{name}' has no position in /joint_states any more", name=difference.name)
+        return phrase("'{name}' no longer has a position in /joint_states", name=difference.name)
     if (difference.old == _LINEAR) != (difference.new == _LINEAR):
         return phrase("the positions of '{name}' change between rad and m", name=difference.name)
     return None
@@ -75,8 +75,8 @@ def joint_name_reason(name: str) -> Phrase:
     return phrase("controllers and programs that name the joint '{name}' do not find it", name=name)
 
 
-def extension_reason(difference: Difference, lost: Collection[tuple[str, str]] | None = None) -> Phrase | None:
-    """Return the reason why a difference of an element for another program is breaking, or None if it is not.
+def find_extension_reason(difference: Difference, lost: Collection[tuple[str, str]] | None = None) -> Phrase | None:
+    """Return why a difference in an extension element is breaking, or None if it is not.
 
     Args:
         difference: the difference between both versions.
@@ -84,11 +84,11 @@ def extension_reason(difference: Difference, lost: Collection[tuple[str, str]] |
             the robots are unknown.
     """
     if difference.name.startswith(ROS2_CONTROL):
-        return _hardware_reason(difference, lost)
-    return plugin_name_reason(difference) if difference.kind == "changed" and difference.old else None
+        return _find_hardware_reason(difference, lost)
+    return find_plugin_name_reason(difference) if difference.kind == "changed" and difference.old else None
 
 
-def _hardware_reason(difference: Difference, lost: Collection[tuple[str, str]] | None) -> Phrase | None:
+def _find_hardware_reason(difference: Difference, lost: Collection[tuple[str, str]] | None) -> Phrase | None:
     if difference.kind == "removed":
         reason = phrase("controllers of this hardware do not find its interfaces")
         return reason if lost is None or lost else None
@@ -103,20 +103,25 @@ def _hardware_reason(difference: Difference, lost: Collection[tuple[str, str]] |
     part = _PART.fullmatch(difference.property)
     is_renamed = part is not None and part["name"] is not None
     if part is None or (difference.new is not None and not is_renamed):
-        return plugin_name_reason(difference)
+        return find_plugin_name_reason(difference)
     joint = difference.old if is_renamed else part["joint"]
     if lost is not None and not any(lost_joint == joint for lost_joint, _ in lost):
         return None
     return phrase("controllers that claim interfaces of '{joint}' do not start", joint=joint)
 
 
-def plugin_name_reason(difference: Difference) -> Phrase | None:
-    """Return the reason why a changed plugin parameter is breaking, or None. It may name topics, services or frames."""
+def find_plugin_name_reason(difference: Difference) -> Phrase | None:
+    """Return why a changed plugin parameter is breaking, or None if it is not.
+
+    A parameter is breaking if it names a topic, service or frame.
+    """
     last_word = difference.property.split(" ")[-1]
     tag = difference.property.split(" ")[-2] if last_word.startswith("@") and " " in difference.property else last_word
-    is_same = difference.new is not None and used_name(difference.old or "") == used_name(difference.new)
-    if difference.old and NAME_TAGS.search(tag) and not is_same:
-        return name_reason(used_name(difference.old))
+    is_same_name = difference.new is not None and extract_used_name(difference.old or "") == extract_used_name(
+        difference.new
+    )
+    if difference.old and NAME_TAGS.search(tag) and not is_same_name:
+        return name_reason(extract_used_name(difference.old))
     return None
 
 

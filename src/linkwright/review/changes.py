@@ -84,7 +84,7 @@ class Change:
         cases: the names of the argument sets with which the change occurs; empty for all of them.
         other_names: the names of other links, joints or extensions that change in the same way.
         other_locations: the locations of their values, if they differ from the first location.
-        path_change: the kind of change of the path of the file; None for other changes.
+        path_change: how the path of the file changed; None for other changes.
     """
 
     sentence: Phrase
@@ -103,7 +103,7 @@ class Change:
 
     @property
     def identity(self) -> Hashable:
-        """A key that is equal for the same change of links and joints of one macro.
+        """A key that is equal for the same change to links and joints of one macro.
 
         The label of a visual often contains the name of its link.
         """
@@ -113,7 +113,7 @@ class Change:
 
     @property
     def content(self) -> tuple[Effect, str, tuple[str, str, str, str]]:
-        """A key that is equal for the same change of other links and joints, independent of their location."""
+        """A key that is equal for the same change to other links and joints at any location."""
         return self.effect, _QUOTED.sub("", self.property_name), self.values
 
     @property
@@ -169,7 +169,7 @@ class Problem:
     is_bug: bool = False
 
 
-def nesting_problem() -> Problem:
+def make_nesting_problem() -> Problem:
     """Return the problem that a comparison ended with a `RecursionError` or `MemoryError`."""
     return Problem(phrase("the versions cannot be compared: they are nested too deeply, or too large"))
 
@@ -178,7 +178,7 @@ FILE = -1
 """The offset of the whole file, if an expansion read it."""
 
 
-class ExpandedPlace(NamedTuple):
+class ExpandedElement(NamedTuple):
     """An element of a changed file that the expansion of a compared robot used.
 
     Attributes:
@@ -224,7 +224,7 @@ class Subject:
     images: Sequence[ViewImages] = ()
     paths: Sequence[PathComparison] = ()
     scene: RobotScene | None = None
-    expanded: Collection[ExpandedPlace] = ()
+    expanded: Collection[ExpandedElement] = ()
     missing: Sequence[str] = ()
     is_lost: bool = False
 

@@ -11,14 +11,17 @@ _NAMED_BY_CHILD = "include"
 """The tag of elements that have their name, or else their URI, as a child."""
 
 
-def own_content(element: Element, skipped: Collection[str] = ()) -> str:
-    """Return the attributes and the text of an element, without its name and the skipped attributes."""
+def format_own_content(element: Element, skipped: Collection[str] = ()) -> str:
+    """Return the attributes and the text of an element.
+
+    Its name and the skipped attributes are omitted.
+    """
     attributes = element.attributes.items()
     words = [f"{name}={value}" for name, value in attributes if name != "name" and name not in skipped]
     return " ".join([*words, *element.text().split()])
 
 
-def values_text(element: Element, limit: int, skipped: Collection[str] = ()) -> Phrase | None:
+def format_values(element: Element, limit: int, skipped: Collection[str] = ()) -> Phrase | None:
     """Return the values in an element, or None if there are none.
 
     Args:
@@ -26,17 +29,17 @@ def values_text(element: Element, limit: int, skipped: Collection[str] = ()) -> 
         limit: the maximum number of values to show.
         skipped: the tags of the elements to leave out.
     """
-    values = list(_values_by_path(element, "", skipped))
+    values = list(_list_values(element, "", skipped))
     return joined_first(values, limit) if values else None
 
 
-def _values_by_path(element: Element, path: str, skipped: Collection[str]) -> Iterator[str]:
+def _list_values(element: Element, path: str, skipped: Collection[str]) -> Iterator[str]:
     name_tag = "uri" if element.first("name") is None else "name"
     for child in element.elements():
         if child.tag in skipped or (element.tag == _NAMED_BY_CHILD and child.tag == name_tag):
             continue
         child_path = " ".join(filter(None, (path, child.tag, child.attributes.get("name"))))
-        content = own_content(child)
+        content = format_own_content(child)
         if content or not any(child.elements()):
             yield f"{child_path} {content}".strip()
-        yield from _values_by_path(child, child_path, skipped)
+        yield from _list_values(child, child_path, skipped)

@@ -10,21 +10,21 @@ from typing import TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Problem, nesting_problem
+from linkwright.review.changes import Problem, make_nesting_problem
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.versions import Versions
 
 _Result = TypeVar("_Result")
 _Step = Callable[[Versions, Sequence[ChangedFile]], Iterable[_Result]]
 _ROOT = Path(__file__).parents[1]
-_MAX_SEARCHED = 60
+_MAX_SEARCHED_FILES = 60
 """The maximum number of changed files that are tried one by one to find the cause of a failure."""
 
 
-def failure_problem(error: Exception) -> Problem:
+def make_problem(error: Exception) -> Problem:
     """Return the problem that an exception ended the comparison of a file."""
     if isinstance(error, (RecursionError, MemoryError)):
-        return nesting_problem()
+        return make_nesting_problem()
     if isinstance(error, LinkwrightError):
         return Problem(phrase("the versions cannot be compared: {reason}", reason=error.diagnostics[0].message))
     if isinstance(error, UnreadableFileError):
@@ -32,18 +32,18 @@ def failure_problem(error: Exception) -> Problem:
     if isinstance(error, OSError):
         reason = foreign(error.strerror or str(error))
         return Problem(phrase("the versions cannot be compared: {reason}", reason=reason))
-    return Problem(_bug_text(error), is_bug=True)
+    return Problem(_format_bug(error), is_bug=True)
 
 
-def _bug_text(error: Exception) -> Phrase:
-    """Return the line about a bug, with the place in Linkwright where the exception was raised."""
+def _format_bug(error: Exception) -> Phrase:
+    """Return the line about a bug, with the location of the exception in Linkwright."""
     frames = [frame for frame in extract_tb(error.__traceback__) if Path(frame.filename).is_relative_to(_ROOT)]
-    place = f"{Path(frames[-1].filename).relative_to(_ROOT).as_posix()}:{frames[-1].lineno}" if frames else "-"
+    location = f"{Path(frames[-1].filename).relative_to(_ROOT).as_posix()}:{frames[-1].lineno}" if frames else "-"
     return phrase(
         "not compared because of a bug in Linkwright; please report this line, with the file if you can share it: "
         "{error} in {place}",
         error=foreign(" ".join(f"{type(error).__name__}: {error}".split())),
-        place=place,
+        place=location,
     )
 
 
@@ -60,23 +60,28 @@ class Failures:
     notes: list[Phrase] = field(default_factory=list)
 
     def run_step(self, step: _Step[_Result], versions: Versions, files: Sequence[ChangedFile]) -> list[_Result]:
-        """Return the results of a step. If it fails, it is repeated without the files with which it fails."""
+        """Return the results of a step.
+
+        A step that fails is repeated without the files that make it fail.
+        """
         try:
             return list(step(versions, files))
-        except Exception as error:  # noqa: BLE001 - whatever it is, the other files are compared
+        except Exception as error:  # noqa: BLE001 - the other files are still compared
             failure = error
         failing = {
-            file.path: problem for file in files[:_MAX_SEARCHED] if (problem := _problem_of(step, versions, file))
+            file.path: problem
+            for file in files[:_MAX_SEARCHED_FILES]
+            if (problem := _find_problem(step, versions, file))
         }
-        rest = [file for file in files if file.path not in failing]
+        remaining_files = [file for file in files if file.path not in failing]
         if failing:
             try:
-                found = list(step(versions, rest))
+                results = list(step(versions, remaining_files))
             except Exception as error:  # noqa: BLE001
                 failure = error
             else:
                 self.problems = {**failing, **self.problems}
-                return found
+                return results
         self._add_note(failure)
         return []
 
@@ -90,25 +95,25 @@ class Failures:
 
     def add(self, path: str, error: Exception) -> None:
         """Add the failure of a file."""
-        self.problems.setdefault(path, failure_problem(error))
+        self.problems.setdefault(path, make_problem(error))
 
     def add_missing_findings(self, path: str, error: Exception) -> None:
         """Add the failure of the check of a file or package, whose findings are missing then."""
-        problem = failure_problem(error)
+        problem = make_problem(error)
         text = phrase("new and fixed findings are missing: {reason}", reason=problem.text)
         self.problems.setdefault(path, replace(problem, text=text))
 
     def _add_note(self, error: Exception) -> None:
-        text = phrase("a part of the review is missing: {reason}", reason=failure_problem(error).text)
+        text = phrase("a part of the review is missing: {reason}", reason=make_problem(error).text)
         if text not in self.notes:
             self.notes.append(text)
 
 
-def _problem_of(step: _Step[_Result], versions: Versions, file: ChangedFile) -> Problem | None:
-    """Return the problem with which a step fails for a single file, or None if it does not fail."""
+def _find_problem(step: _Step[_Result], versions: Versions, file: ChangedFile) -> Problem | None:
+    """Return the problem with which a step fails for a single file, or None."""
     try:
         for _ in step(versions, [file]):
             pass
     except Exception as error:  # noqa: BLE001
-        return failure_problem(error)
+        return make_problem(error)
     return None

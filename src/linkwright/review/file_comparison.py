@@ -6,13 +6,13 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.review.changes import Change, Effect, PathChange, Problem, Subject, SubjectKind, ViewImages
-from linkwright.review.drawings.images import lone_images
-from linkwright.review.drawings.scene_images import lone_world_images
-from linkwright.review.failures import failure_problem
+from linkwright.review.drawings.images import render_unpaired_robot
+from linkwright.review.drawings.scene_images import render_unpaired_world
+from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.installed_paths import keeps_installed_path, keeps_type
-from linkwright.review.kinds import KindRule, rule_of_contents
-from linkwright.review.robots.lone_robots import read_lone_robot, robot_text
+from linkwright.review.kinds import KindRule, adapt_rule_to_contents
+from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot
 from linkwright.review.versions import Version, Versions
 
 
@@ -29,14 +29,14 @@ def compare_file(
         drawings: the kinds of drawings of robots that look different.
     """
     if old_path is None or new_path is None:
-        return _compare_lone_file(versions, rule, old_path, new_path, drawings)
+        return _describe_unpaired_file(versions, rule, old_path, new_path, drawings)
     pair = FilePair(versions, old_path, new_path, drawings)
     try:
         if old_path != new_path:
-            pair.changes.append(_renaming_change(versions, rule, old_path, new_path))
+            pair.changes.append(_make_renaming_change(versions, rule, old_path, new_path))
         rule.compare(pair)
-    except Exception as error:  # noqa: BLE001 - whatever it is, the other files are compared
-        pair.problems.append(failure_problem(error))
+    except Exception as error:  # noqa: BLE001 - the other files are still compared
+        pair.problems.append(make_problem(error))
     return Subject(
         rule.kind,
         new_path,
@@ -54,7 +54,7 @@ def compare_file(
     )
 
 
-def _compare_lone_file(
+def _describe_unpaired_file(
     versions: Versions, rule: KindRule, old_path: str | None, new_path: str | None, drawings: Drawings
 ) -> Subject:
     """Return the subject of an added or removed file, with its contents."""
@@ -66,20 +66,20 @@ def _compare_lone_file(
     changes: list[Change] = []
     images: list[ViewImages] = []
     try:
-        rule = rule_of_contents(rule, version, path)
+        rule = adapt_rule_to_contents(rule, version, path)
         text = rule.added if new_path is not None else rule.removed
         if new_path is not None or rule.shows_removed:
-            text = _text_with_contents(rule, text, version, path)
-        changes, images = _lone_contents(version, kind, path, drawings)
+            text = _add_contents(rule, text, version, path)
+        changes, images = _describe_contents(version, kind, path, drawings)
     except Exception as error:  # noqa: BLE001
-        problems.append(failure_problem(error))
+        problems.append(make_problem(error))
     if rule.needs_contents and not problems and "items" not in text.arguments:
         return Subject(kind, path, old_path, new_path)
     change = Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason)
     return Subject(kind, path, old_path, new_path, [change, *changes], problems=problems, images=images)
 
 
-def _renaming_change(versions: Versions, rule: KindRule, old_path: str, new_path: str) -> Change:
+def _make_renaming_change(versions: Versions, rule: KindRule, old_path: str, new_path: str) -> Change:
     """Return the change that reports a renamed or moved file."""
     old, new = PurePosixPath(old_path), PurePosixPath(new_path)
     if old.name == new.name and rule.removal_reason is not None and keeps_installed_path(versions, old_path, new_path):
@@ -93,7 +93,7 @@ def _renaming_change(versions: Versions, rule: KindRule, old_path: str, new_path
     return Change(text, effect, rule.removal_reason, path_change=PathChange.RENAMED)
 
 
-def _text_with_contents(rule: KindRule, text: Phrase, version: Version, path: str) -> Phrase:
+def _add_contents(rule: KindRule, text: Phrase, version: Version, path: str) -> Phrase:
     """Return the line about an added or removed file, with its contents if they are known."""
     try:
         contents = None if rule.contents is None else rule.contents(version, path)
@@ -102,15 +102,15 @@ def _text_with_contents(rule: KindRule, text: Phrase, version: Version, path: st
     return text if contents is None else phrase("{change}: {items}", change=text, items=contents)
 
 
-def _lone_contents(
+def _describe_contents(
     version: Version, kind: SubjectKind, path: str, drawings: Drawings
 ) -> tuple[list[Change], list[ViewImages]]:
-    """Return the change about the contents of a file that only one version has, and images of it."""
+    """Return a change with the contents of a file that only one version has, and images."""
     if kind is SubjectKind.WORLD:
-        return [], lone_world_images(version, path) if drawings.images else []
-    found = read_lone_robot(version, path) if kind is SubjectKind.DESCRIPTION else None
-    if found is None:
+        return [], render_unpaired_world(version, path) if drawings.images else []
+    model_and_robot = read_unpaired_robot(version, path) if kind is SubjectKind.DESCRIPTION else None
+    if model_and_robot is None:
         return [], []
-    model, robot = found
-    images = lone_images(model, robot, is_old=version.is_old) if drawings.images else []
-    return [Change(robot_text(robot))], images
+    model, robot = model_and_robot
+    images = render_unpaired_robot(model, robot, is_old=version.is_old) if drawings.images else []
+    return [Change(format_robot(robot))], images

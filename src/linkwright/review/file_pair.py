@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, foreign, phrase, quoted_names
-from linkwright.review.changes import Change, Effect, ExpandedPlace, Figure, Location, Problem, RobotScene, ViewImages
+from linkwright.review.changes import Change, Effect, ExpandedElement, Figure, Location, Problem, RobotScene, ViewImages
 from linkwright.review.versions import Version, Versions
 
 _Content = TypeVar("_Content")
@@ -29,7 +29,10 @@ class UnreadableFileError(Exception):
 
 
 class LimitError(UnreadableFileError):
-    """Raised for a file that is not read because of its size, place or kind, although it may be valid."""
+    """Raised for a file that is not read because of its size, location or kind.
+
+    The file may be valid.
+    """
 
 
 class Fault(NamedTuple):
@@ -99,7 +102,7 @@ class FilePair:
     cases: list[str] = field(default_factory=list)
     images: list[ViewImages] = field(default_factory=list)
     scene: RobotScene | None = None
-    expanded: set[ExpandedPlace] = field(default_factory=set)
+    expanded: set[ExpandedElement] = field(default_factory=set)
     missing: dict[str, None] = field(default_factory=dict)
     is_lost: bool = False
 
@@ -114,13 +117,15 @@ class FilePair:
         return self.versions.new.file(self.new_path)
 
     def read(self, read: Callable[[Path], _Content]) -> tuple[_Content, _Content] | None:
-        """Return the contents of both versions, or report a fault and return None if one cannot be read.
+        """Return the contents of both versions.
+
+        If one of them cannot be read, the fault is reported, and the result is None.
 
         Args:
             read: a function that reads a file, and raises `LinkwrightError`, `UnreadableFileError`, `OSError` or
                 `ValueError` if it cannot.
         """
-        old, new = _read(read, self.old_file), _read(read, self.new_file)
+        old, new = _try_read(read, self.old_file), _try_read(read, self.new_file)
         if not isinstance(old, Fault) and not isinstance(new, Fault):
             return old, new
         self.add_faults(old if isinstance(old, Fault) else None, new if isinstance(new, Fault) else None)
@@ -145,7 +150,7 @@ class FilePair:
         elif new is not None and not new.is_certain:
             self.add_unreadable(self.versions.new, new)
         elif new is not None:
-            text = phrase("cannot be read any more: {reason}", reason=new.text)
+            text = phrase("can no longer be read: {reason}", reason=new.text)
             reason = phrase("launch files and programs that use the file fail")
             location = Location(new.path or self.new_path, new.line, new.column) if new.line else None
             self.changes.append(Change(text, Effect.BREAKING, reason, location, cases))
@@ -191,13 +196,13 @@ class FilePair:
         self.changes.append(Change(sentence, effect, reason, location))
 
     def location(self, span: Span | None, *, is_old: bool = False) -> Location | None:
-        """Return a location in a version relative to the root, or None for a file outside the repository."""
+        """Return a location relative to the root, or None for a file outside the repository."""
         version = self.versions.old if is_old else self.versions.new
         path = None if span is None else version.relative(span.file)
         return None if span is None or path is None else Location(path, span.line, span.column, is_old)
 
 
-def _read(read: Callable[[Path], _Content], file: Path) -> _Content | Fault:
+def _try_read(read: Callable[[Path], _Content], file: Path) -> _Content | Fault:
     try:
         return read(file)
     except LinkwrightError as error:

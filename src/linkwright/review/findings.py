@@ -57,7 +57,7 @@ def find_findings(version: Version, targets: Targets) -> Findings:
 def find_findings_singly(
     sides: Sequence[tuple[Version, Targets]], new_paths: Mapping[str, str]
 ) -> tuple[list[Findings], dict[str, Exception]]:
-    """Return the findings of both versions without files and packages whose check fails, and the failures by path.
+    """Return the findings of both versions, and the failed checks by path.
 
     A target that fails in one version is left out of both, so that none of its findings is new or fixed.
 
@@ -67,27 +67,27 @@ def find_findings_singly(
     """
     failures: dict[str, Exception] = {}
     for version, targets in sides:
-        singles = [
+        single_targets = [
             *(Targets((file,), ()) for file in targets.files),
             *(Targets((), (path,)) for path in targets.packages),
         ]
-        for single in singles:
-            path = _key(version, *single.files, *single.packages, new_paths=new_paths)
+        for single_target in single_targets:
+            path = _find_target_path(version, *single_target.files, *single_target.packages, new_paths=new_paths)
             try:
-                find_findings(version, single)
-            except Exception as error:  # noqa: BLE001 - whatever it is, the other files are checked
+                find_findings(version, single_target)
+            except Exception as error:  # noqa: BLE001 - the other files are still checked
                 failures.setdefault(path, error)
-    found = []
+    findings = []
     for version, targets in sides:
         files, packages = (
-            tuple(path for path in paths if _key(version, path, new_paths=new_paths) not in failures)
+            tuple(path for path in paths if _find_target_path(version, path, new_paths=new_paths) not in failures)
             for paths in (targets.files, targets.packages)
         )
-        found.append(find_findings(version, Targets(files, packages)))
-    return found, failures
+        findings.append(find_findings(version, Targets(files, packages)))
+    return findings, failures
 
 
-def _key(version: Version, path: Path, *, new_paths: Mapping[str, str]) -> str:
+def _find_target_path(version: Version, path: Path, *, new_paths: Mapping[str, str]) -> str:
     """Return the new path of a file, or that of the manifest of a package."""
     relative = version.relative(path / MANIFEST if path.is_dir() else path) or str(path)
     return new_paths.get(relative, relative) if version.is_old else relative
@@ -96,7 +96,7 @@ def _key(version: Version, path: Path, *, new_paths: Mapping[str, str]) -> str:
 def compare_findings(
     versions: Versions, old: Findings, new: Findings, new_paths: Mapping[str, str]
 ) -> tuple[list[Diagnostic], list[Diagnostic]]:
-    """Return the findings that only the new version has, and the findings that only the old version has.
+    """Return the new and the fixed findings: those that only one of the versions has.
 
     A finding in a description that the other version could not read, or that no robot there includes, may be
     as old as the file. It is neither new nor fixed. The same holds for a finding that moved to another file, and for
@@ -122,28 +122,31 @@ def compare_findings(
         ]
         for version, own, other, other_version, names in sides
     )
-    return _without_moved(added, fixed), _without_moved(fixed, added)
+    return _drop_moved(added, fixed), _drop_moved(fixed, added)
 
 
 def _names_missing_file(finding: Diagnostic, version: Version) -> bool:
-    """Return whether a finding is about a file that git cannot check out, such as one that a partial clone lacks."""
+    """Return whether a finding is about a file that git cannot check out.
+
+    For example, a partial clone lacks files.
+    """
     missing = () if version.commit is None else version.commit.missing_files
     return any(path in str(finding.message) for path in missing)
 
 
-def _without_moved(findings: Sequence[Diagnostic], others: Sequence[Diagnostic]) -> list[Diagnostic]:
+def _drop_moved(findings: Sequence[Diagnostic], others: Sequence[Diagnostic]) -> list[Diagnostic]:
     """Return the findings that the other version does not have in another file."""
-    counts = Counter(map(_message_key, others))
+    counts = Counter(map(_get_message_key, others))
     result = []
     for finding in findings:
-        if counts[_message_key(finding)] > 0:
-            counts[_message_key(finding)] -= 1
+        if counts[_get_message_key(finding)] > 0:
+            counts[_get_message_key(finding)] -= 1
         else:
             result.append(finding)
     return result
 
 
-def _message_key(finding: Diagnostic) -> tuple[str, str]:
+def _get_message_key(finding: Diagnostic) -> tuple[str, str]:
     return finding.code, str(finding.message)
 
 
@@ -160,7 +163,7 @@ def _is_comparable(
     names: Mapping[str, str],
     changed: Collection[str],
 ) -> bool:
-    """Return whether the other version would have a finding, too, if it had the cause.
+    """Return whether the other version would also have a finding if it had its cause.
 
     This is the case if both versions of the file could be read, and also if neither could. However, checks that stop at
     different errors reach different files. A finding in a file that has not changed is then not compared.

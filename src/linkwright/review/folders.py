@@ -45,7 +45,10 @@ def finding_with_package_uris(finding: Diagnostic, shares: Mapping[str, Path]) -
 
 
 def _change_texts(value: _Value, change: Callable[[str], str]) -> _Value:
-    """Return a text, or a tuple or mapping of texts, with all texts and arguments of phrases changed."""
+    """Return a text, or a tuple or mapping of texts, with each text changed.
+
+    The arguments of phrases are also changed.
+    """
     if isinstance(value, Phrase):
         if change(str(value)) == str(value):
             return value
@@ -64,14 +67,14 @@ def review_without_folder(result: Review, folder: Path) -> Review:
     """Return a review with its texts changed by `without_folder`."""
     return replace(
         result,
-        subjects=[_subject_without_folder(subject, folder) for subject in result.subjects],
-        new_findings=[_finding_without_folder(finding, folder) for finding in result.new_findings],
-        fixed_findings=[_finding_without_folder(finding, folder) for finding in result.fixed_findings],
+        subjects=[_remove_folder_from_subject(subject, folder) for subject in result.subjects],
+        new_findings=[_remove_folder_from_finding(finding, folder) for finding in result.new_findings],
+        fixed_findings=[_remove_folder_from_finding(finding, folder) for finding in result.fixed_findings],
         notes=[without_folder(note, folder) for note in result.notes],
     )
 
 
-def _subject_without_folder(subject: Subject, folder: Path) -> Subject:
+def _remove_folder_from_subject(subject: Subject, folder: Path) -> Subject:
     return replace(
         subject,
         changes=[
@@ -92,7 +95,7 @@ def _subject_without_folder(subject: Subject, folder: Path) -> Subject:
     )
 
 
-def _finding_without_folder(finding: Diagnostic, folder: Path) -> Diagnostic:
+def _remove_folder_from_finding(finding: Diagnostic, folder: Path) -> Diagnostic:
     """Return a finding with its texts changed by `without_folder`."""
     return _change_finding(finding, lambda text: without_folder(text, folder))
 

@@ -19,11 +19,11 @@ _TOLERANCE = 1e-6
 
 
 class SharedFrames:
-    """The frames of the links of two robots, with all joints at the initial positions of joint_state_publisher.
+    """The frames of the links of two robots in a common frame.
 
-    The new robot may have another root link, such as a `base_footprint` below the old root. So the frames of
-    the new robot are placed so that a link of both robots is in the same place: the old root link, or else the first
-    one below it that the new robot has.
+    All joints are at the initial positions of joint_state_publisher. The new robot may have a different root link, such
+    as a `base_footprint` below the old root. Therefore, the new robot is placed so that a link of both robots has the
+    same pose: the old root link, or else the first link below it that the new robot has.
 
     Args:
         old: the robot of the old version.
@@ -33,7 +33,7 @@ class SharedFrames:
     Attributes:
         old: the frames of the old robot in the frame of its root link, by link.
         new: the frames of the new robot in the same frame, by link.
-        reference: the new name of the link that is in the same place; empty if the robots have no link in common.
+        reference: the new name of the link with the same pose; empty if the robots have no link in common.
         are_aligned: whether the reference link is not the root link of both robots.
         new_root: the frame of the new root link.
     """
@@ -52,7 +52,10 @@ class SharedFrames:
         self.new = {name: frame.inside(self.new_root) for name, frame in own_frames.items()}
 
     def distance(self, old_name: str) -> float | None:
-        """Return the distance in m by which a link has moved, or None if its pose is unchanged or not comparable."""
+        """Return the distance in m by which a link has moved.
+
+        The result is None if its pose is unchanged or cannot be compared.
+        """
         new_name = self._links.get(old_name, "")
         if old_name not in self.old or new_name not in self.new:
             return None

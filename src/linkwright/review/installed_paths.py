@@ -17,33 +17,44 @@ from linkwright.xacro.cache import read_document
 
 
 def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bool:
-    """Return whether the installed path of a moved file certainly stays the same, or the file is not installed."""
+    """Return whether a moved file certainly keeps its installed path.
+
+    This also holds for a file that is not installed.
+    """
     old_package, new_package = versions.old.package_of(old_path), versions.new.package_of(new_path)
     if old_package is None or old_package != new_package:
         return False
-    old_places = _installed_paths(versions.old, old_package, old_path)
-    return old_places is not None and old_places == _installed_paths(versions.new, old_package, new_path)
+    old_installed_paths = _find_installed_paths(versions.old, old_package, old_path)
+    return old_installed_paths is not None and old_installed_paths == _find_installed_paths(
+        versions.new, old_package, new_path
+    )
 
 
 def keeps_type(versions: Versions, old_path: str, new_path: str) -> bool:
-    """Return whether a moved ROS 1 interface keeps its type. ROS 1 type names contain no folder."""
+    """Return whether a moved ROS 1 interface keeps its type.
+
+    Type names of ROS 1 contain no folder.
+    """
     old, new = PurePosixPath(old_path), PurePosixPath(new_path)
     package = versions.new.package_of(new_path)
     if old.name != new.name or package is None or versions.old.package_of(old_path) != package:
         return False
-    facts = package_facts(versions.new, package)
+    facts = read_package_facts(versions.new, package)
     is_built = facts is not None and any(
         fact.kind is FactKind.INTERFACE and fact.name == new.relative_to(package).as_posix() for fact in facts.facts
     )
     return is_built and Manifest(read_document(str(versions.new.root / package / MANIFEST))).is_ros1
 
 
-def _installed_paths(version: Version, package: str, path: str) -> frozenset[str] | None:
-    """Return the installed paths of a file without the name of its package, or None if they are unknown."""
+def _find_installed_paths(version: Version, package: str, path: str) -> frozenset[str] | None:
+    """Return the installed paths of a file, or None if they are unknown.
+
+    They do not contain the name of the package.
+    """
     folder = version.root / package
     if Manifest(read_document(str(folder / MANIFEST))).is_ros1:
         return None  # catkin also finds files in the source folder, whatever is installed
-    facts = package_facts(version, package)
+    facts = read_package_facts(version, package)
     if facts is None or not facts.is_complete:
         return None
     source = PurePosixPath(path).relative_to(package).as_posix()
@@ -51,7 +62,7 @@ def _installed_paths(version: Version, package: str, path: str) -> frozenset[str
 
 
 @lru_cache(maxsize=64)
-def package_facts(version: Version, package: str) -> BuildFacts | None:
+def read_package_facts(version: Version, package: str) -> BuildFacts | None:
     """Return the facts of the build file of a package, or None if no build file can be read.
 
     Args:
@@ -68,14 +79,17 @@ def package_facts(version: Version, package: str) -> BuildFacts | None:
     return None
 
 
-def build_file(version: Version, package: str) -> str | None:
+def find_build_file(version: Version, package: str) -> str | None:
     """Return the path of the build file of a package, or None if it has none."""
     paths = (f"{package}/{name}".lstrip("/") for name in (CMAKE_FILE, SETUP_FILE))
     return next((path for path in paths if version.file(path).is_file()), None)
 
 
-def python_packages(version: Version, package: str) -> list[str]:
-    """Return the folders of the installed Python packages, relative to the package or to its ``src`` folder."""
+def find_python_packages(version: Version, package: str) -> list[str]:
+    """Return the folders of the installed Python packages.
+
+    They are relative to the package or to its ``src`` folder.
+    """
     names: list[str] = []
     for name, read in ((CMAKE_FILE, read_cmake_facts), (SETUP_FILE, read_setup_facts)):
         path = f"{package}/{name}".lstrip("/")
@@ -89,8 +103,11 @@ def python_packages(version: Version, package: str) -> list[str]:
 
 
 def is_exported_header(version: Version, package: str, path: str) -> bool:
-    """Return whether other packages find a header, which is installed or in a folder exported by catkin."""
-    facts = package_facts(version, package)
+    """Return whether other packages find a header.
+
+    Such a header is installed, or is in a folder that catkin exports.
+    """
+    facts = read_package_facts(version, package)
     if facts is None:
         return False
     source = PurePosixPath(path).relative_to(package).as_posix()

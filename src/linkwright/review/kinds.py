@@ -78,7 +78,7 @@ class KindRule:
     needs_contents: bool = False
 
 
-def _build_contents(read: Callable[[Version, str], BuildFacts], version: Version, path: str) -> Phrase | None:
+def _summarize_build_file(read: Callable[[Version, str], BuildFacts], version: Version, path: str) -> Phrase | None:
     """Return the contents of a build file in one line, or None if there are none."""
     return build_contents(read(version, path))
 
@@ -164,7 +164,7 @@ _RULES = (
             (name.lower(),),
             phrase("build file added"),
             phrase("build file removed"),
-            contents=partial(_build_contents, read),
+            contents=partial(_summarize_build_file, read),
             shows_removed=True,
             needs_contents=name in (SETUP_CFG, PYPROJECT),
         )
@@ -232,8 +232,10 @@ _REQUIREMENTS = KindRule(
 )
 
 
-def rule_of_contents(rule: KindRule, version: Version, path: str) -> KindRule:
-    """Return the rule for an added or removed file, with the sentences for a model if an SDF file has no world.
+def adapt_rule_to_contents(rule: KindRule, version: Version, path: str) -> KindRule:
+    """Return the rule for an added or removed file.
+
+    For an SDF file without a world, the rule has the sentences for a model.
 
     Args:
         rule: the rule for the name of the file.
@@ -278,7 +280,7 @@ def may_help_launch_files(path: str) -> bool:
     return pure_path.suffix == ".py" and pure_path.name != "setup.py" and TEST_FOLDERS.isdisjoint(pure_path.parts)
 
 
-def rule_of(path: str) -> KindRule | None:
+def find_rule(path: str) -> KindRule | None:
     """Return the rule for a file, or None if such files are not compared.
 
     Args:

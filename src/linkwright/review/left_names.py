@@ -9,7 +9,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.schema.name_tags import JOINT_TAG, LINK_TAG
 from linkwright.xmltree import Element
 
-_USERS = frozenset({"plugin", "sensor"})
+_READER_TAGS = frozenset({"plugin", "sensor"})
 _SCOPE = "::"
 """The separator of the names of models and links."""
 
@@ -20,7 +20,9 @@ def find_left_names(
     joints: Collection[str],
     location: Callable[[Span | None], Location | None],
 ) -> Iterator[Change]:
-    """Yield a breaking change for each parameter of a plugin or sensor that names a removed link or joint.
+    """Yield a breaking change for each parameter that names a removed link or joint.
+
+    Only parameters of plugins and sensors are searched.
 
     Args:
         elements: the elements of the new version.
@@ -30,26 +32,22 @@ def find_left_names(
     """
     if not links and not joints:
         return
-    for user in (user for element in elements for user in element.walk() if user.tag in _USERS):
-        for element in user.walk():
+    for reader in (reader for element in elements for reader in element.walk() if reader.tag in _READER_TAGS):
+        for element in reader.walk():
             name = element.text().strip().rpartition(_SCOPE)[2]
             if LINK_TAG.search(element.tag) and name in links:
-                yield _make_change(
-                    user, element, phrase("the link '{name}' does not exist any more", name=name), location
-                )
+                yield _make_change(reader, element, phrase("the link '{name}' no longer exists", name=name), location)
             elif JOINT_TAG.search(element.tag) and name in joints:
-                yield _make_change(
-                    user, element, phrase("the joint '{name}' does not exist any more", name=name), location
-                )
+                yield _make_change(reader, element, phrase("the joint '{name}' no longer exists", name=name), location)
 
 
 def _make_change(
-    user: Element, element: Element, reason: Phrase, location: Callable[[Span | None], Location | None]
+    reader: Element, element: Element, reason: Phrase, location: Callable[[Span | None], Location | None]
 ) -> Change:
     text = phrase(
         "{kind} '{owner}' still names '{name}' in <{tag}>",
-        kind=user.tag,
-        owner=user.attributes.get("name", ""),
+        kind=reader.tag,
+        owner=reader.attributes.get("name", ""),
         name=element.text().strip(),
         tag=element.tag,
     )

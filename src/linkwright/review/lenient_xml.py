@@ -12,7 +12,9 @@ from linkwright.xmltree.reader import read_bytes
 
 
 def read_lenient_root(file: Path) -> Element:
-    """Return the root element of a file, also if comments or blanks are in front of the XML declaration.
+    """Return the root element of a file.
+
+    Comments and blanks may precede the XML declaration.
 
     Raises:
         LinkwrightError: TinyXML2 cannot read the file either (XML###).

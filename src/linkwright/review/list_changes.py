@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.word_changes import words_text
+from linkwright.review.word_changes import compare_words
 
 EMPTY = "''"
 """An empty value as users write it."""
@@ -18,17 +18,17 @@ _CONTEXT = 20
 
 
 def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
-    """Return the change of a value in one line.
+    """Return the change in a value in one line.
 
     Args:
         name: the name of the value.
         old: the old value. A list has the form ``[a, b]``.
         new: the new value.
     """
-    words = words_text(old, new) if max(len(old), len(new)) > _LONG_VALUE else None
+    words = compare_words(old, new) if max(len(old), len(new)) > _LONG_VALUE else None
     if words is not None:
         return phrase("{parameter}: {changes}", parameter=name, changes=words)
-    old_items, new_items = _nested_items(old), _nested_items(new)
+    old_items, new_items = _split_nested_list(old), _split_nested_list(new)
     are_lists = all(value.startswith("[") and items != [value] for value, items in ((old, old_items), (new, new_items)))
     are_names = are_lists and all(len(item) <= _LONG_NAME for item in (*old_items, *new_items))
     is_cut = are_names and max(len(old), len(new)) > _LONG_VALUE
@@ -65,13 +65,16 @@ def differing_excerpts(old: str, new: str) -> tuple[str, str]:
         return old, new
     common = min(len(old), len(new))
     start = next((index for index in range(common) if old[index] != new[index]), common)
-    rest = common - start
-    end = next((index for index in range(rest) if old[-1 - index] != new[-1 - index]), rest)
+    max_end = common - start
+    end = next((index for index in range(max_end) if old[-1 - index] != new[-1 - index]), max_end)
     return _cut_excerpt(old, start, len(old) - end), _cut_excerpt(new, start, len(new) - end)
 
 
 def _cut_excerpt(text: str, start: int, end: int) -> str:
-    """Return a part of a text with some context, which starts at the beginning of a word if possible."""
+    """Return a part of a text with some context.
+
+    The result starts at the beginning of a word if possible.
+    """
     first = max(0, start - _CONTEXT)
     first = text.rfind(" ", max(0, first - _CONTEXT), first) + 1 or first
     last = min(len(text), end + _CONTEXT, first + _LONG_VALUE)
@@ -86,17 +89,17 @@ def list_items(text: str) -> list[str]:
     content = text[1:-1] if is_list else text
     if not is_list or set(content) & set("[]{}"):
         return [text]
-    return [item.strip() for item in _split(content) if item.strip()]
+    return [item.strip() for item in _split_at_commas(content) if item.strip()]
 
 
-def _nested_items(text: str) -> list[str]:
+def _split_nested_list(text: str) -> list[str]:
     """Return the items of a list, which may contain lists, or the value itself."""
     if not (text.startswith("[") and text.endswith("]")):
         return [text]
-    return [item.strip() for item in _split(text[1:-1], "([{", ")]}") if item.strip()]
+    return [item.strip() for item in _split_at_commas(text[1:-1], "([{", ")]}") if item.strip()]
 
 
-def _split(text: str, opening: str = "(", closing: str = ")") -> list[str]:
+def _split_at_commas(text: str, opening: str = "(", closing: str = ")") -> list[str]:
     """Split a text at the commas outside of parentheses."""
     parts, start, depth = [], 0, 0
     for index, character in enumerate(text):

@@ -23,7 +23,7 @@ _CONTROLLER = re.compile(r"controller|broadcaster|spawner")
 
 def find_lost_controllers(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the files of the new version that name a controller removed from the changed files."""
-    old, new = _controller_sources(versions.old, changed_files), _controller_sources(versions.new, changed_files)
+    old, new = _find_controllers(versions.old, changed_files), _find_controllers(versions.new, changed_files)
     lost = {name: path for name, path in old.items() if name not in new}
     if not lost:
         return
@@ -31,7 +31,7 @@ def find_lost_controllers(versions: Versions, changed_files: Sequence[ChangedFil
     files = [path for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)]
     for path in files:
         if path.endswith(_SETTINGS):
-            for name in _controller_names(versions.new, path):
+            for name in _read_controller_names(versions.new, path):
                 lost.pop(name, None)
     for path in files:
         text = versions.new.text(path) if path.endswith(_READER_SUFFIXES) else ""
@@ -41,7 +41,7 @@ def find_lost_controllers(versions: Versions, changed_files: Sequence[ChangedFil
 
 
 def _find_use(path: str, text: str, name: str, source: str) -> Iterator[Change]:
-    """Yield the change about the first place where a file names a removed controller."""
+    """Yield the change about the first location where a file names a removed controller."""
     pattern = re.compile(rf"(?<=[\"'\s])/?{re.escape(name)}(?=[\"'\s/])")
     for match in pattern.finditer(text):
         start = text.rfind("\n", 0, match.start()) + 1
@@ -54,15 +54,18 @@ def _find_use(path: str, text: str, name: str, source: str) -> Iterator[Change]:
             return
 
 
-def _controller_sources(version: Version, changed_files: Sequence[ChangedFile]) -> dict[str, str]:
-    """Return the controllers in the changed parameter files of a version, with the paths of the files."""
+def _find_controllers(version: Version, changed_files: Sequence[ChangedFile]) -> dict[str, str]:
+    """Return the paths of changed parameter files, by the controllers that they configure."""
     paths = (file.old_path if version.is_old else file.new_path for file in changed_files if not file.is_submodule)
     return {
-        name: path for path in paths if path and path.endswith(_SETTINGS) for name in _controller_names(version, path)
+        name: path
+        for path in paths
+        if path and path.endswith(_SETTINGS)
+        for name in _read_controller_names(version, path)
     }
 
 
-def _controller_names(version: Version, path: str) -> set[str]:
+def _read_controller_names(version: Version, path: str) -> set[str]:
     try:
         return set(find_all_controllers(read_yaml_values(version.text(path))))
     except UnreadableFileError:

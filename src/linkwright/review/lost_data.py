@@ -15,12 +15,12 @@ _READER_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".yaml", ".yml")
 _PROGRAM_SUFFIXES = frozenset({*_READER_SUFFIXES[:6], ".c", ".sh", ".bash"})
 """The suffixes of files that a build file or an import names."""
 _COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
-_MIN_NAME = 5
+_MIN_NAME_LENGTH = 5
 _MAX_FILES = 200
 
 
 def find_lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the files of the new version that name a removed or renamed data file, each with a change.
+    """Yield the files that still name a removed or renamed data file, each with a change.
 
     Launch files are left out: `find_lost_references` finds the paths in them.
     """
@@ -31,8 +31,8 @@ def find_lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> 
     }
     if not lost:
         return
-    kept = {PurePosixPath(path).name for path in versions.new.paths(tuple(lost))}
-    lost = {name: path for name, path in lost.items() if name not in kept}
+    remaining_names = {PurePosixPath(path).name for path in versions.new.paths(tuple(lost))}
+    lost = {name: path for name, path in lost.items() if name not in remaining_names}
     changed = {file.old_path: file.new_path for file in changed_files}
     for path in versions.new.paths(_READER_SUFFIXES) if lost else ():
         parts = PurePosixPath(path).parts
@@ -40,19 +40,22 @@ def find_lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> 
             continue
         text = versions.new.text(path)
         for name, old_path in lost.items():
-            line = _line_of(text, name)
+            line = _find_line(text, name)
             if line and versions.new.package_of(path) == versions.old.package_of(old_path):
                 yield path, _make_change(path, name, line, is_renamed=changed.get(old_path) is not None)
 
 
 def _is_data(path: str) -> bool:
     pure_path = PurePosixPath(path)
-    is_named = len(pure_path.name) >= _MIN_NAME and pure_path.suffix not in ("", ".md", ".txt", ".xml")
+    is_named = len(pure_path.name) >= _MIN_NAME_LENGTH and pure_path.suffix not in ("", ".md", ".txt", ".xml")
     return is_named and pure_path.suffix not in _PROGRAM_SUFFIXES and TEST_FOLDERS.isdisjoint(pure_path.parts)
 
 
-def _line_of(text: str, name: str) -> int:
-    """Return the first line, starting at 1, that names a file in quotes or after a slash; 0 if there is none."""
+def _find_line(text: str, name: str) -> int:
+    """Return the first line that names a file in quotes or after a slash.
+
+    Lines count from 1; the result is 0 if there is none.
+    """
     if name not in text:
         return 0
     pattern = re.compile(rf"(?<=[/\"']){re.escape(name)}(?=[\"'\s,\])]|$)", re.MULTILINE)

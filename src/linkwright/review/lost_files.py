@@ -9,8 +9,8 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect
 from linkwright.review.files.build_facts import BuildFacts, FactKind, list_names, summarize_files
-from linkwright.review.installed_paths import build_file, package_facts, python_packages
-from linkwright.review.kinds import rule_of
+from linkwright.review.installed_paths import find_build_file, find_python_packages, read_package_facts
+from linkwright.review.kinds import find_rule
 from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.sources.reading import is_generated, read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Versions
@@ -19,7 +19,7 @@ _HEADERS = "include/"
 
 
 def find_lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the build files whose packages no longer install files of the old version, each with a change.
+    """Yield the build files that no longer install files of the old version, with changes.
 
     Files with their own comparison are left out.
     """
@@ -33,25 +33,28 @@ def find_lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) ->
         if package is not None and package not in moved_packages and _reports_nothing(file.old_path):
             packages.setdefault(package, []).append(file)
     for package, files in packages.items():
-        path = build_file(versions.new, package)
-        old, new = package_facts(versions.old, package), package_facts(versions.new, package)
+        path = find_build_file(versions.new, package)
+        old, new = read_package_facts(versions.old, package), read_package_facts(versions.new, package)
         if path is not None and old is not None and new is not None:
             changes = [
-                *_lost_targets(files, old, new, is_compared=path in changed),
-                *_lost_modules(versions, files, old),
+                *_find_lost_targets(files, old, new, is_compared=path in changed),
+                *_find_lost_modules(versions, files, old),
             ]
             yield from ((path, change) for change in changes)
 
 
 def _reports_nothing(path: str) -> bool:
-    rule = rule_of(path)
+    rule = find_rule(path)
     return rule is None or rule.removal_reason is None
 
 
-def _lost_targets(
+def _find_lost_targets(
     files: Sequence[ChangedFile], old: BuildFacts, new: BuildFacts, *, is_compared: bool
 ) -> Iterator[Change]:
-    """Yield the changes about files that are no longer installed, with headers in changes of their own."""
+    """Yield the changes about files that are no longer installed.
+
+    Headers and other files get separate changes.
+    """
     if not new.unknown <= old.unknown:
         return
     sources = {_relative_to_package(old, file.old_path or ""): file for file in files}
@@ -65,14 +68,14 @@ def _lost_targets(
             continue  # the comparison of the build files reports it
         lost.append(target)
     headers = [target for target in lost if target.startswith(_HEADERS)]
-    others = [target for target in lost if target not in headers]
+    other_targets = [target for target in lost if target not in headers]
     for targets, reason in (
         (headers, phrase("code of other packages that includes them does not build")),
-        (others, phrase("programs that look for the files do not find them")),
+        (other_targets, phrase("programs that look for the files do not find them")),
     ):
         if targets:
             names = list_names(summarize_files(targets, new.files))
-            yield Change(phrase("not installed any more: {names}", names=names), Effect.BREAKING, reason)
+            yield Change(phrase("no longer installed: {names}", names=names), Effect.BREAKING, reason)
 
 
 def _relative_to_package(facts: BuildFacts, path: str) -> str:
@@ -81,41 +84,44 @@ def _relative_to_package(facts: BuildFacts, path: str) -> str:
     return pure_path.relative_to(facts.package).as_posix() if pure_path.is_relative_to(facts.package) else path
 
 
-def _lost_modules(versions: Versions, files: Sequence[ChangedFile], old: BuildFacts) -> Iterator[Change]:
+def _find_lost_modules(versions: Versions, files: Sequence[ChangedFile], old: BuildFacts) -> Iterator[Change]:
     """Yield the changes about removed and renamed Python modules."""
-    packages = python_packages(versions.old, old.package)
+    packages = find_python_packages(versions.old, old.package)
     removed: dict[bool, list[str]] = {}
     for file in files:
-        module = _module_name(old, file.old_path or "", packages)
+        module = _find_module_name(old, file.old_path or "", packages)
         if module is None:
             continue
-        is_kept = read_source_names(versions.old.file(file.old_path or "")).is_program
-        is_kept = is_kept or (file.new_path is None and is_generated(versions.old.text(file.old_path or "")))
-        new_module = None if file.new_path is None else _module_name(old, file.new_path, packages)
+        is_harmless = read_source_names(versions.old.file(file.old_path or "")).is_program
+        is_harmless = is_harmless or (file.new_path is None and is_generated(versions.old.text(file.old_path or "")))
+        new_module = None if file.new_path is None else _find_module_name(old, file.new_path, packages)
         if new_module is None:
-            removed.setdefault(is_kept, []).append(module)
+            removed.setdefault(is_harmless, []).append(module)
         elif new_module != module:
             text = phrase("Python module '{old}' renamed to '{new}'", old=module, new=new_module)
-            yield _module_change(text, is_kept=is_kept)
-    for is_kept, names in removed.items():
+            yield _make_module_change(text, is_harmless=is_harmless)
+    for is_harmless, names in removed.items():
         text = phrase("{kind} removed: {names}", kind=FactKind.MODULE.title, names=list_names(names))
-        yield _module_change(text, is_kept=is_kept)
+        yield _make_module_change(text, is_harmless=is_harmless)
 
 
-def _module_change(text: Phrase, *, is_kept: bool) -> Change:
-    """Return the change of a module. It is not breaking for a program, or if the build generates it."""
-    return Change(text) if is_kept else Change(text, Effect.BREAKING, FactKind.MODULE.reason)
+def _make_module_change(text: Phrase, *, is_harmless: bool) -> Change:
+    """Return the change to a module.
+
+    The change is not breaking for a program or a generated module.
+    """
+    return Change(text) if is_harmless else Change(text, Effect.BREAKING, FactKind.MODULE.reason)
 
 
-def _module_name(facts: BuildFacts, path: str, packages: Collection[str]) -> str | None:
-    """Return the module name of a file in an installed Python package, or None for another file."""
+def _find_module_name(facts: BuildFacts, path: str, packages: Collection[str]) -> str | None:
+    """Return the module name of a file in an installed Python package; None for other files."""
     pure_path = PurePosixPath(_relative_to_package(facts, path))
     if pure_path.suffix != ".py" or not TEST_FOLDERS.isdisjoint(pure_path.parts):
         return None
     for package in packages:
         folder = PurePosixPath(package)
-        for place in (folder, PurePosixPath("src") / folder):
-            if pure_path.is_relative_to(place):
-                parts = (*PurePosixPath(folder.name).parts, *pure_path.relative_to(place).with_suffix("").parts)
+        for base in (folder, PurePosixPath("src") / folder):
+            if pure_path.is_relative_to(base):
+                parts = (*PurePosixPath(folder.name).parts, *pure_path.relative_to(base).with_suffix("").parts)
                 return ".".join(part for part in parts if part != "__init__")
     return None

@@ -1,4 +1,4 @@
-"""Merge equal changes of several links, joints or extensions into one line."""
+"""Merge equal changes to several links, joints or extensions into one line."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import replace
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.changes import REMOVED_VALUE, Change, Location
 
-_PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+) (?P<rest>.+)")
+_PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+) (?P<property>.+)")
 """A property of hardware of ros2_control below one of its joints, GPIOs or sensors."""
 _PARAMETER = re.compile(r"(?P<parent>(?:.* )?)(?P<parameter>param \S+)")
 """A parameter of hardware of ros2_control, or of one of its joints, as a whole."""
@@ -25,14 +25,14 @@ _OWN_NAME = "*"
 
 
 def merge_changes(changes: Iterable[Change]) -> list[Change]:
-    """Return the changes, with equal changes of several links, joints or extensions merged.
+    """Return the changes, with equal changes to several links, joints or extensions merged.
 
-    New names are equal changes if the same part is replaced, such as a prefix of all links.
+    Renames count as equal if they replace the same part, such as a prefix.
     """
     for key, names in (
-        (_content_key, _all_names),
-        (_content_of_part, _part_names),
-        (_parent_of_parameter, _parameter_names),
+        (_make_content_key, _list_names),
+        (_make_part_key, _list_part_names),
+        (_make_parameter_key, _list_parameter_names),
     ):
         groups: dict[Hashable, list[Change]] = {}
         for number, change in enumerate(changes):
@@ -42,20 +42,23 @@ def merge_changes(changes: Iterable[Change]) -> list[Change]:
     return list(changes)
 
 
-def common_reason(reasons: Iterable[Phrase | None]) -> Phrase | None:
-    """Return one reason for breaking changes whose reasons differ only in names; None if they are not breaking."""
+def merge_reasons(reasons: Iterable[Phrase | None]) -> Phrase | None:
+    """Return one reason for breaking changes whose reasons differ only in names.
+
+    The result is None if the changes are not breaking.
+    """
     distinct = list({str(reason): reason for reason in reasons}.values())
     first = distinct[0]
     return first if first is None or len(distinct) == 1 else phrase("{reason}; likewise for the others", reason=first)
 
 
-def _content_key(change: Change) -> Hashable:
-    """Return a key that is equal for the same change of other links, joints or extensions."""
+def _make_content_key(change: Change) -> Hashable:
+    """Return a key that is equal for the same change to other links, joints or extensions."""
     own_name = change.name.rpartition(" ")[2]
     effect, property_name, (template, subject, old, new) = change.content
     if REMOVED_VALUE in change.core.arguments:
         new = ""  # properties that are removed together had different values
-    old_name = _old_name(change)
+    old_name = _find_old_name(change)
     if old_name is not None:
         return effect, template, subject, name_edit(old_name, change.name)
     property_name = property_name.replace(own_name, _OWN_NAME) if len(own_name) > 1 else property_name
@@ -66,77 +69,86 @@ def _content_key(change: Change) -> Hashable:
 
 
 def name_edit(old: str, new: str) -> Hashable:
-    """Return the replaced part of a name and its replacement, or both values if they are not names."""
+    """Return the replaced part of a name and its replacement.
+
+    For values that are not names, both values are returned.
+    """
     if _NO_NAME.fullmatch(old) or _NO_NAME.fullmatch(new):
         return old, new
-    start, end = _common_ends(old, new)
+    start, end = _count_common_ends(old, new)
     removed, inserted = old[start : len(old) - end], new[start : len(new) - end]
     if not removed or not inserted:
         return removed, inserted, start == 0
     old_tokens, new_tokens = _TOKEN.findall(old), _TOKEN.findall(new)
-    start, end = _common_ends(old_tokens, new_tokens)
+    start, end = _count_common_ends(old_tokens, new_tokens)
     return tuple(old_tokens[start : len(old_tokens) - end]), tuple(new_tokens[start : len(new_tokens) - end])
 
 
-def _common_ends(old: str | list[str], new: str | list[str]) -> tuple[int, int]:
+def _count_common_ends(old: str | list[str], new: str | list[str]) -> tuple[int, int]:
     """Return the lengths of the common prefix and suffix.
 
     The suffix takes precedence, so that the two do not overlap.
     """
     length = min(len(old), len(new))
     end = next((index for index in range(length) if old[-1 - index] != new[-1 - index]), length)
-    rest = length - end
-    return next((index for index in range(rest) if old[index] != new[index]), rest), end
+    max_start = length - end
+    return next((index for index in range(max_start) if old[index] != new[index]), max_start), end
 
 
-def _old_name(change: Change) -> str | None:
+def _find_old_name(change: Change) -> str | None:
     """Return the old name of a renamed link, joint or extension; None for other changes."""
     arguments = change.core.arguments
     is_renamed = "old" in arguments and "new" not in arguments
     return str(arguments["old"]) if is_renamed else None
 
 
-def _all_names(change: Change) -> tuple[str, ...]:
-    old_name = _old_name(change)
+def _list_names(change: Change) -> tuple[str, ...]:
+    old_name = _find_old_name(change)
     return change.name if old_name is None else f"{old_name} -> {change.name}", *change.other_names
 
 
-def _content_of_part(change: Change) -> Hashable | None:
-    """Return a key that is equal for the same change of other joints of the same hardware; None for other changes."""
-    new_name = _new_part_name(change)
+def _make_part_key(change: Change) -> Hashable | None:
+    """Return a key that is equal for the same change to other joints of the same hardware.
+
+    The result is None for changes that are not about hardware.
+    """
+    new_name = _find_new_part_name(change)
     if new_name is not None:
         if change.other_names:
             return None
         tag, _, old_name = change.property_name.rpartition(" ")
         return change.effect, change.name, tag, name_edit(old_name, new_name)
     part = _PART.fullmatch(change.property_name)
-    return None if part is None else (change.effect, change.name, part["rest"], change.values, change.other_names)
+    return None if part is None else (change.effect, change.name, part["property"], change.values, change.other_names)
 
 
-def _new_part_name(change: Change) -> str | None:
+def _find_new_part_name(change: Change) -> str | None:
     """Return the new name of a renamed element of an extension; None for other changes."""
     arguments = change.core.arguments
     is_renamed = "new" in arguments and change.core.template.endswith("renamed to '{new}'")
     return str(arguments["new"]) if is_renamed else None
 
 
-def _part_names(change: Change) -> tuple[str, ...]:
-    new_name = _new_part_name(change)
+def _list_part_names(change: Change) -> tuple[str, ...]:
+    new_name = _find_new_part_name(change)
     if new_name is not None:
         return (f"{change.property_name} -> {new_name}",)
     part = _PART.fullmatch(change.property_name)
     return (change.name,) if part is None else (part["part"],)
 
 
-def _parent_of_parameter(change: Change) -> Hashable | None:
-    """Return a key that is equal for parameters added to or removed from the same element; None for other changes."""
+def _make_parameter_key(change: Change) -> Hashable | None:
+    """Return a key that is equal for parameters added to or removed from one element.
+
+    The result is None for other changes.
+    """
     parameter = _PARAMETER.fullmatch(change.property_name)
     if parameter is None or change.reason is not None or change.other_names or "old" in change.core.arguments:
         return None
     return change.name, parameter["parent"], change.core.template
 
 
-def _parameter_names(change: Change) -> tuple[str, ...]:
+def _list_parameter_names(change: Change) -> tuple[str, ...]:
     parameter = _PARAMETER.fullmatch(change.property_name)
     if parameter is None:
         return (change.name,)
@@ -144,20 +156,20 @@ def _parameter_names(change: Change) -> tuple[str, ...]:
     return (f"{parameter['parameter']} {arguments.get('new', arguments.get(REMOVED_VALUE, ''))}".strip(),)
 
 
-def _merge_group(changes: list[Change], names_of: Callable[[Change], tuple[str, ...]]) -> Change:
+def _merge_group(changes: list[Change], list_names: Callable[[Change], tuple[str, ...]]) -> Change:
     first = changes[0]
-    names = dict.fromkeys(name for change in changes for name in names_of(change))
-    if names_of is _part_names:
+    names = dict.fromkeys(name for change in changes for name in list_names(change))
+    if list_names is _list_part_names:
         names |= dict.fromkeys(first.other_names)
-    for name in names_of(first)[:1]:
+    for name in list_names(first)[:1]:
         del names[name]
     locations: dict[Location, None] = {}
     for change in changes[1:]:
         if change.location is not None and change.location != first.location:
             locations[change.location] = None
-    reason = common_reason(change.reason for change in changes)
+    reason = merge_reasons(change.reason for change in changes)
     sentence = first.sentence
-    is_parameter = names_of is _parameter_names
+    is_parameter = list_names is _list_parameter_names
     if not is_parameter and len({str(change.core.arguments.get(REMOVED_VALUE)) for change in changes}) > 1:
         arguments = {name: value for name, value in first.core.arguments.items() if name != REMOVED_VALUE}
         sentence = phrase("{subject} '{name}': {property} removed", **arguments)

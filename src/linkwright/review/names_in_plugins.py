@@ -10,13 +10,16 @@ NAME_TAGS = re.compile(r"topic|namespace|frame(?!_?(rate|skip|count))|remapping|
 """The tags of parameters with names in the graph or in tf."""
 
 
-def used_name(value: str) -> str:
-    """Return the name that other programs use, such as the right side of a remapping ``~/out:=scan``."""
+def extract_used_name(value: str) -> str:
+    """Return the name that other programs use.
+
+    For a remapping such as ``~/out:=scan``, it is the right side.
+    """
     return value.rpartition(":=")[2].strip()
 
 
-def path_of_renamed(difference: Difference, path: str) -> str | None:
-    """Return the path of a renamed element with its old name, or None if the difference is not a new name.
+def find_old_path(difference: Difference, path: str) -> str | None:
+    """Return the path of a renamed element with its old name; None for other differences.
 
     Args:
         difference: the difference between both versions.

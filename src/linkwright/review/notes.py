@@ -26,7 +26,7 @@ def is_unreadable_as_before(subject: Subject, changed: Collection[str | None]) -
     )
 
 
-def unreadable_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
+def make_unreadable_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
     """Yield a note about files that neither version can read, as before."""
     if subjects:
         first = subjects[0]
@@ -39,10 +39,10 @@ def unreadable_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
         )
 
 
-def without_equal_problems(subjects: Sequence[Subject]) -> tuple[list[Subject], list[Phrase]]:
-    """Return subjects without changed files that cannot be read for the same reason, and a note about each reason.
+def group_equal_problems(subjects: Sequence[Subject]) -> tuple[list[Subject], list[Phrase]]:
+    """Return subjects without files that are unreadable for a common reason, and notes.
 
-    A file that is the only one with its reason remains a subject.
+    There is a note about each reason. A file that is the only one with its reason remains a subject.
     """
     groups: dict[str, list[Subject]] = {}
     for subject in subjects:
@@ -62,8 +62,8 @@ def without_equal_problems(subjects: Sequence[Subject]) -> tuple[list[Subject], 
     return [subject for subject in subjects if subject.path not in grouped], notes
 
 
-def missing_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
-    """Yield a note about the packages and files that were left out because a version does not find them."""
+def make_missing_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:
+    """Yield a note about omitted packages and files, which a version does not find."""
     incomplete = [subject for subject in subjects if subject.missing]
     names = sorted({name for subject in incomplete for name in subject.missing})
     if incomplete:

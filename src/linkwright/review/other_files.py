@@ -8,8 +8,8 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changed_lines import changed_lines
-from linkwright.review.renamed_packages import moved_files
+from linkwright.review.changed_lines import compare_lines
+from linkwright.review.renamed_packages import find_moved_files
 from linkwright.review.versions import Version, Versions
 
 _HEAD_BYTES = 4096
@@ -18,19 +18,22 @@ _MIN_FILES = 4
 """The minimum number of files of a folder that are summarized in one line."""
 
 
-def file_states(versions: Versions, files: Iterable[ChangedFile]) -> dict[str, Phrase]:
-    """Return the states of files whose path is not in both versions, and of robots for other simulators, by path."""
+def find_file_states(versions: Versions, files: Iterable[ChangedFile]) -> dict[str, Phrase]:
+    """Return the states of files, such as added or renamed, by path.
+
+    Robots for other simulators, and changed text files, also have a state.
+    """
     states: dict[str, Phrase] = {}
     files = list(files)
-    moved = dict(moved_files(versions, files))
+    moved = dict(find_moved_files(versions, files))
     for file in files:
-        state = _path_state(file)
+        state = _find_path_state(file)
         if file.path in moved:
             state = phrase("moved with the package from {folder}", folder=f"{moved[file.path] or '.'}/")
         version, path = (versions.new, file.new_path) if file.new_path else (versions.old, file.old_path)
-        kind = None if path is None or file.is_submodule else _foreign_kind(version, path)
+        kind = None if path is None or file.is_submodule else _find_foreign_kind(version, path)
         if state is None:
-            state = kind or changed_lines(versions, file)
+            state = kind or compare_lines(versions, file)
         elif kind is not None:
             state = phrase("{state}, {kind}", state=state, kind=kind)
         if state is not None:
@@ -38,7 +41,7 @@ def file_states(versions: Versions, files: Iterable[ChangedFile]) -> dict[str, P
     return states
 
 
-def _path_state(file: ChangedFile) -> Phrase | None:
+def _find_path_state(file: ChangedFile) -> Phrase | None:
     if file.old_path is None:
         return phrase("added")
     if file.new_path is None:
@@ -46,8 +49,8 @@ def _path_state(file: ChangedFile) -> Phrase | None:
     return None if file.old_path == file.new_path else phrase("renamed from {path}", path=file.old_path)
 
 
-def _foreign_kind(version: Version, path: str) -> Phrase | None:
-    """Return the kind of a robot or world of another simulator, which is not compared; None for other files."""
+def _find_foreign_kind(version: Version, path: str) -> Phrase | None:
+    """Return the kind of a robot or world of another simulator; None for other files."""
     suffix = PurePosixPath(path).suffix.lower()
     if suffix in (".usd", ".usda", ".usdc"):
         return phrase("robot or world in USD, not compared")

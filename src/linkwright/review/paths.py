@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-_TOLERANCE = 1e-4
+_MAX_EQUAL_DISTANCE_M = 1e-4
 """The maximum distance in m between equal paths."""
 _MAX_POINTS = 200
 """The maximum number of points of each path in a report."""
@@ -70,7 +70,10 @@ class PathComparison:
 
     @cached_property
     def typical(self) -> PathPair:
-        """The pair with the median distance; for an even number of pairs, the lower of the two middle pairs."""
+        """The pair with the median distance.
+
+        For an even number of pairs, it is the lower of the two middle pairs.
+        """
         return sorted(self.pairs, key=lambda pair: pair.distance)[(len(self.pairs) - 1) // 2]
 
     @cached_property
@@ -107,10 +110,10 @@ def compare_paths(seed: str, old: Array, new: Array) -> PathPair:
     times = times[(times >= start) & (times <= end)]
     if not len(times):
         times = np.array([start])
-    old_places, new_places = (_positions_at(path, times) for path in (old, new))
-    distances = np.linalg.norm(old_places - new_places, axis=1)
+    old_positions, new_positions = (_interpolate_positions(path, times) for path in (old, new))
+    distances = np.linalg.norm(old_positions - new_positions, axis=1)
     index = int(distances.argmax())
-    ends = (_round_point(old_places[index]), _round_point(new_places[index]))
+    ends = (_round_point(old_positions[index]), _round_point(new_positions[index]))
     return PathPair(seed, _thin_out(old), _thin_out(new), float(distances[index]), float(times[index]), ends)
 
 
@@ -126,11 +129,11 @@ def find_differing_paths(
         PathComparison(name, parameters, [compare_paths(*runs) for runs in group])
         for (name, parameters), group in groups.items()
     ]
-    differing = [comparison for comparison in comparisons if comparison.farthest.distance > _TOLERANCE]
+    differing = [comparison for comparison in comparisons if comparison.farthest.distance > _MAX_EQUAL_DISTANCE_M]
     return sorted(differing, key=lambda comparison: -comparison.farthest.distance)
 
 
-def _positions_at(path: Array, times: Array) -> Array:
+def _interpolate_positions(path: Array, times: Array) -> Array:
     """Return the positions at some times, shape (times, 2)."""
     return np.column_stack([np.interp(times, path[:, 0], path[:, axis]) for axis in (1, 2)])
 
@@ -140,5 +143,5 @@ def _thin_out(path: Array) -> Points:
     return [(float(row[0]), float(row[1]), float(row[2])) for row in path[indexes]]
 
 
-def _round_point(place: Array) -> tuple[float, float]:
-    return float(place[0]), float(place[1])
+def _round_point(point: Array) -> tuple[float, float]:
+    return float(point[0]), float(point[1])

@@ -9,8 +9,8 @@ from pathlib import PurePosixPath
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.review.element_values import values_text
-from linkwright.review.names_in_plugins import NAME_TAGS, used_name
+from linkwright.review.element_values import format_values
+from linkwright.review.names_in_plugins import NAME_TAGS, extract_used_name
 from linkwright.xmltree import Element
 
 _DEFAULT_TOPICS = {
@@ -30,29 +30,29 @@ _MAX_VALUES = 12
 _FILE = re.compile(r"(lib)?(?P<name>.+?)(\.so)?")
 
 
-def plugins_of(element: Element) -> list[Element]:
+def find_plugins(element: Element) -> list[Element]:
     """Return the plugins inside an element, or the element itself if it is a plugin."""
     if element.tag == "plugin":
         return [element]
-    return [plugin for child in element.elements() for plugin in plugins_of(child)]
+    return [plugin for child in element.elements() for plugin in find_plugins(child)]
 
 
-def plugin_name(plugin: Element) -> str:
+def find_plugin_name(plugin: Element) -> str:
     """Return the name of a plugin, or else its file, or the class of a hardware plugin."""
     file = PurePosixPath(plugin.attributes.get("filename", "")).name
     return plugin.attributes.get("name") or file or plugin.text().strip()
 
 
-def plugin_topics(plugin: Element) -> list[str]:
+def find_plugin_topics(plugin: Element) -> list[str]:
     """Return the topics that a plugin names, and the default topics of a known plugin."""
-    parameters = list(_plugin_parameters(plugin))
-    topics = [used_name(value) for tag, value in parameters if _TOPIC_TAGS.search(tag) or tag == "remapping"]
-    return list(dict.fromkeys([*topics, *_default_topics(plugin)]))
+    parameters = list(_find_parameters(plugin))
+    topics = [extract_used_name(value) for tag, value in parameters if _TOPIC_TAGS.search(tag) or tag == "remapping"]
+    return list(dict.fromkeys([*topics, *_find_default_topics(plugin)]))
 
 
-def _default_topics(plugin: Element) -> list[str]:
+def _find_default_topics(plugin: Element) -> list[str]:
     """Return the default topics of a known plugin that its parameters do not replace."""
-    parameters, topics = list(_plugin_parameters(plugin)), []
+    parameters, topics = list(_find_parameters(plugin)), []
     match = _FILE.fullmatch(PurePosixPath(plugin.attributes.get("filename", "")).name)
     for topic, pattern in _DEFAULT_TOPICS.get(match["name"] if match else "", {}).items():
         is_replaced = re.compile(pattern, re.IGNORECASE)
@@ -65,33 +65,35 @@ def _default_topics(plugin: Element) -> list[str]:
     return topics
 
 
-def sensor_topics(element: Element) -> list[str]:
+def find_sensor_topics(element: Element) -> list[str]:
     """Return the topics that the sensors in an element name."""
-    own = [child.text().strip() for child in element.elements() if element.tag == "sensor" and child.tag == "topic"]
-    return [*own, *(topic for child in element.elements() for topic in sensor_topics(child))]
+    own_topics = [
+        child.text().strip() for child in element.elements() if element.tag == "sensor" and child.tag == "topic"
+    ]
+    return [*own_topics, *(topic for child in element.elements() for topic in find_sensor_topics(child))]
 
 
-def _plugin_parameters(plugin: Element) -> Iterator[tuple[str, str]]:
+def _find_parameters(plugin: Element) -> Iterator[tuple[str, str]]:
     for child in plugin.elements():
         text = " ".join(child.text().split())
         if text and NAME_TAGS.search(child.tag):
             yield child.tag, text
-        yield from _plugin_parameters(child)
+        yield from _find_parameters(child)
 
 
-def contents_text(element: Element) -> Phrase | None:
-    """Return the values of a plugin or sensor, or the plugins and sensors inside another element; None if empty.
+def format_contents(element: Element) -> Phrase | None:
+    """Return the values of a plugin or sensor, or the plugins and sensors in an element.
 
     The result includes the default topics of a known plugin.
     """
     if element.tag in _PART_TAGS or not any(child.tag in _PART_TAGS and child.attributes for child in element.walk()):
-        texts = [values_text(element, _MAX_VALUES), _default_topics_text(element)]
+        texts = [format_values(element, _MAX_VALUES), _format_default_topics(element)]
         return joined(list(filter(None, texts))) if any(texts) else None
-    texts = [*plugin_parts(element, _MAX_VALUES), values_text(element, _MAX_VALUES, _PART_TAGS)]
+    texts = [*format_plugins(element, _MAX_VALUES), format_values(element, _MAX_VALUES, _PART_TAGS)]
     return joined(list(filter(None, texts)))
 
 
-def plugin_parts(element: Element, limit: int) -> list[Phrase]:
+def format_plugins(element: Element, limit: int) -> list[Phrase]:
     """Return the plugins and sensors in an element with their values.
 
     Args:
@@ -103,25 +105,25 @@ def plugin_parts(element: Element, limit: int) -> list[Phrase]:
         if child.tag in _PART_TAGS and child.attributes:
             attributes = {name: value for name, value in child.attributes.items() if name != "name"}
             texts: list[Phrase | None] = [as_phrase(f"{name}={value}") for name, value in attributes.items()]
-            texts += [values_text(child, limit, _PART_TAGS), _default_topics_text(child)]
-            title = phrase("plugin '{name}'", name=plugin_name(child))
+            texts += [format_values(child, limit, _PART_TAGS), _format_default_topics(child)]
+            title = phrase("plugin '{name}'", name=find_plugin_name(child))
             if child.tag == "sensor":
                 title = phrase("sensor '{name}'", name=child.attributes.get("name", ""))
             items = list(filter(None, texts))
             parts.append(phrase("{entry} ({items})", entry=title, items=joined(items)) if items else title)
-        parts += plugin_parts(child, limit)
+        parts += format_plugins(child, limit)
     return parts
 
 
-def _default_topics_text(element: Element) -> Phrase | None:
-    topics = _default_topics(element) if element.tag == "plugin" else []
+def _format_default_topics(element: Element) -> Phrase | None:
+    topics = _find_default_topics(element) if element.tag == "plugin" else []
     return phrase("topics {topics}", topics=quoted_names(topics)) if topics else None
 
 
-def topics_of(element: Element) -> list[str]:
+def find_topics(element: Element) -> list[str]:
     """Return the topics of the plugins and sensors in an element."""
-    topics = [topic for plugin in plugins_of(element) for topic in plugin_topics(plugin)]
-    return list(dict.fromkeys([*topics, *sensor_topics(element)]))
+    topics = [topic for plugin in find_plugins(element) for topic in find_plugin_topics(plugin)]
+    return list(dict.fromkeys([*topics, *find_sensor_topics(element)]))
 
 
 def is_added(difference: Difference) -> bool:
@@ -134,24 +136,27 @@ def is_removed(difference: Difference) -> bool:
     return difference.kind == "removed" or (difference.kind == "changed" and difference.new is None)
 
 
-def added_topics(differences: Iterable[Difference]) -> frozenset[str]:
-    """Return the topics that the new version adds: in added plugins and sensors, and in changed values of plugins."""
+def find_added_topics(differences: Iterable[Difference]) -> frozenset[str]:
+    """Return the topics that the new version adds.
+
+    They are in added plugins and sensors, and in changed values of plugins.
+    """
     topics: set[str] = set()
     for difference in differences:
         if is_removed(difference):
             continue
         if difference.element is not None:
-            topics |= {*topics_of(difference.element), *_names_in(difference.element)}
+            topics |= {*find_topics(difference.element), *_find_names(difference.element)}
         elif difference.new is not None and NAME_TAGS.search(difference.property.rpartition(" ")[2]):
-            topics.add(used_name(difference.new))
+            topics.add(extract_used_name(difference.new))
     return frozenset(topics)
 
 
-def _names_in(element: Element) -> Iterator[str]:
+def _find_names(element: Element) -> Iterator[str]:
     """Yield the names in the parameters of the plugins in an element."""
     text = " ".join(element.text().split())
-    own = [(element.tag, text)] if text and NAME_TAGS.search(element.tag) else []
-    yield from (used_name(value) for _, value in (*own, *_plugin_parameters(element)))
+    own_parameters = [(element.tag, text)] if text and NAME_TAGS.search(element.tag) else []
+    yield from (extract_used_name(value) for _, value in (*own_parameters, *_find_parameters(element)))
 
 
 def is_still_offered(difference: Difference, added: frozenset[str]) -> bool:
@@ -159,17 +164,19 @@ def is_still_offered(difference: Difference, added: frozenset[str]) -> bool:
 
     Args:
         difference: the difference between both versions.
-        added: the names that the new version adds; see `added_topics`.
+        added: the names that the new version adds; see `find_added_topics`.
     """
     if difference.subject != "extension" or difference.kind != "changed" or not difference.old:
         return False
     is_name = NAME_TAGS.search(difference.property.rpartition(" ")[2]) is not None
-    name = used_name(difference.old if difference.element is None else difference.element.text())
+    name = extract_used_name(difference.old if difference.element is None else difference.element.text())
     return is_name and name in added
 
 
-def missing_topics_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
-    """Return the reason why removing or replacing an element is breaking, or None. Its topics may be missing.
+def find_missing_topics_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
+    """Return why removing or replacing an element is breaking, or None if it is not.
+
+    The change is breaking if the new version lacks topics of the element.
 
     Args:
         difference: the difference between both versions.
@@ -178,7 +185,7 @@ def missing_topics_reason(difference: Difference, added: frozenset[str]) -> Phra
     element = difference.element if is_removed(difference) else getattr(difference, "old_plugin", None)
     if element is None:
         return None
-    topics = [topic for topic in topics_of(element) if topic not in added]
+    topics = [topic for topic in find_topics(element) if topic not in added]
     if not topics:
         return None
     return phrase("programs that use {topics} do not find the names", topics=quoted_names(topics))

@@ -17,7 +17,7 @@ _LENGTH_TOLERANCE = 1e-4
 """The maximum difference in m of equal lengths."""
 
 
-def figure_of(name: Phrase, unit: str, old: object, new: object) -> Iterator[Figure]:
+def compare_quantity(name: Phrase, unit: str, old: object, new: object) -> Iterator[Figure]:
     """Yield a quantity if it differs by more than the tolerance."""
     if old is None or new is None:
         return
@@ -25,7 +25,8 @@ def figure_of(name: Phrase, unit: str, old: object, new: object) -> Iterator[Fig
     tolerance = _LENGTH_TOLERANCE if unit == "m" else 0.0
     if not np.allclose(*values, rtol=_RELATIVE_TOLERANCE, atol=tolerance):
         texts = [
-            tuple(" x ".join(f"{number:.{digits}g}" for number in value) for value in values) for digits in _DIGITS
+            tuple(" x ".join(f"{number:.{digits}g}" for number in quantity) for quantity in values)
+            for digits in _DIGITS
         ]
         old_text, new_text = next((pair for pair in texts if pair[0] != pair[1]), texts[-1])
         yield Figure(name, old_text, new_text, unit)

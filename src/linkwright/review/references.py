@@ -14,11 +14,11 @@ from linkwright.review.launches.script_options import find_refused_options
 from linkwright.review.versions import Versions
 
 _LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".launch", ".launch.yaml", ".launch.yml")
-_SHARED_PATH = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\s*\)/([\w./+-]+)")
+_SHARE_PATH = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\s*\)/([\w./+-]+)")
 
 
 def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the launch files of the new version with paths to missing files or refused options, each with a change.
+    """Yield launch files with paths to missing files or refused options, and the changes.
 
     A missing file exists only in the old version. A script does not accept a refused option.
     """
@@ -31,23 +31,26 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
         file, text = versions.new.file(path), versions.new.text(path)
         if not any(name in text for name in names):
             continue
-        for package, subpath, span in _shared_paths(SourceText(str(file), text), path):
+        for package, subpath, span in _find_share_paths(SourceText(str(file), text), path):
             if _is_lost(versions, path, package, subpath, lost):
                 yield path, _make_change(path, package, subpath, span)
 
 
-def _shared_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, Span]]:
-    """Yield the paths in share folders that a launch file names: package, path in the package, and location."""
+def _find_share_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, Span]]:
+    """Yield the paths in share folders that a launch file names.
+
+    Each is given as the package, the path in it, and the location in the launch file.
+    """
     if path.endswith(".py"):
         for item in read_launch_file(source, path).paths:
             yield item.package, item.path, item.span
         return
-    for match in _SHARED_PATH.finditer(source.text):
+    for match in _SHARE_PATH.finditer(source.text):
         yield match[1], match[2], source.span(match.start(), match.end())
 
 
 def _is_lost(versions: Versions, path: str, package: str, subpath: str, lost: Collection[str]) -> bool:
-    """Return whether only the old version has a file of a package, and a change removed or renamed it."""
+    """Return whether a file of a package was removed or renamed."""
     old_share, new_share = (
         version.share_of(package, version.file(path).parent) for version in (versions.old, versions.new)
     )
@@ -59,6 +62,6 @@ def _is_lost(versions: Versions, path: str, package: str, subpath: str, lost: Co
 
 
 def _make_change(path: str, package: str, subpath: str, span: Span) -> Change:
-    text = phrase("names '{file}' of '{package}', which does not exist any more", file=subpath, package=package)
+    text = phrase("names '{file}' of '{package}', which no longer exists", file=subpath, package=package)
     reason = phrase("the launch file does not find the file")
     return Change(text, Effect.BREAKING, reason, Location(path, span.line, span.column))

@@ -25,7 +25,7 @@ def merge_renamed_folders(versions: Versions, subjects: Sequence[Subject]) -> li
     """
     groups: dict[_Folders, list[Subject]] = {}
     for subject in subjects:
-        folders = _renamed_folder(subject)
+        folders = _find_renamed_folder(subject)
         if folders is not None:
             groups.setdefault(folders, []).append(subject)
     result = list(subjects)
@@ -33,16 +33,19 @@ def merge_renamed_folders(versions: Versions, subjects: Sequence[Subject]) -> li
         if len(group) < _MIN_FILES:
             continue
         for subject in group:
-            others = [change for change in subject.changes if change.path_change is not PathChange.RENAMED]
+            other_changes = [change for change in subject.changes if change.path_change is not PathChange.RENAMED]
             result[next(i for i, candidate in enumerate(result) if candidate is subject)] = replace(
-                subject, changes=others
+                subject, changes=other_changes
             )
-        result.append(_folder_subject(versions, folders, group))
+        result.append(_make_folder_subject(versions, folders, group))
     return sorted(result, key=lambda subject: subject.path)
 
 
-def _renamed_folder(subject: Subject) -> _Folders | None:
-    """Return the old and new paths of the outermost renamed folder of a file; None if its name changed, too."""
+def _find_renamed_folder(subject: Subject) -> _Folders | None:
+    """Return the old and new paths of the outermost renamed folder of a file.
+
+    The result is None if the name of the file also changed.
+    """
     is_renamed = any(change.path_change is PathChange.RENAMED for change in subject.changes)
     if not is_renamed or subject.old_path is None or subject.new_path is None or subject.kind is SubjectKind.MESH:
         return None
@@ -55,7 +58,7 @@ def _renamed_folder(subject: Subject) -> _Folders | None:
     return "/".join(old[: len(old) - common]), "/".join(new[: len(new) - common])
 
 
-def _folder_subject(versions: Versions, folders: _Folders, group: Sequence[Subject]) -> Subject:
+def _make_folder_subject(versions: Versions, folders: _Folders, group: Sequence[Subject]) -> Subject:
     old, new = (f"{folder or '.'}/" for folder in folders)
     is_breaking = any(
         change.effect is Effect.BREAKING

@@ -22,7 +22,7 @@ _REFERENCE = (
     r"\b(?P<scope>{names})(?=::)"
 )
 """The forms in which launch files and descriptions name a package."""
-_RENAMED = "package '{old}' renamed to '{new}'"
+_RENAMED_TEMPLATE = "package '{old}' renamed to '{new}'"
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,11 @@ class RenamedPackage:
 
 
 def find_renamed_packages(versions: Versions) -> list[RenamedPackage]:
-    """Return the packages with a new name or folder whose manifests git recognizes as renamed or changed."""
-    found = []
+    """Return the packages with a new name or folder.
+
+    Git must recognize their manifests as renamed or changed.
+    """
+    packages = []
     for file in versions.changed_files:
         if not file.old_path or not file.new_path or PurePosixPath(file.path).name != MANIFEST:
             continue
@@ -60,21 +63,26 @@ def find_renamed_packages(versions: Versions) -> list[RenamedPackage]:
         new_name = package_name(versions.new.file(new_folder.as_posix()))
         if old_name and new_name and (old_name != new_name or old_folder != new_folder):
             folders = (folder.as_posix().removeprefix(".") for folder in (old_folder, new_folder))
-            found.append(RenamedPackage(old_name, new_name, *folders))
-    return found
+            packages.append(RenamedPackage(old_name, new_name, *folders))
+    return packages
 
 
 def match_moved_files(versions: Versions) -> Versions:
-    """Return versions that match the files of moved packages, even where git does not recognize them."""
+    """Return versions that match the old and new files of moved packages.
+
+    Git does not recognize all of these files as moved.
+    """
     packages = find_renamed_packages(versions)
     added = {file.new_path: file for file in versions.changed_files if file.old_path is None}
     moved: dict[str, ChangedFile] = {}
     for file in versions.changed_files:
         old_path = None if file.new_path else file.old_path
         paths = [package.new_path(old_path) for package in packages if old_path is not None]
-        other = next((added[path] for path in paths if path in added), None)
-        if other is not None:
-            moved[file.path] = moved[other.path] = ChangedFile(file.old_path, other.new_path, file.is_submodule)
+        added_file = next((added[path] for path in paths if path in added), None)
+        if added_file is not None:
+            moved[file.path] = moved[added_file.path] = ChangedFile(
+                file.old_path, added_file.new_path, file.is_submodule
+            )
     files = [moved.get(file.path, file) for file in versions.changed_files]
     return replace(versions, changed_files=list(dict.fromkeys(files)))
 
@@ -95,7 +103,7 @@ class PackageNames:
         self._edits = {name_edit(old, new) for old, new in self._names.items()}
         self._references = re.compile(_REFERENCE.replace("{names}", names))
 
-    def of_package(self, name: str) -> str:
+    def translate_package(self, name: str) -> str:
         """Return the new name of a package."""
         return self._names.get(name, name)
 
@@ -107,7 +115,7 @@ class PackageNames:
         """Return whether two names differ by the same edit as the old and new names of a package."""
         return name_edit(old, new) in self._edits
 
-    def with_references(self, text: str) -> str:
+    def rename_references(self, text: str) -> str:
         """Return a text with the new package name in paths, URIs and C++ scopes that begin with it."""
         return self._references.sub(
             lambda match: (match["before"] or "") + self._names[match["name"] or match["scope"]], text
@@ -129,9 +137,9 @@ class _Consequences:
     classes: dict[str, str]
 
     def contain(self, change: Change, subject: Subject) -> bool:
-        """Return whether a change of a file only follows from a new name or folder."""
-        arguments = _innermost_sentence(change.sentence).arguments
-        if change.sentence.template == _RENAMED:
+        """Return whether a change to a file only follows from a new name or folder."""
+        arguments = _find_innermost_sentence(change.sentence).arguments
+        if change.sentence.template == _RENAMED_TEMPLATE:
             return False
         old_path = subject.old_path
         if old_path is not None and arguments.get("path") == old_path:
@@ -139,19 +147,19 @@ class _Consequences:
         for before, after in (("old", "new"), ("removed", "added")):
             if before in arguments and after in arguments:
                 old, new = str(arguments[before]), str(arguments[after])
-                return old != new and self._new_text(old, subject.kind) == new
+                return old != new and self._rename(old, subject.kind) == new
         return False
 
-    def _new_text(self, text: str, kind: SubjectKind) -> str:
+    def _rename(self, text: str, kind: SubjectKind) -> str:
         if text in self.classes:
             return self.classes[text]
-        return self.names.rename_derived(text) if kind in _NAMED_AFTER_PACKAGES else self.names.with_references(text)
+        return self.names.rename_derived(text) if kind in _NAMED_AFTER_PACKAGES else self.names.rename_references(text)
 
 
 def remove_consequences(versions: Versions, subjects: Sequence[Subject]) -> tuple[list[Subject], list[Phrase]]:
-    """Return the subjects without changes that only follow from renamed packages, and notes about these changes.
+    """Return the subjects without changes that only follow from renamed packages, and notes.
 
-    The change of the manifest lists the names of libraries, classes and other things that changed with the package.
+    The change to the manifest lists the names of libraries, classes and other things that changed with the package.
     """
     packages = find_renamed_packages(versions)
     if not packages:
@@ -171,17 +179,17 @@ def remove_consequences(versions: Versions, subjects: Sequence[Subject]) -> tupl
     derived: list[tuple[str, str]] = []
     result = []
     for subject in subjects:
-        others = [change for change in subject.changes if not consequences.contain(change, subject)]
+        remaining = [change for change in subject.changes if not consequences.contain(change, subject)]
         if subject.path in manifests and subject.kind is SubjectKind.MANIFEST:
-            others = _with_new_folder(manifests[subject.path], others)
-        count += len(subject.changes) - len(others)
-        kept = {id(change) for change in others}
+            remaining = _add_folder_change(manifests[subject.path], remaining)
+        count += len(subject.changes) - len(remaining)
+        remaining_ids = {id(change) for change in remaining}
         derived += [
             (str(change.core.arguments["old"]), str(change.core.arguments["new"]))
             for change in subject.changes
-            if id(change) not in kept and change.effect is Effect.BREAKING and "old" in change.core.arguments
+            if id(change) not in remaining_ids and change.effect is Effect.BREAKING and "old" in change.core.arguments
         ]
-        result.append(replace(subject, changes=others))
+        result.append(replace(subject, changes=remaining))
     if not count:
         return result, []
     note = counted(
@@ -189,41 +197,41 @@ def remove_consequences(versions: Versions, subjects: Sequence[Subject]) -> tupl
         "{count} changes follow from new names or folders of packages alone and are not listed",
         count,
     )
-    return [_with_derived_names(subject, manifests, derived) for subject in result], [note]
+    return [_add_derived_names(subject, manifests, derived) for subject in result], [note]
 
 
-def _innermost_sentence(sentence: Phrase) -> Phrase:
+def _find_innermost_sentence(sentence: Phrase) -> Phrase:
     while isinstance(change := sentence.arguments.get("change"), Phrase):
         sentence = change
     return sentence
 
 
-def _with_new_folder(package: RenamedPackage, changes: Sequence[Change]) -> list[Change]:
-    """Return the changes of a manifest, with the old folder of a package that keeps its name."""
+def _add_folder_change(package: RenamedPackage, changes: Sequence[Change]) -> list[Change]:
+    """Return the changes to a manifest, with the old folder of a package that keeps its name."""
     if package.old_name != package.new_name or package.old_folder == package.new_folder:
         return list(changes)
     text = phrase("package '{name}' moved from {folder}", name=package.new_name, folder=f"{package.old_folder or '.'}/")
     return [Change(text), *changes]
 
 
-def _with_derived_names(
+def _add_derived_names(
     subject: Subject, manifests: dict[str, RenamedPackage], derived: Sequence[tuple[str, str]]
 ) -> Subject:
-    """Return a subject. The change of the name of a package in a manifest lists the names derived from it."""
+    """Return a subject whose change of the package name lists the derived names."""
     package = manifests.get(subject.path)
     if package is None or package.old_name == package.new_name:
         return subject
-    own = PackageNames([package])
-    names = tuple(dict.fromkeys(f"{old} -> {new}" for old, new in derived if own.rename_derived(old) == new))
+    package_names = PackageNames([package])
+    names = tuple(dict.fromkeys(f"{old} -> {new}" for old, new in derived if package_names.rename_derived(old) == new))
     changes = [
-        replace(change, other_names=names) if change.sentence.template == _RENAMED else change
+        replace(change, other_names=names) if change.sentence.template == _RENAMED_TEMPLATE else change
         for change in subject.changes
     ]
     return replace(subject, changes=changes)
 
 
-def moved_files(versions: Versions, files: Sequence[ChangedFile]) -> Iterator[tuple[str, str]]:
-    """Yield the new paths of files that move with their package, each with the old folder of the package."""
+def find_moved_files(versions: Versions, files: Sequence[ChangedFile]) -> Iterator[tuple[str, str]]:
+    """Yield the new paths of files that move with their package, with its old folder."""
     packages = find_renamed_packages(versions)
     names = PackageNames(packages)
     for file in files:

@@ -1,4 +1,4 @@
-"""Find simulator plugins that replace another plugin, such as the drive of another version of Gazebo."""
+"""Find simulator plugins that replace other plugins, such as the drive of a different Gazebo version."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pathlib import PurePosixPath
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.review.element_values import own_content
-from linkwright.review.plugins import contents_text, is_added, is_removed, plugin_name, plugins_of
+from linkwright.review.element_values import format_own_content
+from linkwright.review.plugins import find_plugin_name, find_plugins, format_contents, is_added, is_removed
 from linkwright.xmltree import Element
 
 _FILE_ROLE = re.compile(
@@ -19,7 +19,7 @@ _FILE_ROLE = re.compile(
 )
 """A file name, with the role of the plugin between the parts about the simulator."""
 _SEPARATORS = re.compile(r"[\W_]+")
-_MIN_ROLE = 3
+_MIN_ROLE_LENGTH = 3
 """The minimum number of characters of a role."""
 
 
@@ -38,71 +38,76 @@ class PluginReplacement(Difference):
     @property
     def text(self) -> Phrase:
         """Both plugins with their values."""
-        old, new = (_plugin_text(plugin) for plugin in (self.old_plugin, self.new_plugin) if plugin is not None)
+        old, new = (_format_plugin(plugin) for plugin in (self.old_plugin, self.new_plugin) if plugin is not None)
         return phrase("{old} replaced by {new}", old=old, new=new)
 
 
-def _plugin_text(plugin: Element) -> Phrase:
-    title = phrase("plugin '{name}'", name=plugin_name(plugin))
-    items = list(filter(None, [as_phrase(own_content(plugin)), contents_text(plugin)]))
+def _format_plugin(plugin: Element) -> Phrase:
+    title = phrase("plugin '{name}'", name=find_plugin_name(plugin))
+    items = list(filter(None, [as_phrase(format_own_content(plugin)), format_contents(plugin)]))
     return phrase("{entry} ({items})", entry=title, items=joined(items)) if items else title
 
 
 def merge_replaced_plugins(differences: Iterable[Difference]) -> list[Difference]:
-    """Return the differences, with removed and added plugins of the same name, file or role as replacements."""
+    """Return the differences, with replaced plugins as one difference each.
+
+    A removed and an added plugin match if they have the same name, file or role.
+    """
     result = list(differences)
     candidates = [
         (candidate, plugin)
         for candidate in result
-        if is_added(candidate) and (plugin := _only_plugin(candidate)) is not None
+        if is_added(candidate) and (plugin := _find_only_plugin(candidate)) is not None
     ]
     for difference in tuple(result):
-        old_plugin = _only_plugin(difference) if is_removed(difference) else None
-        match = None if old_plugin is None else _replacement_index(old_plugin, [plugin for _, plugin in candidates])
-        if old_plugin is None or match is None:
+        old_plugin = _find_only_plugin(difference) if is_removed(difference) else None
+        replacement_index = (
+            None if old_plugin is None else _find_replacement(old_plugin, [plugin for _, plugin in candidates])
+        )
+        if old_plugin is None or replacement_index is None:
             continue
-        added, new_plugin = candidates.pop(match)
-        names = plugin_name(old_plugin), plugin_name(new_plugin)
-        places = difference.old_place, added.new_place
+        added, new_plugin = candidates.pop(replacement_index)
+        names = find_plugin_name(old_plugin), find_plugin_name(new_plugin)
+        locations = difference.old_place, added.new_place
         index = next(index for index, candidate in enumerate(result) if candidate is added)
         result[index] = PluginReplacement(
-            added.subject, added.name, "changed", added.property, *names, "", *places, None, old_plugin, new_plugin
+            added.subject, added.name, "changed", added.property, *names, "", *locations, None, old_plugin, new_plugin
         )
         result = [candidate for candidate in result if candidate is not difference]
     return result
 
 
-def _replacement_index(plugin: Element, others: Sequence[Element]) -> int | None:
+def _find_replacement(plugin: Element, candidates: Sequence[Element]) -> int | None:
     """Return the index of the plugin that replaces a removed plugin, or None if there is none."""
     return next(
         (
             index
-            for index, other in enumerate(others)
-            if not _replacement_keys(plugin).isdisjoint(_replacement_keys(other))
+            for index, candidate in enumerate(candidates)
+            if not _make_replacement_keys(plugin).isdisjoint(_make_replacement_keys(candidate))
         ),
         None,
     )
 
 
-def _only_plugin(difference: Difference) -> Element | None:
-    """Return the plugin in an added or removed element without other contents, or None for other elements."""
+def _find_only_plugin(difference: Difference) -> Element | None:
+    """Return the plugin that is the only content of an added or removed element, or None."""
     if difference.element is None:
         return None
-    plugins = [plugin for plugin in plugins_of(difference.element) if plugin.attributes]
+    plugins = [plugin for plugin in find_plugins(difference.element) if plugin.attributes]
     children = list(difference.element.elements())
     is_alone = difference.element.tag == "plugin" or (difference.element.tag == "gazebo" and children == plugins)
     return plugins[0] if is_alone and len(plugins) == 1 else None
 
 
-def _replacement_keys(plugin: Element) -> set[str]:
+def _make_replacement_keys(plugin: Element) -> set[str]:
     """Return the name and the roles of a plugin. A plugin that replaces it shares one of them."""
-    return {f"name {plugin_name(plugin)}", *(f"role {role}" for role in _plugin_roles(plugin))}
+    return {f"name {find_plugin_name(plugin)}", *(f"role {role}" for role in _find_roles(plugin))}
 
 
-def _plugin_roles(plugin: Element) -> Iterator[str]:
+def _find_roles(plugin: Element) -> Iterator[str]:
     match = _FILE_ROLE.fullmatch(PurePosixPath(plugin.attributes.get("filename", "")).name)
     class_name = plugin.attributes.get("name", "").rpartition("::")
     for text in (match["role"] if match else "", class_name[2] if class_name[1] else ""):
         role = _SEPARATORS.sub("", text).lower()
-        if len(role) >= _MIN_ROLE:
+        if len(role) >= _MIN_ROLE_LENGTH:
             yield role

@@ -43,8 +43,8 @@ from linkwright.review.kinds import (
     PARAMETERS,
     SEMANTIC_XACRO,
     KindRule,
+    find_rule,
     may_help_launch_files,
-    rule_of,
 )
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import imports_actions
@@ -53,17 +53,17 @@ from linkwright.review.lost_controllers import find_lost_controllers
 from linkwright.review.lost_data import find_lost_data
 from linkwright.review.lost_files import find_lost_files
 from linkwright.review.notes import (
+    group_equal_problems,
     is_unreadable_as_before,
-    missing_notes,
-    unreadable_notes,
-    without_equal_problems,
+    make_missing_notes,
+    make_unreadable_notes,
 )
-from linkwright.review.other_files import file_states
+from linkwright.review.other_files import find_file_states
 from linkwright.review.parts import compare_parts
 from linkwright.review.references import find_lost_references
 from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import match_moved_files, remove_consequences
-from linkwright.review.robots.semantics import semantic_files
+from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.callers import find_broken_callers
 from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.sources.lost_methods import find_lost_methods
@@ -72,15 +72,15 @@ from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
 """The rule for a file, its old path and its new path."""
-_Found = TypeVar("_Found")
-_MIN_EXPANDED = 4
+_Result = TypeVar("_Result")
+_MIN_PARALLEL_DESCRIPTIONS = 4
 """The minimum number of descriptions that are compared by several processes."""
-_LISTED = (
+_LISTED_KINDS = (
     *(SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS),
     SubjectKind.DEPENDENCIES,
 )
 """The kinds whose files are listed with the other files if no difference is found, as are SDF templates."""
-_EXPANDED = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
+_EXPANDED_KINDS = (SubjectKind.DESCRIPTION, SubjectKind.WORLD)
 """The kinds that include other files. Parts of them are not compared on their own."""
 
 
@@ -110,7 +110,7 @@ def review(
     """
     versions = match_moved_files(versions)
     drawings = Drawings(images=with_images or with_scenes, scenes=with_scenes)
-    result = _Reviewer(versions, _package_folders(versions, packages), drawings).run(workers)
+    result = _Reviewer(versions, _find_package_folders(versions, packages), drawings).run(workers)
     behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
     result = replace(
         result,
@@ -135,38 +135,41 @@ class _Reviewer:
         self._failures = Failures()
         self._maps = dict(self._run_step(_find_maps_of_images))
 
-    def _run_step(self, step: Callable[[Versions, Sequence[ChangedFile]], Iterable[_Found]]) -> list[_Found]:
-        """Return the results of a step for the changed files. Files with which it fails get a problem."""
+    def _run_step(self, step: Callable[[Versions, Sequence[ChangedFile]], Iterable[_Result]]) -> list[_Result]:
+        """Return the results of a step for the changed files.
+
+        Files that make the step fail get a problem.
+        """
         return self._failures.run_step(step, self._versions, self._changed_files)
 
     @cached_property
     def _complete_paths(self) -> dict[bool, set[str]]:
-        """The paths of the complete descriptions and worlds by whether they are from the old version."""
+        """The paths of the complete descriptions and worlds, by `Version.is_old`."""
         versions = (self._versions.old, self._versions.new)
-        return {version.is_old: _find_targets(version) | self._plain_robots(version) for version in versions}
+        return {version.is_old: _find_targets(version) | self._find_plain_robots(version) for version in versions}
 
     def run(self, workers: int) -> Review:
-        pairs = list(self._pairs())
-        expanded = [pair for pair in pairs if pair[0].kind in _EXPANDED]
-        with _process_pool(workers if len(expanded) >= _MIN_EXPANDED else 1) as submit:
+        pairs = list(self._find_pairs())
+        expanded = [pair for pair in pairs if pair[0].kind in _EXPANDED_KINDS]
+        with _open_process_pool(workers if len(expanded) >= _MIN_PARALLEL_DESCRIPTIONS else 1) as submit:
             subjects = [submit(compare_file, self._versions, *pair, self._drawings) for pair in pairs]
             findings = [
-                submit(find_findings, version, self._check_targets(version, expanded))
+                submit(find_findings, version, self._make_check_targets(version, expanded))
                 for version in (self._versions.old, self._versions.new)
             ]
-            all_subjects = self._with_other_subjects([result() for result in subjects])
-            old_findings, new_findings = self._findings(findings, expanded)
-        all_subjects = self._with_failures(all_subjects)
+            all_subjects = self._add_other_subjects([result() for result in subjects])
+            old_findings, new_findings = self._collect_findings(findings, expanded)
+        all_subjects = self._add_failures(all_subjects)
         all_subjects = compare_parts(self._versions, self._changed_files, all_subjects, self._is_complete)
         moved = {subject.path: subject.changes[0].sentence for subject in all_subjects if _is_only_moved(subject)}
         all_subjects = [subject for subject in all_subjects if subject.path not in moved]
-        reported = _reported_paths(all_subjects)
+        reported = _list_reported_paths(all_subjects)
         all_subjects, notes = remove_consequences(self._versions, all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         all_subjects = merge_renamed_folders(self._versions, all_subjects)
-        untouched = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
-        shown, equal_notes = without_equal_problems([subject for subject in all_subjects if subject not in untouched])
-        compared = {path for rule, *paths in pairs if rule.kind not in _LISTED for path in paths if path}
+        unreadable = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
+        readable, equal_notes = group_equal_problems([subject for subject in all_subjects if subject not in unreadable])
+        compared = {path for rule, *paths in pairs if rule.kind not in _LISTED_KINDS for path in paths if path}
         reported |= {path for path in compared if not is_template(path)}
         reported |= self._maps.keys()
         other_files = [
@@ -175,76 +178,82 @@ class _Reviewer:
         return Review(
             self._versions.old.name,
             self._versions.new.name,
-            group_meshes([subject for subject in shown if not subject.is_empty]),
+            group_meshes([subject for subject in readable if not subject.is_empty]),
             [file.path for file in other_files],
-            {**file_states(self._versions, other_files), **moved},
+            {**find_file_states(self._versions, other_files), **moved},
             *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
             list(
                 dict.fromkeys(
                     [
-                        *(*notes, *self._notes(), *missing_notes(all_subjects), *equal_notes),
-                        *(*unreadable_notes(untouched), *self._failures.notes),
+                        *(*notes, *self._make_notes(), *make_missing_notes(all_subjects), *equal_notes),
+                        *(*make_unreadable_notes(unreadable), *self._failures.notes),
                     ]
                 )
             ),
         )
 
-    def _findings(
+    def _collect_findings(
         self, results: Sequence[Callable[[], Findings]], expanded: Sequence[_Pair]
     ) -> tuple[Findings, Findings]:
-        """Return the findings of both versions. Files and packages whose check fails are left out of both."""
+        """Return the findings of both versions.
+
+        Files and packages whose check fails are left out of both.
+        """
         try:
             old, new = (result() for result in results)
-        except Exception:  # noqa: BLE001 - whatever it is, the other files are checked
+        except Exception:  # noqa: BLE001 - the other files are still checked
             sides = [
-                (version, self._check_targets(version, expanded))
+                (version, self._make_check_targets(version, expanded))
                 for version in (self._versions.old, self._versions.new)
             ]
-            nothing = Findings([], frozenset(), frozenset())
+            no_findings = Findings([], frozenset(), frozenset())
             no_failures: dict[str, Exception] = {}
             (old, new), failures = self._failures.attempt(
-                lambda: find_findings_singly(sides, self._new_paths), ([nothing, nothing], no_failures)
+                lambda: find_findings_singly(sides, self._new_paths), ([no_findings, no_findings], no_failures)
             )
             for path, error in failures.items():
                 self._failures.add_missing_findings(path, error)
         return old, new
 
-    def _with_failures(self, subjects: Sequence[Subject]) -> list[Subject]:
+    def _add_failures(self, subjects: Sequence[Subject]) -> list[Subject]:
         """Return the subjects, with a problem for each file that could not be compared."""
         result = {subject.path: subject for subject in subjects}
         changed = {file.path: file for file in self._changed_files}
         for path, problem in self._failures.problems.items():
-            rule = rule_of(path)
+            rule = find_rule(path)
             file = changed.get(path, ChangedFile(path, path))
             kind = SubjectKind.SOURCE if rule is None else rule.kind
             subject = result.get(path, Subject(kind, path, file.old_path, file.new_path))
-            if not any(other.is_bug for other in subject.problems):
+            if not any(known.is_bug for known in subject.problems):
                 result[path] = replace(subject, problems=[*subject.problems, problem])
         return sorted(result.values(), key=lambda subject: subject.path)
 
-    def _with_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
-        """Return the subjects, with changes about broken paths, and subjects for plugin descriptions and sources."""
+    def _add_other_subjects(self, subjects: Sequence[Subject]) -> list[Subject]:
+        """Return the subjects with those that other steps add, such as sources.
+
+        Changes about broken paths and callers are added to the subjects.
+        """
         lost: dict[str, list[Change]] = {}
         for path, change in self._run_step(find_lost_references):
             lost.setdefault(path, []).append(change)
         result = [replace(subject, changes=[*subject.changes, *lost.pop(subject.path, ())]) for subject in subjects]
-        result = _with_changes(result, self._run_step(find_lost_files))
+        result = _add_changes(result, self._run_step(find_lost_files))
         for path, changes in lost.items():
-            result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._old_path(path), path, changes))
+            result.append(Subject(SubjectKind.LAUNCH_FILE, path, self._find_old_path(path), path, changes))
         result += self._run_step(compare_plugin_files)
-        result += self._removed_submodules()
+        result += self._find_removed_submodules()
         result += self._run_step(compare_rosbuild_manifests)
         paths = {subject.path for subject in result}
-        result += (found for found in self._run_step(source_subjects) if found.path not in paths)
-        result = _with_changes(result, self._run_step(find_broken_callers))
-        result = _with_changes(result, self._run_step(find_lost_arguments))
-        result = _with_changes(result, self._run_step(find_lost_types))
-        result = _with_changes(result, self._run_step(find_lost_methods))
-        result = _with_changes(result, self._run_step(find_lost_controllers))
-        result = _with_changes(result, self._run_step(find_lost_data))
+        result += (subject for subject in self._run_step(source_subjects) if subject.path not in paths)
+        result = _add_changes(result, self._run_step(find_broken_callers))
+        result = _add_changes(result, self._run_step(find_lost_arguments))
+        result = _add_changes(result, self._run_step(find_lost_types))
+        result = _add_changes(result, self._run_step(find_lost_methods))
+        result = _add_changes(result, self._run_step(find_lost_controllers))
+        result = _add_changes(result, self._run_step(find_lost_data))
         return sorted(result, key=lambda subject: subject.path)
 
-    def _removed_submodules(self) -> Iterator[Subject]:
+    def _find_removed_submodules(self) -> Iterator[Subject]:
         """Yield the removed submodules with their packages."""
         reason = phrase("packages that depend on the packages in it do not build or start")
         for file in self._changed_files:
@@ -263,41 +272,41 @@ class _Reviewer:
     def _is_in_scope(self, path: str) -> bool:
         return not self._folders or any(PurePosixPath(path).is_relative_to(folder) for folder in self._folders)
 
-    def _plain_robots(self, version: Version) -> set[str]:
-        """Return the changed URDF files that are valid without expansion although a xacro file includes them."""
+    def _find_plain_robots(self, version: Version) -> set[str]:
+        """Return the changed URDF files that are included by xacro files but valid on their own."""
         paths = (file.old_path if version.is_old else file.new_path for file in self._changed_files)
         return {path for path in paths if path and is_plain_robot(version.file(path))}
 
     # --- compared files ---------------------------------------------------------------------------------------------
 
-    def _pairs(self) -> Iterator[_Pair]:
+    def _find_pairs(self) -> Iterator[_Pair]:
         """Yield the files to compare: the rule of the kind, the old path and the new path."""
-        affected_old, affected_new = self._affected()
-        paths: set[tuple[str | None, str | None]] = {(path, self._new_path(path)) for path in affected_old}
-        paths |= {(self._old_path(path), path) for path in affected_new}
+        affected_old, affected_new = self._find_affected()
+        paths: set[tuple[str | None, str | None]] = {(path, self._find_new_path(path)) for path in affected_old}
+        paths |= {(self._find_old_path(path), path) for path in affected_new}
         for file in self._changed_files:
             try:
-                rule = self._rule_for(file.old_path, file.new_path)
-            except Exception as error:  # noqa: BLE001 - whatever it is, the other files are compared
+                rule = self._choose_rule(file.old_path, file.new_path)
+            except Exception as error:  # noqa: BLE001 - the other files are still compared
                 self._failures.add(file.path, error)
                 continue
             if file.path in self._maps:
-                paths.add((self._old_path(self._maps[file.path]), self._new_path(self._maps[file.path])))
+                paths.add((self._find_old_path(self._maps[file.path]), self._find_new_path(self._maps[file.path])))
                 continue
-            if rule is None or rule is SEMANTIC_XACRO or rule.kind in _EXPANDED or file.is_submodule:
+            if rule is None or rule is SEMANTIC_XACRO or rule.kind in _EXPANDED_KINDS or file.is_submodule:
                 continue
-            if self._is_part_of_a_robot(rule, file):
-                paths.add(self._package_build_file(file) or (file.old_path, file.new_path))
+            if self._belongs_to_robot(rule, file):
+                paths.add(self._find_package_build_file(file) or (file.old_path, file.new_path))
         for old_path, new_path in sorted(paths, key=lambda pair: (pair[1] or pair[0] or "", pair[0] or "")):
             path = new_path or old_path or ""
-            rule = None if path in self._failures.problems else self._rule_for(old_path, new_path)
+            rule = None if path in self._failures.problems else self._choose_rule(old_path, new_path)
             if rule is not None:
                 yield rule, old_path, new_path
 
-    def _rule_for(self, old_path: str | None, new_path: str | None) -> KindRule | None:
+    def _choose_rule(self, old_path: str | None, new_path: str | None) -> KindRule | None:
         """Return the rule for a file, or None if the file is not compared."""
         path = new_path or old_path or ""
-        rule = rule_of(path)
+        rule = find_rule(path)
         sides = ((self._versions.old, old_path), (self._versions.new, new_path))
         if rule is not None and rule.kind is SubjectKind.LAUNCH_FILE and path.endswith((".yaml", ".yml")):
             rule = rule if any(is_launch_yaml(version.file(name)) for version, name in sides if name) else PARAMETERS
@@ -310,19 +319,22 @@ class _Reviewer:
             return LAUNCH_HELPER if is_helper else None
         return rule
 
-    def _package_build_file(self, file: ChangedFile) -> tuple[str, str] | None:
-        """Return both paths of the package's ``CMakeLists.txt`` for a file in a subfolder; None for other files."""
+    def _find_package_build_file(self, file: ChangedFile) -> tuple[str, str] | None:
+        """Return both paths of the package's ``CMakeLists.txt`` for one in a subfolder.
+
+        The result is None for other files.
+        """
         path = PurePosixPath(file.path)
         folder = self._versions.new.package_of(file.path, (MANIFEST, ROSBUILD_MANIFEST))
         if path.name != CMAKE_FILE or folder is None:
             return None
         new_path = (PurePosixPath(folder) / CMAKE_FILE).as_posix()
-        old_path = self._old_path(new_path)
+        old_path = self._find_old_path(new_path)
         if old_path is None or new_path == file.path or not self._versions.new.file(new_path).is_file():
             return None
         return old_path, new_path
 
-    def _is_part_of_a_robot(self, rule: KindRule, file: ChangedFile) -> bool:
+    def _belongs_to_robot(self, rule: KindRule, file: ChangedFile) -> bool:
         """Return whether a file belongs to a robot.
 
         Hidden files, and YAML files outside all packages, are settings of tools.
@@ -334,32 +346,32 @@ class _Reviewer:
             version.package_of(path) is not None for version, path in sides if path
         )
 
-    def _affected(self) -> Iterator[set[str]]:
-        """Yield the complete descriptions and worlds of both versions that changed files can affect."""
+    def _find_affected(self) -> Iterator[set[str]]:
+        """Yield the complete descriptions and worlds that changed files can affect, by version."""
         changed = {path for file in self._versions.changed_files for path in (file.old_path, file.new_path) if path}
         changed = {path for path in changed if may_be_read(path)}
         if not changed:
             yield from (set(), set())
             return
-        yield from self._failures.attempt(lambda: list(self._affected_by(changed)), [set[str](), set[str]()])
+        yield from self._failures.attempt(lambda: list(self._search_affected(changed)), [set[str](), set[str]()])
 
-    def _affected_by(self, changed: set[str]) -> Iterator[set[str]]:
+    def _search_affected(self, changed: set[str]) -> Iterator[set[str]]:
         files = None
         for version in (self._versions.old, self._versions.new):
             files = TextFiles(version.root, files, changed)
             candidates = {path for path in self._complete_paths[version.is_old] if self._is_in_scope(path)}
             yield files.affected(changed, candidates)
 
-    def _new_path(self, old_path: str) -> str | None:
+    def _find_new_path(self, old_path: str) -> str | None:
         path = self._new_paths.get(old_path, old_path)
         return path if self._versions.new.file(path).is_file() else None
 
-    def _old_path(self, new_path: str) -> str | None:
+    def _find_old_path(self, new_path: str) -> str | None:
         path = next((old for old, new in self._new_paths.items() if new == new_path), new_path)
         return path if self._versions.old.file(path).is_file() else None
 
-    def _check_targets(self, version: Version, pairs: Sequence[_Pair]) -> Targets:
-        """Return the compared descriptions and worlds of a version, and the packages with changed files.
+    def _make_check_targets(self, version: Version, pairs: Sequence[_Pair]) -> Targets:
+        """Return the compared files of a version, and the packages with changed files.
 
         A package with changed files in one of the versions is checked in both.
         """
@@ -374,7 +386,7 @@ class _Reviewer:
         packages = [version.file(folder) for folder in sorted(folders) if (version.file(folder) / MANIFEST).is_file()]
         return Targets(tuple(version.file(path) for path in paths if path), tuple(packages))
 
-    def _notes(self) -> Iterator[Phrase]:
+    def _make_notes(self) -> Iterator[Phrase]:
         """Yield notes about files that the review did not compare."""
         for file in self._changed_files:
             if file.is_submodule:
@@ -409,17 +421,20 @@ def _is_only_moved(subject: Subject) -> bool:
     return path_changes == [PathChange.MOVED] and not subject.figures and not subject.problems
 
 
-def _with_changes(subjects: Sequence[Subject], changes: Iterable[tuple[str, Change]]) -> list[Subject]:
-    """Return the subjects with further changes. These may be about files that did not change themselves."""
+def _add_changes(subjects: Sequence[Subject], changes: Iterable[tuple[str, Change]]) -> list[Subject]:
+    """Return the subjects with further changes.
+
+    These may be about files that are themselves unchanged.
+    """
     result = {subject.path: subject for subject in subjects}
     for path, change in changes:
-        rule = rule_of(path)
+        rule = find_rule(path)
         subject = result.get(path, Subject(SubjectKind.SOURCE if rule is None else rule.kind, path, path, path))
         result[path] = replace(subject, changes=[*subject.changes, change])
     return list(result.values())
 
 
-def _reported_paths(subjects: Sequence[Subject]) -> set[str]:
+def _list_reported_paths(subjects: Sequence[Subject]) -> set[str]:
     """Return the paths of subjects with changes, and of the files that contain the changes."""
     changes = (change for subject in subjects for change in subject.changes)
     files = {change.location.file for change in changes if change.location is not None}
@@ -427,8 +442,11 @@ def _reported_paths(subjects: Sequence[Subject]) -> set[str]:
 
 
 @contextmanager
-def _process_pool(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
-    """Yield a function that submits a call to a pool of processes, and returns a function that waits for the result."""
+def _open_process_pool(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
+    """Yield a function that submits a call to a pool of processes.
+
+    It returns a function that waits for the result.
+    """
     if count == 1:
         yield partial
         return
@@ -440,7 +458,7 @@ def _process_pool(count: int) -> Iterator[Callable[..., Callable[[], Any]]]:
 
 
 def _find_maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> Iterator[tuple[str, str]]:
-    """Yield the paths of the changed map images, each with the path of the YAML file that describes the map."""
+    """Yield the paths of changed map images, each with the path of the map's YAML file."""
     for file in files:
         for version, path in ((versions.new, file.new_path), (versions.old, file.old_path)):
             map_path = None if path is None else find_map_of_image(version, path)
@@ -450,17 +468,17 @@ def _find_maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> It
 
 
 def _find_targets(version: Version) -> set[str]:
-    """Return the paths of the complete descriptions, semantic descriptions in xacro, and worlds of a version.
+    """Return the paths of complete descriptions, semantic xacro descriptions and worlds.
 
-    A robot that another description includes counts as complete if a launch file starts it, too.
+    A robot that another description includes also counts as complete if a launch file starts it.
     """
     checker = version.checker()
     started = [file for file in find_included_robots(version.root) if checker.calls(file, ())]
     files = (version.relative(file) for file in (*find_targets([version.root]).files, *started))
-    return {path for path in files if path is not None} | semantic_files(version)
+    return {path for path in files if path is not None} | find_semantic_files(version)
 
 
-def _package_folders(versions: Versions, packages: Sequence[str]) -> list[str]:
+def _find_package_folders(versions: Versions, packages: Sequence[str]) -> list[str]:
     """Return the folders of packages, relative to the root.
 
     Raises:

@@ -53,7 +53,10 @@ class Version:
         return real_path.relative_to(self.root).as_posix() if real_path.is_relative_to(self.root) else None
 
     def text(self, path: str) -> str:
-        """Return the text of a file at a path relative to the root; empty if it is unreadable or larger than 1 MiB."""
+        """Return the text of a file at a path relative to the root.
+
+        The result is empty if the file is unreadable or larger than 1 MiB.
+        """
         file = self.file(path)
         try:
             is_small = file.stat().st_size <= _MAX_SEARCHED_BYTES
@@ -95,14 +98,14 @@ class Version:
     def finder(self, folder: Path) -> PackageFinder:
         """Return the finder of packages for a file's folder."""
         if self._copies:
-            shares = {**(self.shares if self.commit is not None else {}), **self._nearest(folder)}
+            shares = {**(self.shares if self.commit is not None else {}), **self._find_nearest_copies(folder)}
             return PackageFinder(start=[folder, self.root, Path.cwd()], extra=shares, sources_first=True)
         if self.commit is not None:
             return self.commit.finder(folder)
-        return self._finder.starting_at([folder, self.root, Path.cwd()])
+        return self._working_tree_finder.starting_at([folder, self.root, Path.cwd()])
 
     def share_of(self, package: str, folder: Path) -> Path | None:
-        """Return the share folder of a package of the version, or None if it has none with this name.
+        """Return the share folder of a package of the version, or None if there is none.
 
         Of several copies of the package, the copy nearest to the folder is used.
 
@@ -110,10 +113,13 @@ class Version:
             package: the name of the package.
             folder: the folder of the file that names the package.
         """
-        return self._nearest(folder).get(package) or self.shares.get(package)
+        return self._find_nearest_copies(folder).get(package) or self.shares.get(package)
 
     def checker(self) -> Checker:
-        """Return a checker that finds the packages of this version, even if the working tree also has them."""
+        """Return a checker that finds the packages of this version.
+
+        They take precedence over those of the working tree.
+        """
         return Checker(folders=(self.root,), shares=self.shares)
 
     def model(self, path: str, values: Mapping[str, str]) -> Model:
@@ -128,25 +134,28 @@ class Version:
             return self.commit.packages
         return {name: find_share_of_sources(name, folder) for name, folder in SourceScan(self.root).packages().items()}
 
-    def _nearest(self, folder: Path) -> dict[str, Path]:
-        """Return the nearest share folder of each package that has several copies, by the name of the package."""
+    def _find_nearest_copies(self, folder: Path) -> dict[str, Path]:
+        """Return the nearest share folder of each package with several copies, by package name."""
         return {
-            name: find_share_of_sources(name, max(copies, key=lambda copy: _common_parts(copy, folder)))
+            name: find_share_of_sources(name, max(copies, key=lambda copy: _count_common_parts(copy, folder)))
             for name, copies in self._copies.items()
         }
 
     @cached_property
     def _copies(self) -> Mapping[str, list[Path]]:
-        """The folders of the packages with several copies in the version, by the name of the package."""
+        """The folders of the packages with several copies, by the name of the package."""
         folders: dict[str, list[Path]] = {}
         for folder in find_targets([self.root]).packages:
             name = package_name(folder)
             if name is not None:
                 folders.setdefault(name, []).append(folder)
-        return {name: found for name, found in folders.items() if len(found) > 1}
+        return {name: copies for name, copies in folders.items() if len(copies) > 1}
 
     def path_of_label(self, file: str) -> str:
-        """Return the path of a file relative to the root, from a path or a name returned by `Model.display_name`."""
+        """Return the path of a file relative to the root.
+
+        The file is given as a path or as returned by `Model.display_name`.
+        """
         prefix = "" if self.commit is None else f"{self.commit.name}:"
         if prefix and file.startswith(prefix):
             return file.removeprefix(prefix)
@@ -154,19 +163,19 @@ class Version:
 
     def with_relative_paths(self, finding: Diagnostic) -> Diagnostic:
         """Return a finding with paths of files in the repository relative to the root."""
-        notes = tuple(note._replace(span=self._relative_span(note.span)) for note in finding.notes)
-        return finding.with_changes(span=self._relative_span(finding.span), notes=notes)
+        notes = tuple(note._replace(span=self._make_span_relative(note.span)) for note in finding.notes)
+        return finding.with_changes(span=self._make_span_relative(finding.span), notes=notes)
 
-    def _relative_span(self, span: Span | None) -> Span | None:
+    def _make_span_relative(self, span: Span | None) -> Span | None:
         return None if span is None else span._replace(file=self.relative(span.file) or span.file)
 
     @cached_property
-    def _finder(self) -> PackageFinder:
+    def _working_tree_finder(self) -> PackageFinder:
         return PackageFinder(start=[self.root, Path.cwd()], sources_first=True)
 
 
-def _common_parts(package: Path, folder: Path) -> int:
-    """Return the number of leading folders that the paths of a package and a folder have in common."""
+def _count_common_parts(package: Path, folder: Path) -> int:
+    """Return the number of leading folders that two paths have in common."""
     pairs = zip(package.parts, folder.parts, strict=False)
     return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
@@ -186,7 +195,7 @@ class Versions:
     changed_files: list[ChangedFile]
 
     def translate_paths(self, value: str, version: Version) -> str:
-        """Return a value of one version with paths that lead to the same files of the other version."""
+        """Return a value of one version, with its paths translated to those of the other version."""
         other = self.new if version.is_old else self.old
         folders = {share: other.shares[name] for name, share in version.shares.items() if name in other.shares}
         folders[version.root] = other.root
@@ -228,7 +237,7 @@ def open_versions(folder: Path, range_text: str) -> Versions:
     old_commit = repository.require_commit(old_name)
     new_commit = repository.require_commit(new_name) if new_name else None
     if "..." in range_text or not range_text:
-        old_commit = _common_commit(repository, old_commit, old_name, new_name or "HEAD")
+        old_commit = _find_common_commit(repository, old_commit, old_name, new_name or "HEAD")
     changed_files = repository.changed_files(old_commit, new_commit)
     with ExitStack() as stack:
         old_files = CommitFiles(repository, old_commit, old_name, must_be_complete=False)
@@ -250,15 +259,18 @@ def _open_repository(folder: Path) -> GitRepository:
 
 
 def _split_range(repository: GitRepository, range_text: str) -> tuple[str, str]:
-    """Return the names of the old and the new version. The new name is empty for the working tree."""
+    """Return the names of the old and the new version.
+
+    The new name is empty for the working tree.
+    """
     if not range_text:
-        return _default_branch(repository), ""
+        return _find_default_branch(repository), ""
     separator = "..." if "..." in range_text else ".."
     old_name, is_range, new_name = range_text.partition(separator)
     return old_name or "HEAD", (new_name or "HEAD") if is_range else ""
 
 
-def _default_branch(repository: GitRepository) -> str:
+def _find_default_branch(repository: GitRepository) -> str:
     for name in _DEFAULT_BRANCHES:
         if repository.resolve(name) is not None:
             return name
@@ -271,7 +283,7 @@ def _default_branch(repository: GitRepository) -> str:
     )
 
 
-def _common_commit(repository: GitRepository, old_commit: str, old_name: str, new_name: str) -> str:
+def _find_common_commit(repository: GitRepository, old_commit: str, old_name: str, new_name: str) -> str:
     common = repository.merge_base(old_commit, repository.require_commit(new_name))
     if common is None:
         message = phrase("'{old}' and '{new}' have no common commit in this clone", old=old_name, new=new_name)
@@ -285,9 +297,10 @@ def _common_commit(repository: GitRepository, old_commit: str, old_name: str, ne
 
 
 def _is_checked_out(repository: GitRepository, commit: str) -> bool:
-    """Return whether the working tree contains the files of a commit, so that they need not be written.
+    """Return whether the working tree contains exactly the files of a commit.
 
-    A working tree with links to outside is not used, because foreign files could appear in the report.
+    Such files need not be written to another folder. A working tree with links to outside is not used, because foreign
+    files could appear in the report.
     """
     if repository.resolve("HEAD") != commit or repository.changed_files(commit):
         return False

@@ -11,14 +11,16 @@ from linkwright.review.changes import MAX_NAMES
 
 _MIN_WORDS = 4
 _MAX_WORDS = 2000
-_MAX_WORD = 120
+_MAX_WORD_LENGTH = 120
 """The maximum number of characters of a word that is shown in full."""
-_MIN_COMMON = 0.5
+_MIN_COMMON_SHARE = 0.5
 """The minimum share of common words of texts that are compared word by word."""
 
 
-def words_text(old: str, new: str) -> Phrase | None:
-    """Return the replaced, added and removed words of a text, or None for texts that are not lists of words.
+def compare_words(old: str, new: str) -> Phrase | None:
+    """Return the replaced, added and removed words of a text.
+
+    The result is None for texts that are not lists of words.
 
     Args:
         old: the old text.
@@ -29,7 +31,7 @@ def words_text(old: str, new: str) -> Phrase | None:
         return None
     added, removed = Counter(new_words) - Counter(old_words), Counter(old_words) - Counter(new_words)
     count = max(len(old_words), len(new_words))
-    if not (added or removed) or count - max(added.total(), removed.total()) < count * _MIN_COMMON:
+    if not (added or removed) or count - max(added.total(), removed.total()) < count * _MIN_COMMON_SHARE:
         return None
     pairs = []
     for kind, a, b, c, d in SequenceMatcher(None, old_words, new_words, autojunk=False).get_opcodes():
@@ -52,14 +54,17 @@ def _join_words(counts: Counter[str], words: Iterable[str]) -> Phrase:
 
 
 def _are_comparable(words: Sequence[str]) -> bool:
-    """Return whether words form a list of mostly non-numeric words, without nested lists or code."""
+    """Return whether words are mostly not numeric, and contain no nested lists or code."""
     named = [word for word in words if any(map(str.isalpha, word))]
-    is_short = all(len(word) <= _MAX_WORD for word in words)
+    is_short = all(len(word) <= _MAX_WORD_LENGTH for word in words)
     return _MIN_WORDS <= len(words) <= _MAX_WORDS and is_short and 2 * len(named) > len(words)
 
 
 def _split_words(text: str) -> list[str]:
-    """Return the words of a text. A substitution is not split. The result is empty for a list in brackets."""
+    """Return the words of a text.
+
+    A substitution is not split. The result is empty for a list in brackets.
+    """
     if text.startswith(("[", "{")):
         return []
     words, start, depth = [], 0, 0

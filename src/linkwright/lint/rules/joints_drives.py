@@ -49,7 +49,7 @@ class _ZeroLimitRule(Rule):
                     ),
                     limit,
                     self.attribute,
-                    hint=phrase("give the limit of the motor"),
+                    hint=phrase("set it to the limit of the motor"),
                 )
 
 

@@ -23,21 +23,25 @@ from linkwright.urdf import Mesh, Robot, Visual
 Array = NDArray[np.float64]
 
 _SIZE = (480, 360)
-_VIEWS_OF_COLLISIONS = ("iso", "front")
-_PLACES = ("origin xyz", "origin rpy")
+_COLLISION_VIEWS = ("iso", "front")
+_POSE_PROPERTIES = ("origin xyz", "origin rpy")
 """The name endings of pose properties. Poses are compared as seen in the image."""
-_MOVED = 1e-5
+_MOTION_TOLERANCE = 1e-5
 """The maximum difference, in m and between entries of rotation matrices, of a link that has not moved."""
 
 
-def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames) -> list[ViewImages]:
+def render_views(
+    models: Pair, old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames
+) -> list[ViewImages]:
     """Return images from four sides; empty if both robots look the same.
 
     All joints are at position 0, or at the middle of limits that exclude 0. Both images of a view have the same camera.
     """
     changed = {*_find_changed_surfaces(models, old, new, comparison), *_find_moved_links(old, new, comparison, frames)}
-    old_links = _links_with_visuals(old, {*set(old.links) - set(comparison.links), *(name for name, _ in changed)})
-    new_links = _links_with_visuals(
+    old_links = _select_links_with_visuals(
+        old, {*set(old.links) - set(comparison.links), *(name for name, _ in changed)}
+    )
+    new_links = _select_links_with_visuals(
         new, {*set(new.links) - set(comparison.links.values()), *(name for _, name in changed)}
     )
     if not old_links and not new_links:
@@ -45,7 +49,7 @@ def view_images(models: Pair, old: Robot, new: Robot, comparison: Comparison, fr
     return _render_pair(models, (old, old_links), (new, new_links), frames, {name: name for name in VIEWS})
 
 
-def collision_images(
+def render_collisions(
     models: Pair, old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames
 ) -> list[ViewImages]:
     """Return images of the collision shapes from two sides; empty if the shapes are equal.
@@ -60,9 +64,9 @@ def collision_images(
     }
     if not changed:
         return []
-    old_links = (_with_collisions(old), {old_names[name] for name in changed})
-    labels = {name: f"{name}, collision" for name in _VIEWS_OF_COLLISIONS}
-    return _render_pair(models, old_links, (_with_collisions(new), changed), frames, labels)
+    old_links = (_show_collisions(old), {old_names[name] for name in changed})
+    labels = {name: f"{name}, collision" for name in _COLLISION_VIEWS}
+    return _render_pair(models, old_links, (_show_collisions(new), changed), frames, labels)
 
 
 def _render_pair(
@@ -102,7 +106,7 @@ def _render_pair(
     return images
 
 
-def _with_collisions(robot: Robot) -> Robot:
+def _show_collisions(robot: Robot) -> Robot:
     """Return a robot that shows its collision shapes instead of its visuals."""
     links = {
         name: replace(
@@ -114,13 +118,19 @@ def _with_collisions(robot: Robot) -> Robot:
     return replace(robot, links=links)
 
 
-def lone_images(model: Model, robot: Robot, *, is_old: bool) -> list[ViewImages]:
-    """Return images from four sides of a robot that only one version has; empty if it has no visuals."""
-    return images_of_scene(robot_scene(robot, model.finder, folder=model.path.parent), is_old=is_old)
+def render_unpaired_robot(model: Model, robot: Robot, *, is_old: bool) -> list[ViewImages]:
+    """Return images of a robot that only one version has, from four sides.
+
+    The result is empty if the robot has no visuals.
+    """
+    return render_unpaired_scene(robot_scene(robot, model.finder, folder=model.path.parent), is_old=is_old)
 
 
-def images_of_scene(scene: Scene, *, is_old: bool) -> list[ViewImages]:
-    """Return images from four sides of a scene that only one version has; empty for an empty scene."""
+def render_unpaired_scene(scene: Scene, *, is_old: bool) -> list[ViewImages]:
+    """Return images of a scene that only one version has, from four sides.
+
+    The result is empty for an empty scene.
+    """
     if not len(scene.mesh.faces):
         return []
     images = []
@@ -130,7 +140,7 @@ def images_of_scene(scene: Scene, *, is_old: bool) -> list[ViewImages]:
     return images
 
 
-def _links_with_visuals(robot: Robot, links: Iterable[str]) -> set[str]:
+def _select_links_with_visuals(robot: Robot, links: Iterable[str]) -> set[str]:
     """Return the links of a robot that have visuals."""
     return {name for name in links if name in robot.links and robot.links[name].visuals}
 
@@ -140,22 +150,25 @@ def _find_changed_surfaces(models: Pair, old: Robot, new: Robot, comparison: Com
     old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
     for difference in comparison.differences:
         is_visual = difference.subject == "link" and difference.property.startswith("visual")
-        if not is_visual or difference.property.endswith(_PLACES) or difference.name not in old_names:
+        if not is_visual or difference.property.endswith(_POSE_PROPERTIES) or difference.name not in old_names:
             continue
         names = old_names[difference.name], difference.name
-        if not difference.property.endswith("geometry") or _shape_keys(models.old, old, names[0]) != _shape_keys(
-            models.new, new, names[1]
-        ):
+        if not difference.property.endswith("geometry") or _make_shape_keys(
+            models.old, old, names[0]
+        ) != _make_shape_keys(models.new, new, names[1]):
             yield names
 
 
-def _shape_keys(model: Model, robot: Robot, link: str) -> list[Hashable]:
-    """Return comparable keys of the visuals of a link. Equal meshes under different paths have equal keys."""
+def _make_shape_keys(model: Model, robot: Robot, link: str) -> list[Hashable]:
+    """Return comparable keys of the visuals of a link.
+
+    Equal meshes under different paths have equal keys.
+    """
     geometries = (visual.geometry for visual in robot.links[link].visuals)
-    return [_mesh_key(model, shape) if isinstance(shape, Mesh) else repr(shape) for shape in geometries]
+    return [_make_mesh_key(model, shape) if isinstance(shape, Mesh) else repr(shape) for shape in geometries]
 
 
-def _mesh_key(model: Model, mesh: Mesh) -> Hashable:
+def _make_mesh_key(model: Model, mesh: Mesh) -> Hashable:
     try:
         key = surface_key(model.resolve(mesh.filename))
     except LinkwrightError:
@@ -169,13 +182,18 @@ def _find_moved_links(
     """Yield the old and new names of links whose visuals moved relative to the shared link."""
     for old_name, new_name in comparison.links.items():
         if old_name in frames.old and new_name in frames.new:
-            old_places = _visual_poses(old, old_name, frames.old[old_name])
-            new_places = _visual_poses(new, new_name, frames.new[new_name])
-            if old_places.shape != new_places.shape or not np.allclose(old_places, new_places, rtol=0.0, atol=_MOVED):
+            old_poses = _compute_visual_poses(old, old_name, frames.old[old_name])
+            new_poses = _compute_visual_poses(new, new_name, frames.new[new_name])
+            if old_poses.shape != new_poses.shape or not np.allclose(
+                old_poses, new_poses, rtol=0.0, atol=_MOTION_TOLERANCE
+            ):
                 yield old_name, new_name
 
 
-def _visual_poses(robot: Robot, link: str, frame: Placement) -> Array:
-    """Return the rotations and positions of a link's visuals, shape (visuals, 4, 3), in the frame of the images."""
-    places = [placement_from_pose(visual.origin).inside(frame) for visual in robot.links[link].visuals]
-    return np.array([[*place.rotation, place.position] for place in places])
+def _compute_visual_poses(robot: Robot, link: str, frame: Placement) -> Array:
+    """Return the rotations and positions of a link's visuals in the frame of the images.
+
+    The shape of the result is (visuals, 4, 3).
+    """
+    poses = [placement_from_pose(visual.origin).inside(frame) for visual in robot.links[link].visuals]
+    return np.array([[*pose.rotation, pose.position] for pose in poses])

@@ -19,7 +19,7 @@ _MAX_BYTES = 15_000_000
 """The maximum size of a compressed scene. Meshes are most of it."""
 
 
-def robot_scene(models: Pair, old: Description, new: Description, roots: Sequence[Path]) -> RobotScene:
+def build_robot_scene(models: Pair, old: Description, new: Description, roots: Sequence[Path]) -> RobotScene:
     """Return a scene of both robots placed over each other, or the reason why there is none.
 
     A scene contains the meshes. A description can name any file of the computer as a mesh, so a description

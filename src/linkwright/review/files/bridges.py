@@ -135,9 +135,9 @@ def _find_setting_reason(topic: str, name: str, old: str | None, new: str | None
     if name == _ROS_TYPE and old is not None and new is not None and _normalize_type(old) != _normalize_type(new):
         return phrase("programs that use the topic '{topic}' with the old type do not receive it", topic=topic)
     if name == _DIRECTION and old is not None and old not in _FROM_ROS and new in _FROM_ROS:
-        return phrase("the bridge does not publish the topic '{topic}' any more", topic=topic)
+        return phrase("the bridge no longer publishes the topic '{topic}'", topic=topic)
     if name == _DIRECTION and old is not None and old not in _TO_ROS and new in _TO_ROS:
-        return phrase("the bridge does not subscribe to the topic '{topic}' any more", topic=topic)
+        return phrase("the bridge no longer subscribes to the topic '{topic}'", topic=topic)
     return None
 
 

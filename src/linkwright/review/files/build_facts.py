@@ -145,7 +145,7 @@ class EnvironmentVariables:
                 pair.add(text, pair.location(span))
         for name, span in self._spans.items():
             if name not in new._spans:
-                text = phrase("environment variable '{name}' does not decide any more what is built", name=name)
+                text = phrase("environment variable '{name}' no longer decides what is built", name=name)
                 reason = phrase("a value that a user sets for '{name}' has no effect", name=name)
                 pair.add(text, pair.location(span, is_old=True), reason)
 
@@ -453,7 +453,7 @@ def _compare_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         _report_newly_installed_files(pair, old, new, added)
     if removed:
         names = summarize_files(removed, new.files)
-        text = phrase("not installed any more: {names}", names=list_names(names))
+        text = phrase("no longer installed: {names}", names=list_names(names))
         pair.add(text, None, phrase("programs that look for the files do not find them"))
 
 

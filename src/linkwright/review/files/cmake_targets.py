@@ -125,7 +125,7 @@ def _format_change(kind: str, targets: Sequence[str], items: Sequence[str], *, i
     if kind == "libraries":
         if is_added:
             return phrase("{targets} linked to {names}", **names)
-        return phrase("{targets} not linked any more to {names}", **names)
+        return phrase("{targets} no longer linked to {names}", **names)
     if is_added:
         return phrase("sources of {targets} added: {names}", **names)
     return phrase("sources of {targets} removed: {names}", **names)

@@ -43,7 +43,7 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
     names = PackageNames(find_renamed_packages(pair.versions))
     new_elements = _group_elements(new)
     old_elements = {
-        _Dependency(tag, names.of_package(name)): elements for (tag, name), elements in _group_elements(old).items()
+        _Dependency(tag, names.translate_package(name)): elements for (tag, name), elements in _group_elements(old).items()
     }
     changes: dict[_DependencyChange, list[_Dependency]] = {}
     for package in dict.fromkeys(key.package for key in (*new_elements, *old_elements)):
@@ -123,7 +123,7 @@ def _make_lost_reason(manifest: Manifest) -> Phrase:
     Dependents no longer get the package through this one.
     """
     if _is_metapackage(manifest):
-        return phrase("installing the package does not install them any more")
+        return phrase("installing the package no longer installs them")
     return phrase("packages that have them only through this package do not build")
 
 

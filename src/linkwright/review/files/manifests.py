@@ -138,7 +138,9 @@ def _compare_exports(pair: FilePair, old: Manifest, new: Manifest) -> None:
     removed = [element for text, element in old_exports.items() if text not in new_exports]
     added = [element for text, element in new_exports.items() if text not in old_exports]
     for element in list(removed):
-        successor = next((successor for successor in added if successor.tag == names.of_package(element.tag)), None)
+        successor = next(
+            (successor for successor in added if successor.tag == names.translate_package(element.tag)), None
+        )
         if successor is not None:
             removed.remove(element)
             added.remove(successor)

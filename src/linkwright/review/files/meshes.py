@@ -9,7 +9,7 @@ from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.files.git_repository import read_lfs_hash
 from linkwright.geometry.meshes import TriangleMesh, read_mesh
 from linkwright.review.changes import Figure
-from linkwright.review.drawings.scene_images import mesh_images
+from linkwright.review.drawings.scene_images import render_meshes
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.versions import Version
 
@@ -33,7 +33,7 @@ def compare_meshes(pair: FilePair) -> None:
         return
     old, new = meshes
     if pair.drawings.images and pair.old_file.read_bytes() != pair.new_file.read_bytes():
-        pair.images += mesh_images(pair)
+        pair.images += render_meshes(pair)
     if old.count != new.count:
         pair.figures.append(Figure(phrase("triangles"), str(old.count), str(new.count)))
     for name, before, after in zip(

@@ -27,7 +27,7 @@ from linkwright.review.files.yaml_includes import resolve_includes
 from linkwright.review.files.yaml_lists import find_item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, collect_values, compose_yaml, read_yaml_text
 from linkwright.review.list_changes import shorten
-from linkwright.review.merging import common_reason
+from linkwright.review.merging import merge_reasons
 from linkwright.review.versions import Version
 
 _MAX_VALUES = 32
@@ -222,7 +222,7 @@ def _report_renamed(
         groups.setdefault((find_edit(old_part, new_part), kind), []).append(change)
     for first, *others in groups.values():
         names = tuple(f"{change.sentence.arguments['old']} -> {change.sentence.arguments['name']}" for change in others)
-        reason = common_reason(change.reason for change in (first, *others))
+        reason = merge_reasons(change.reason for change in (first, *others))
         pair.changes.append(replace(first, reason=reason, other_names=names))
     return rename_parts(old, renamed)
 

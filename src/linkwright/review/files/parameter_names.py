@@ -76,7 +76,7 @@ class NameRules:
         removed = _find_name_items(old) - _find_name_items(new)
         removed -= {name for name in removed if any(can_evaluate_to(item, name) for item in _find_name_items(new))}
         if _TRANSFORM_SWITCH.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
-            return phrase("the node does not publish its transform any more")
+            return phrase("the node no longer publishes its transform")
         is_offered = offers_frame(parameter)
         if is_offered:
             removed -= self._new_frames
@@ -235,7 +235,7 @@ def find_part_renaming_reason(part: str, new_part: str, values: Mapping[str, Yam
     if node is None or list_part_paths(part)[:-1] == list_part_paths(new_part)[:-1]:
         return _find_node_renaming_reason(part, new_part, values)
     if new_node is not None and matches_node(new_node, node):
-        return phrase("values that are set under the old names have no effect any more")
+        return phrase("values that are set under the old names no longer have an effect")
     return phrase("the node '{name}' starts without these parameters", name=node)
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.element_values import own_content, values_text
-from linkwright.review.plugins import contents_text, plugin_parts
+from linkwright.review.element_values import format_own_content, format_values
+from linkwright.review.plugins import format_contents, format_plugins
 from linkwright.xmltree import Element
 
 _MAX_VALUES_OF_PLUGIN = 4
@@ -29,7 +29,7 @@ def summarize_element(element: Element) -> Iterator[Phrase]:
         yield phrase("links {names}", names=joined_first(names["link"], MAX_NAMES))
     if names["joint"]:
         yield phrase("joints {names}", names=joined_first(names["joint"], MAX_NAMES))
-    yield from plugin_parts(element, _MAX_VALUES_OF_PLUGIN)
+    yield from format_plugins(element, _MAX_VALUES_OF_PLUGIN)
 
 
 def summarize_shapes_and_mass(model: Element) -> Iterator[Phrase]:
@@ -38,7 +38,7 @@ def summarize_shapes_and_mass(model: Element) -> Iterator[Phrase]:
     for element in model.walk():
         geometry = element.first("geometry") if element.tag in ("visual", "collision") else None
         for shape in () if geometry is None else geometry.elements():
-            values = values_text(shape, _MAX_VALUES_OF_PLUGIN) or ""
+            values = format_values(shape, _MAX_VALUES_OF_PLUGIN) or ""
             shapes[element.tag, f"{shape.tag} {values}".strip()] += 1
     texts = []
     for (tag, name), count in shapes.items():
@@ -69,7 +69,7 @@ def _get_name(element: Element) -> str:
 
 def join_contents(element: Element) -> str:
     """Return the attributes and texts of an element and all its descendants, without names."""
-    return " ".join(filter(None, (f"{child.tag} {own_content(child)}" for child in element.walk())))
+    return " ".join(filter(None, (f"{child.tag} {format_own_content(child)}" for child in element.walk())))
 
 
 def format_added_element(path: str, element: Element) -> Phrase:
@@ -82,8 +82,8 @@ def format_added_element(path: str, element: Element) -> Phrase:
     contents = joined(names) if (names := list(summarize_element(element))) else None
     if contents is None:
         element, path = _find_only_descendant(element, path)
-        contents = contents_text(element)
-    text = phrase("{element} added", element=f"{path} {own_content(element)}".strip())
+        contents = format_contents(element)
+    text = phrase("{element} added", element=f"{path} {format_own_content(element)}".strip())
     return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
 
 

@@ -12,7 +12,7 @@ from linkwright.geometry.mass import MassProperties, combine
 from linkwright.geometry.single import IDENTITY
 from linkwright.picture import Scene
 from linkwright.review.changes import Figure
-from linkwright.review.quantities import figure_of
+from linkwright.review.quantities import compare_quantity
 from linkwright.sdf.frames import FrameError, Frames, PlacedLink, place_links, pose_of
 from linkwright.sdf.links import Inertial
 from linkwright.sdf.models import Model
@@ -34,9 +34,9 @@ def compare_model_figures(old: Sdf, new: Sdf, scenes: Sequence[Scene]) -> Iterat
     except FrameError:
         return
     for name, unit, measure in _QUANTITIES:
-        yield from figure_of(name, unit, *map(measure, measures))
+        yield from compare_quantity(name, unit, *map(measure, measures))
     if scenes:
-        yield from figure_of(phrase("size"), "m", *map(_measure_scene, scenes))
+        yield from compare_quantity(phrase("size"), "m", *map(_measure_scene, scenes))
 
 
 class _Measures:

@@ -41,7 +41,7 @@ def _compare_modules(pair: FilePair) -> None:
             text = phrase(
                 "executable '{name}': its module '{module}' was removed", name=program.executable, module=program.module
             )
-            pair.add(text, pair.location(program.span), phrase("the executable does not start any more"))
+            pair.add(text, pair.location(program.span), phrase("the executable no longer starts"))
 
 
 def read_setup_facts(version: Version, path: str) -> BuildFacts:

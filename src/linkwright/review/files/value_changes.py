@@ -10,7 +10,7 @@ from typing import Literal
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.list_changes import change_text
-from linkwright.review.merging import common_reason, name_edit
+from linkwright.review.merging import merge_reasons, name_edit
 
 _ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
 """The path of a list item without a name."""
@@ -119,7 +119,7 @@ def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
 def _merge_group(group: Sequence[ValueChange]) -> Change:
     first = group[0]
     effect = Effect.CHANGED if first.reason is None else Effect.BREAKING
-    reason = common_reason(change.reason for change in group)
+    reason = merge_reasons(change.reason for change in group)
     is_equal = all(change.values == first.values for change in group)
     names = tuple(change.name if is_equal else str(change.sentence) for change in group[1:])
     locations = tuple(change.location for change in group[1:])

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from linkwright.descriptions.comparison import Difference, ElementComparison
 from linkwright.diagnostics import LinkwrightError, Phrase, joined, phrase
-from linkwright.review.breaking import plugin_name_reason, world_reason
+from linkwright.review.breaking import find_plugin_name_reason, world_reason
 from linkwright.review.changes import Change, Location
-from linkwright.review.drawings.scene_images import read_worlds, world_images, world_scenes
-from linkwright.review.element_values import own_content
+from linkwright.review.drawings.scene_images import build_world_scenes, read_worlds, render_worlds
+from linkwright.review.element_values import format_own_content
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.merged_paths import MergedPaths, to_path_pattern, trim_common_words
 from linkwright.review.files.sdf_contents import (
@@ -30,8 +30,14 @@ from linkwright.review.files.sdf_numbers import (
 )
 from linkwright.review.files.templates import is_template, may_be_equal, read_template
 from linkwright.review.left_names import find_left_names
-from linkwright.review.names_in_plugins import path_of_renamed
-from linkwright.review.plugins import added_topics, contents_text, is_added, is_removed, missing_topics_reason
+from linkwright.review.names_in_plugins import find_old_path
+from linkwright.review.plugins import (
+    find_added_topics,
+    find_missing_topics_reason,
+    format_contents,
+    is_added,
+    is_removed,
+)
 from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
 from linkwright.review.versions import Version
 from linkwright.sdf.text import parse_as_gazebo
@@ -59,7 +65,7 @@ def compare_worlds(pair: FilePair) -> None:
         return
     changed = drop_equal_values(ElementComparison().child_differences(*elements))
     joined_differences = list(join_inertials(drop_rounding(changed)))
-    topics = added_topics(joined_differences)
+    topics = find_added_topics(joined_differences)
     differences = merge_replaced_plugins(joined_differences)
     changes = [_WorldChange(difference, _find_breaking_reason(difference, topics)) for difference in differences]
     separate: list[_WorldChange] = []
@@ -105,10 +111,10 @@ def _report_scenes(pair: FilePair, *, may_be_visible: bool) -> None:
     if worlds is None:
         return
     is_drawn = may_be_visible and (pair.drawings.images or not any(world.worlds for world in worlds))
-    scenes = (world_scenes(pair, worlds) if is_drawn else None) or ()
+    scenes = (build_world_scenes(pair, worlds) if is_drawn else None) or ()
     pair.figures += compare_model_figures(*worlds, scenes)
     if pair.drawings.images and scenes:
-        pair.images += world_images(*scenes)
+        pair.images += render_worlds(*scenes)
 
 
 def _may_be_visible(difference: Difference) -> bool:
@@ -157,7 +163,7 @@ class _WorldChange:
     def kind(self) -> Hashable:
         """A key that is equal for equal changes to several elements."""
         difference = self.difference
-        content = "" if difference.element is None else own_content(difference.element)
+        content = "" if difference.element is None else format_own_content(difference.element)
         if difference.element is not None and (is_added(difference) or is_removed(difference)):
             content = join_contents(difference.element)
         values = str(difference.format_values()) if isinstance(difference, InertialDifference) else ""
@@ -167,7 +173,7 @@ class _WorldChange:
     @property
     def is_renamed(self) -> bool:
         """Whether the change is a new name."""
-        return path_of_renamed(self.difference, self.path) is not None
+        return find_old_path(self.difference, self.path) is not None
 
     def location(self, pair: FilePair) -> Location | None:
         """Return the location in the new world, or in the old world for a removed element."""
@@ -209,7 +215,7 @@ def _describe_difference(difference: Difference, name: str) -> Phrase:
         difference: the difference between both versions.
         name: the path of the element, with the names of other elements with the same difference.
     """
-    old_path = path_of_renamed(difference, name)
+    old_path = find_old_path(difference, name)
     if old_path is not None:
         return phrase("{element} renamed to '{new}'", element=old_path, new=difference.new or "")
     if isinstance(difference, PluginReplacement):
@@ -225,9 +231,9 @@ def _describe_difference(difference: Difference, name: str) -> Phrase:
         return phrase(
             "{element}: {old} -> {new}", element=name, old=difference.old or empty, new=difference.new or empty
         )
-    content = difference.old if difference.element is None else own_content(difference.element)
+    content = difference.old if difference.element is None else format_own_content(difference.element)
     text = phrase("{element} removed", element=f"{name} {content or ''}".strip())
-    contents = None if difference.element is None else contents_text(difference.element)
+    contents = None if difference.element is None else format_contents(difference.element)
     return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
 
 
@@ -237,17 +243,17 @@ def _find_breaking_reason(difference: Difference, added: frozenset[str]) -> Phra
     is_macro = difference.element is not None and difference.element.tag == "macro"
     if is_macro or _SET_VARIABLE.fullmatch(path) or may_be_equal(difference.old, difference.new):
         return None
-    named = _NAMED_ELEMENT.fullmatch(path_of_renamed(difference, path) or (path if is_removed(difference) else ""))
+    named = _NAMED_ELEMENT.fullmatch(find_old_path(difference, path) or (path if is_removed(difference) else ""))
     if named is not None and not (named["tag"] == "include" and "/" in named["name"]):
         return _make_name_reason(named["tag"], named["name"])
     if _INCLUDED_NAME.fullmatch(path) and difference.old:
         return _make_name_reason("include", difference.old)
     if isinstance(difference, PluginReplacement) or (is_removed(difference) and difference.element is not None):
-        reason = missing_topics_reason(difference, added)
+        reason = find_missing_topics_reason(difference, added)
         if reason is not None:
             return reason
     is_used = "plugin " in difference.property or "sensor" in difference.property
-    return plugin_name_reason(difference) if is_used else None
+    return find_plugin_name_reason(difference) if is_used else None
 
 
 def _make_name_reason(tag: str, name: str) -> Phrase:

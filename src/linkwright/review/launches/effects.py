@@ -112,11 +112,11 @@ def find_removal_reason(
     if entry.kind == "remapping":
         return _find_remapping_reason(entry.name, entry.settings.get("to"), None, old, old)
     if _is_spawner(entry):
-        return None if _spawns_as_many(old, new) else phrase("the robot or model is not spawned any more")
+        return None if _spawns_as_many(old, new) else phrase("the robot or model is no longer spawned")
     if entry.kind not in ("node", "include") or offers_nothing(entry):
         return None
     if entry.kind == "include":
-        return phrase("its nodes do not start any more") if stops_nodes else None
+        return phrase("its nodes no longer start") if stops_nodes else None
     if any(_starts_same_node(entry, other, old, new) for other in new.entries):
         return None
     if entry.name.startswith(_JOINT_STATE_PREFIX) and any(
@@ -229,7 +229,7 @@ def find_setting_reason(
     if entry.kind in ("node", "include") and setting == CONDITION and (_is_spawner(entry) or not offers_nothing(entry)):
         old_holds = evaluate_condition(old_outline.resolve(old or ""))
         is_stopped = evaluate_condition(new_outline.resolve(new or "")) is False
-        return phrase("by default, it does not start any more") if old_holds and is_stopped else None
+        return phrase("by default, it no longer starts") if old_holds and is_stopped else None
     if entry.kind != "node" or offers_nothing(entry):
         return None
     if setting.startswith(REMAPPING):
@@ -354,9 +354,9 @@ def _find_default_reason(
         dict.fromkeys(format_title(use.entry) for use in _sort_by_importance(uses) if use.setting == CONDITION)
     )
     if len(stopped) > 1:
-        return phrase("by default, {entries} do not start any more", entries=joined_first(stopped, MAX_NAMES))
+        return phrase("by default, {entries} no longer start", entries=joined_first(stopped, MAX_NAMES))
     if stopped:
-        return phrase("by default, {entry} does not start any more", entry=stopped[0])
+        return phrase("by default, {entry} no longer starts", entry=stopped[0])
     reason = next((use.reason for use in uses), None)
     if reason is None and old_value and _NAME_ARGUMENT.search(argument.name) and "/" not in f"{old_value}{new_value}":
         return name_reason(old_value)

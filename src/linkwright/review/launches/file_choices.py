@@ -55,7 +55,7 @@ class FileChoices:
             names = quoted_names(sorted(lost_arguments))
             is_breaking = (is_known and old_file != new_file) or any(map(self._is_passed, lost_arguments))
             reason = phrase("the value that a caller passes for {names} chooses another file", names=names)
-            text = phrase("{names} does not choose the file '{file}' any more", names=names, file=new_path)
+            text = phrase("{names} no longer chooses the file '{file}'", names=names, file=new_path)
             if is_known and old_file != new_file:
                 text = phrase(
                     "{change}; by default, it is '{new}' instead of '{old}'", change=text, old=old_file, new=new_file

@@ -143,5 +143,5 @@ def _compare_launch_file(version: Version, path: str, ignoring_programs: set[str
 
 def _make_ignored_change(program: str, location: Location) -> Change:
     name = PurePosixPath(program).name
-    text = phrase("arguments are passed to '{program}', which does not read them any more", program=name)
+    text = phrase("arguments are passed to '{program}', which no longer reads them", program=name)
     return Change(text, Effect.BREAKING, phrase("the program starts without the values"), location)

@@ -226,8 +226,8 @@ def _explain_stopped_programs(programs: Collection[Program]) -> Phrase:
     """Return the reason why it is breaking that programs do not start by default."""
     names = [quoted_names([name]) for name in sorted({name for _, name in programs})]
     if len(names) == 1:
-        return phrase("by default, {entry} does not start any more", entry=names[0])
-    return phrase("by default, {entries} do not start any more", entries=joined_first(names, MAX_NAMES))
+        return phrase("by default, {entry} no longer starts", entry=names[0])
+    return phrase("by default, {entries} no longer start", entries=joined_first(names, MAX_NAMES))
 
 
 def _group_settings(

@@ -50,7 +50,7 @@ def find_forwarding_reason(
 
 
 def _explain_lost_input(name: str) -> Phrase:
-    return phrase("the messages of '{name}' are not forwarded any more", name=name)
+    return phrase("the messages of '{name}' are no longer forwarded", name=name)
 
 
 def _may_be_among(name: str, names: list[str]) -> bool:

@@ -38,7 +38,7 @@ def report_unused_arguments(
         if not _is_argument(entry) or entry.name not in old_names or _is_used(entry.name, new.entries):
             continue
         if not _may_use(content, entry.name):
-            text = phrase("argument '{name}' is not used any more", name=entry.name)
+            text = phrase("argument '{name}' is no longer used", name=entry.name)
             reason = phrase("a value that a caller passes for '{name}' has no effect", name=entry.name)
             pair.add(text, pair.location(entry.span), reason)
 

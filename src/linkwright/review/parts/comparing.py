@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Effect, ExpandedPlace, Subject, SubjectKind
-from linkwright.review.failures import failure_problem
+from linkwright.review.changes import Change, Effect, ExpandedElement, Subject, SubjectKind
+from linkwright.review.failures import make_problem
 from linkwright.review.parts.contents import compare_contents, make_comparison
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.interface import (
@@ -58,7 +58,7 @@ def compare_parts(
         try:
             part = comparer.compare_file(file, is_compared=number is not None)
         except Exception as error:  # noqa: BLE001 - any error; the other files are still compared
-            problems = [failure_problem(error)]
+            problems = [make_problem(error)]
             part = Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, [], problems=problems)
         if number is None:
             result.append(part)
@@ -76,7 +76,7 @@ class _Comparer:
     """Compare the changed files of a review, with the include graphs of both versions."""
 
     def __init__(
-        self, versions: Versions, expanded: Collection[ExpandedPlace], is_complete: Callable[[str], bool]
+        self, versions: Versions, expanded: Collection[ExpandedElement], is_complete: Callable[[str], bool]
     ) -> None:
         self._versions = versions
         self._expanded = expanded
@@ -172,5 +172,5 @@ def _compare_whole_file(
         if names:
             yield Change(phrase("macro '{name}' added", name=names[0]), other_names=tuple(names[1:]))
     if isinstance(old, Outline) and new is not None and not isinstance(new, Outline):
-        text = phrase("the file cannot be read any more: {reason}", reason=new)
+        text = phrase("the file can no longer be read: {reason}", reason=new)
         yield Change(text, Effect.BREAKING, phrase("descriptions that include the file cannot be expanded"))

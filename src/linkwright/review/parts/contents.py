@@ -10,16 +10,16 @@ from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.review.breaking import (
     MOVING_TYPES,
-    extension_reason,
+    find_extension_reason,
+    find_plugin_name_reason,
     frame_reason,
     joint_name_reason,
-    plugin_name_reason,
     world_reason,
 )
 from linkwright.review.changes import Change, Effect
-from linkwright.review.element_values import values_text
+from linkwright.review.element_values import format_values
 from linkwright.review.files.semantics import find_removal_reason
-from linkwright.review.merging import common_reason, name_edit
+from linkwright.review.merging import merge_reasons, name_edit
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import PROPERTY, MacroOutline, uses_name
@@ -261,7 +261,7 @@ class _ReportedDifference:
     def contents(self) -> Phrase | None:
         """The values in an added or removed element, or None if there are none."""
         element = self.difference.new_element or self.difference.old_element
-        return values_text(element, _MAX_VALUES) if self.difference.is_whole and element is not None else None
+        return format_values(element, _MAX_VALUES) if self.difference.is_whole and element is not None else None
 
     @property
     def reason(self) -> Phrase | None:
@@ -290,8 +290,10 @@ class _ReportedDifference:
         if difference.new_element is None and root.startswith("gazebo"):
             return self._find_lost_name_reason(old)
         if difference.is_whole and not name:
-            return extension_reason(Difference("extension", root, "removed"))
-        return extension_reason(Difference("extension", root, "changed", name, difference.old or "-", difference.new))
+            return find_extension_reason(Difference("extension", root, "removed"))
+        return find_extension_reason(
+            Difference("extension", root, "changed", name, difference.old or "-", difference.new)
+        )
 
     def _find_lost_name_reason(self, old: Element) -> Phrase | None:
         """Return the reason why removing a Gazebo element is breaking; None if it is not.
@@ -303,7 +305,7 @@ class _ReportedDifference:
             text = " ".join(element.text().split())
             if text == "/" or _NAMESPACE in element.tag.lower():
                 continue
-            reason = plugin_name_reason(Difference("extension", "gazebo", "changed", element.tag, text or None))
+            reason = find_plugin_name_reason(Difference("extension", "gazebo", "changed", element.tag, text or None))
             if reason is not None and not {text, *text.split(":=")[1:]} & new_words:
                 return reason
         return None
@@ -320,7 +322,7 @@ def _merge_differences(differences: list[_ReportedDifference]) -> Iterator[Chang
             shows_contents = len(others) < _MAX_WITH_CONTENTS
             first, *others = (replace(difference, shows_contents=shows_contents) for difference in (first, *others))
         names = dict.fromkeys(name for other in others if (name := other.find_name_beside(first)) is not None)
-        reason = common_reason(described.reason for described in (first, *others))
+        reason = merge_reasons(described.reason for described in (first, *others))
         changes.append(replace(first.change, reason=reason, other_names=tuple(names)))
     breaking = [change for change in changes if change.effect is Effect.BREAKING]
     not_breaking = [change for change in changes if change.effect is not Effect.BREAKING]

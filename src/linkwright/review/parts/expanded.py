@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.descriptions import Description
-from linkwright.review.changes import FILE, ExpandedPlace
+from linkwright.review.changes import FILE, ExpandedElement
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xmltree import Element
 
 
-def find_expanded_elements(versions: Versions, old: Description, new: Description) -> Iterator[ExpandedPlace]:
+def find_expanded_elements(versions: Versions, old: Description, new: Description) -> Iterator[ExpandedElement]:
     """Yield the elements of changed files that two expansions use.
 
     These are written elements, macro calls and includes.
@@ -21,13 +21,13 @@ def find_expanded_elements(versions: Versions, old: Description, new: Descriptio
         yield from _find_used_elements(version, description, {path for path in paths if path})
 
 
-def _find_used_elements(version: Version, description: Description, paths: set[str]) -> Iterator[ExpandedPlace]:
+def _find_used_elements(version: Version, description: Description, paths: set[str]) -> Iterator[ExpandedElement]:
     names: dict[str, str] = {}
     for file in description.files:
         path = version.relative(file)
         if path in paths:
             names[str(file)] = path
-            yield ExpandedPlace(path, FILE, version.is_old)
+            yield ExpandedElement(path, FILE, version.is_old)
     if not names:
         return
     visited_frames: set[int] = set()
@@ -41,7 +41,7 @@ def _find_used_elements(version: Version, description: Description, paths: set[s
             yield from _find_written_element(call_frame.site, names, version)
 
 
-def _find_written_element(element: Element, names: dict[str, str], version: Version) -> Iterator[ExpandedPlace]:
+def _find_written_element(element: Element, names: dict[str, str], version: Version) -> Iterator[ExpandedElement]:
     path = None if element.source is None else names.get(element.source.name)
     if path is not None:
-        yield ExpandedPlace(path, element.offset, version.is_old)
+        yield ExpandedElement(path, element.offset, version.is_old)

@@ -134,7 +134,7 @@ def _compare_defaults(
         return
     reason = None
     if not _has_default(new):
-        change = phrase("parameter {name} has no default any more", name=new.name)
+        change = phrase("parameter {name} no longer has a default", name=new.name)
         reason = phrase("calls that do not pass it cannot be expanded")
     elif not _has_default(old):
         change = phrase("parameter {name} has the default {value}", name=new.name, value=_format_default(new))
@@ -215,7 +215,7 @@ def _compare_argument(pair: PartPair, old: Element, new: Element) -> None:
         pair.add(phrase("argument '{name}' has the default '{value}' now", name=name, value=new_default), old, new)
         return
     if new_default is None:
-        text = phrase("argument '{name}' has no default any more", name=name)
+        text = phrase("argument '{name}' no longer has a default", name=name)
         pair.add(text, old, new, phrase("callers must pass '{name}'", name=name))
         return
     text = change_text(phrase("default of argument '{name}'", name=name), old_default or "''", new_default or "''")

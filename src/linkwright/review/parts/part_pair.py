@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 
 from linkwright.diagnostics import Phrase
-from linkwright.review.changes import FILE, Change, Effect, ExpandedPlace, Location
+from linkwright.review.changes import FILE, Change, Effect, ExpandedElement, Location
 from linkwright.review.parts.outline import Outline
 from linkwright.review.versions import Versions
 from linkwright.xmltree import Element
@@ -33,7 +33,7 @@ class PartPair:
     old: Outline
     new: Outline
     is_complete: bool
-    expanded: Collection[ExpandedPlace]
+    expanded: Collection[ExpandedElement]
     changes: list[Change] = field(default_factory=list)
 
     def add(self, sentence: Phrase, old: Element | None, new: Element | None, reason: Phrase | None = None) -> None:
@@ -54,8 +54,8 @@ class PartPair:
     def is_expanded(self, element: Element | None, *, is_old: bool) -> bool:
         """Return whether the compared robots use an element of one of the versions."""
         path = self.old_path if is_old else self.new_path
-        return element is not None and ExpandedPlace(path, element.offset, is_old) in self.expanded
+        return element is not None and ExpandedElement(path, element.offset, is_old) in self.expanded
 
     def is_read(self, *, is_old: bool) -> bool:
         """Return whether the expansion of a compared robot read the file in one of the versions."""
-        return ExpandedPlace(self.old_path if is_old else self.new_path, FILE, is_old) in self.expanded
+        return ExpandedElement(self.old_path if is_old else self.new_path, FILE, is_old) in self.expanded

@@ -9,20 +9,20 @@ from html import escape
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.translation import language, localized
 from linkwright.review.changes import Change, Effect, Figure, Review, Subject, ViewImages
-from linkwright.review.reports.path_plots import PLOT_STYLE, path_plot
+from linkwright.review.reports.path_plots import PLOT_STYLE, draw_path_plot
 from linkwright.review.reports.scene_page import SCENE_STYLE, Scenes
 from linkwright.review.reports.sections import (
     Section,
-    alike_text,
-    breaking_changes,
-    cases_text,
+    divide_report,
+    format_alike,
+    format_cases,
+    format_change,
+    format_paths,
+    format_repeated,
+    format_summary,
     group_findings,
-    other_files,
-    paths_text,
-    repeated_text,
-    sections_of,
-    sentence_of,
-    summary_text,
+    list_other_files,
+    merge_breaking_changes,
 )
 
 _STYLE = """
@@ -60,18 +60,21 @@ for (const slider of document.querySelectorAll("input[type=range]")) {
 
 
 def as_html(review: Review) -> str:
-    """Return the report as a page in the user's language, with views of both robots under a slider."""
+    """Return the report as a page in the user's language.
+
+    A slider reveals one version of each image over the other.
+    """
     new = review.new_name or localized(phrase("working tree"))
     title = phrase("Robot review: {old} to {new}", old=review.old_name, new=new)
     scenes = Scenes(review.subjects)
     parts = [
-        f"<h1>{_escape_text(title)}</h1><p class='soft'>{_escape_text(summary_text(review))}</p>",
-        *_breaking_html(review),
-        *(_section_html(section, scenes) for section in sections_of(review)),
-        *_findings_html(phrase("New findings"), review.new_findings),
-        *_findings_html(phrase("Fixed findings"), review.fixed_findings),
-        *_list_html(phrase("Other changed files"), [_other_file(*file) for file in other_files(review)]),
-        *_list_html(phrase("Notes"), [_escape_text(note) for note in review.notes]),
+        f"<h1>{_escape_text(title)}</h1><p class='soft'>{_escape_text(format_summary(review))}</p>",
+        *_render_breaking_changes(review),
+        *(_render_section(section, scenes) for section in divide_report(review)),
+        *_render_findings(phrase("New findings"), review.new_findings),
+        *_render_findings(phrase("Fixed findings"), review.fixed_findings),
+        *_render_list(phrase("Other changed files"), [_render_other_file(*file) for file in list_other_files(review)]),
+        *_render_list(phrase("Notes"), [_escape_text(note) for note in review.notes]),
     ]
     head = (
         f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{_escape_text(title)}</title>'
@@ -83,41 +86,41 @@ def as_html(review: Review) -> str:
     )
 
 
-def _other_file(path: str, state: Phrase | None) -> str:
+def _render_other_file(path: str, state: Phrase | None) -> str:
     return f"<code>{escape(path)}</code>" + ("" if state is None else f" ({_escape_text(state)})")
 
 
-def _breaking_html(review: Review) -> Iterator[str]:
+def _render_breaking_changes(review: Review) -> Iterator[str]:
     subjects = {subject.path: subject for subject in review.subjects}
     items = [
-        f"{_change_html(change, subjects[paths[0]])} <code>{_escape_text(paths_text(paths))}</code>"
-        for paths, change in breaking_changes(review)
+        f"{_render_change(change, subjects[paths[0]])} <code>{_escape_text(format_paths(paths))}</code>"
+        for paths, change in merge_breaking_changes(review)
     ]
-    yield from _list_html(phrase("Breaking changes"), items)
+    yield from _render_list(phrase("Breaking changes"), items)
 
 
-def _section_html(section: Section, scenes: Scenes) -> str:
+def _render_section(section: Section, scenes: Scenes) -> str:
     subject = section.subject
-    items = [_change_html(change, subject) for change in section.changes]
-    items += [_escape_text(repeated_text(path, count)) for path, count in section.repeated]
-    alike = alike_text(section)
+    items = [_render_change(change, subject) for change in section.changes]
+    items += [_escape_text(format_repeated(path, count)) for path, count in section.repeated]
+    alike = format_alike(section)
     items += [] if alike is None else [_escape_text(alike)]
     items += [f"<span class='breaking'>{_escape_text(problem.text)}</span>" for problem in subject.problems]
     changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
-    plots = "".join(map(path_plot, subject.paths))
+    plots = "".join(map(draw_path_plot, subject.paths))
     return (
         f"<h2><code>{escape(subject.path)}</code></h2><section>"
-        f"{_images_html(subject.images)}{scenes.element(subject.scene)}{_figures_html(subject.figures)}{changes}{plots}</section>"
+        f"{_render_images(subject.images)}{scenes.create_element(subject.scene)}{_render_figures(subject.figures)}{changes}{plots}</section>"
     )
 
 
-def _change_html(change: Change, subject: Subject) -> str:
-    text = _escape_text(sentence_of(change))
+def _render_change(change: Change, subject: Subject) -> str:
+    text = _escape_text(format_change(change))
     if change.effect is Effect.BREAKING:
         text = f"<strong class='breaking'>{text}</strong>"
     if change.reason is not None:
         text += f": {_escape_text(change.reason)}"
-    cases = cases_text(change, subject)
+    cases = format_cases(change, subject)
     if cases is not None:
         text += f" <span class='soft' title='{escape(', '.join(change.cases))}'>{_escape_text(cases)}</span>"
     if change.location is not None:
@@ -125,7 +128,7 @@ def _change_html(change: Change, subject: Subject) -> str:
     return text
 
 
-def _figures_html(figures: Sequence[Figure]) -> str:
+def _render_figures(figures: Sequence[Figure]) -> str:
     if not figures:
         return ""
     names = (phrase("quantity"), phrase("before"), phrase("after"), phrase("unit"))
@@ -138,16 +141,19 @@ def _figures_html(figures: Sequence[Figure]) -> str:
     return f"<table><tr>{head}</tr>{''.join(rows)}</table>"
 
 
-def _images_html(images: Sequence[ViewImages]) -> str:
+def _render_images(images: Sequence[ViewImages]) -> str:
     if not images:
         return ""
-    return f"<div class='images'>{''.join(map(_image_html, images))}</div>"
+    return f"<div class='images'>{''.join(map(_render_image, images))}</div>"
 
 
-def _image_html(view: ViewImages) -> str:
-    """Return a view of both versions. A slider moves the border between the old (left) and the new version."""
+def _render_image(view: ViewImages) -> str:
+    """Return a view of both versions.
+
+    A slider moves the border between the old version (left) and the new version.
+    """
     if not view.old or not view.new:
-        return _lone_image_html(view)
+        return _render_single_image(view)
     old, new = (f"data:image/png;base64,{b64encode(image).decode()}" for image in (view.old, view.new))
     label = escape(localized(phrase("old and new version, {view} view", view=view.name)))
     return (
@@ -158,7 +164,7 @@ def _image_html(view: ViewImages) -> str:
     )
 
 
-def _lone_image_html(view: ViewImages) -> str:
+def _render_single_image(view: ViewImages) -> str:
     """Return a view of a robot that only one version has."""
     image = b64encode(view.old or view.new).decode()
     version = phrase("before") if view.old else phrase("after")
@@ -169,19 +175,19 @@ def _lone_image_html(view: ViewImages) -> str:
     )
 
 
-def _findings_html(title: Phrase, findings: Sequence[Diagnostic]) -> Iterator[str]:
+def _render_findings(title: Phrase, findings: Sequence[Diagnostic]) -> Iterator[str]:
     items = []
     for finding in group_findings(findings):
-        place = (
+        location = (
             ""
             if finding.span is None
             else f" <code class='soft'>{escape(finding.span.file)}:{finding.span.line}</code>"
         )
-        items.append(f"{finding.severity.value} {finding.code}: {_escape_text(finding.message)}{place}")
-    yield from _list_html(title, items)
+        items.append(f"{finding.severity.value} {finding.code}: {_escape_text(finding.message)}{location}")
+    yield from _render_list(title, items)
 
 
-def _list_html(title: Phrase, items: Sequence[str]) -> Iterator[str]:
+def _render_list(title: Phrase, items: Sequence[str]) -> Iterator[str]:
     if items:
         lines = "".join(f"<li>{item}</li>" for item in items)
         yield f"<h2>{_escape_text(title)}</h2><section><ul>{lines}</ul></section>"

@@ -31,22 +31,24 @@ PLOT_STYLE = """
 """
 
 _WIDTH = 860.0
-_LEFT, _RIGHT, _TOP, _BOTTOM = 52.0, 16.0, 12.0, 38.0
+_LEFT_MARGIN, _RIGHT_MARGIN, _TOP_MARGIN, _BOTTOM_MARGIN = 52.0, 16.0, 12.0, 38.0
 _MAX_HEIGHT, _MIN_HEIGHT = 440.0, 150.0
 """The limits of the height of the area with the paths."""
-_GRID = 70.0
+_MIN_GRID_DISTANCE = 70.0
 """The minimum distance of two grid lines in the drawing."""
-_MARGIN = 0.05
+_PADDING = 0.05
 """The free space on each side, as a fraction of the longer side of the box around the paths."""
-_NOTE = 70.0
+_NOTE_WIDTH = 70.0
 """The space for the text of a distance in the drawing."""
-_MIN_SPAN = 0.02
+_MIN_SPAN_M = 0.02
 """The minimum length in m of the longer side of the box around the paths."""
 
 
 @dataclass(frozen=True)
 class _Frame:
-    """The mapping from positions in m, x to the right and y up, to the drawing, with the same scale for both axes.
+    """The mapping from positions in m to the drawing.
+
+    In the drawing, x points to the right and y up, with the same scale.
 
     Attributes:
         low: the position of the lower left corner, in m.
@@ -64,9 +66,9 @@ class _Frame:
         points = [point for pair in comparison.shown for path in (pair.old, pair.new) for point in path]
         low = [min(point[axis] for point in points) for axis in (1, 2)]
         high = [max(point[axis] for point in points) for axis in (1, 2)]
-        margin = max(high[0] - low[0], high[1] - low[1], _MIN_SPAN) * _MARGIN
+        margin = max(high[0] - low[0], high[1] - low[1], _MIN_SPAN_M) * _PADDING
         spans = [high[axis] - low[axis] + 2.0 * margin for axis in (0, 1)]
-        width = _WIDTH - _LEFT - _RIGHT
+        width = _WIDTH - _LEFT_MARGIN - _RIGHT_MARGIN
         scale = min(width / spans[0], _MAX_HEIGHT / spans[1])
         height = max(spans[1] * scale, _MIN_HEIGHT)
         centers = [(low[axis] + high[axis]) / 2.0 for axis in (0, 1)]
@@ -74,68 +76,68 @@ class _Frame:
 
     def x(self, position: float) -> float:
         """Return the coordinate in the drawing of a position on the x axis."""
-        return _LEFT + (position - self.low[0]) * self.scale
+        return _LEFT_MARGIN + (position - self.low[0]) * self.scale
 
     def y(self, position: float) -> float:
         """Return the coordinate in the drawing of a position on the y axis."""
-        return _TOP + self.height - (position - self.low[1]) * self.scale
+        return _TOP_MARGIN + self.height - (position - self.low[1]) * self.scale
 
     def ticks(self, axis: int) -> Iterator[tuple[float, str]]:
         """Yield the positions and labels of the grid lines, at round numbers of meters."""
-        length = (self.height if axis else _WIDTH - _LEFT - _RIGHT) / self.scale
-        step = _round_step(_GRID / self.scale)
+        length = (self.height if axis else _WIDTH - _LEFT_MARGIN - _RIGHT_MARGIN) / self.scale
+        step = _choose_round_step(_MIN_GRID_DISTANCE / self.scale)
         digits = max(0, -floor(log10(step) + 1e-9))
         for number in range(ceil(self.low[axis] / step), floor((self.low[axis] + length) / step) + 1):
             yield number * step, f"{number * step + 0.0:.{digits}f}"
 
 
-def path_plot(comparison: PathComparison) -> str:
+def draw_path_plot(comparison: PathComparison) -> str:
     """Return a figure with thin lines for all shown paths and thick lines for the typical pair."""
     frame = _Frame.around(comparison)
     typical = comparison.typical
     content = "".join(
         (
-            *_grid_lines(frame),
-            *(_path_line(frame, pair.old, "old thin", pair.seed) for pair in comparison.shown),
-            *(_path_line(frame, pair.new, "new thin", pair.seed) for pair in comparison.shown),
-            _path_line(frame, typical.old, "old thick", typical.seed),
-            _path_line(frame, typical.new, "new thick", typical.seed),
-            *_end_marks(frame, typical),
-            _distance_line(frame, comparison.farthest),
+            *_draw_grid(frame),
+            *(_draw_path(frame, pair.old, "old thin", pair.seed) for pair in comparison.shown),
+            *(_draw_path(frame, pair.new, "new thin", pair.seed) for pair in comparison.shown),
+            _draw_path(frame, typical.old, "old thick", typical.seed),
+            _draw_path(frame, typical.new, "new thick", typical.seed),
+            *_draw_end_marks(frame, typical),
+            _draw_distance(frame, comparison.farthest),
         )
     )
     title = comparison.title
     label = phrase("paths of both versions, {name}", name=title)
-    height = _TOP + frame.height + _BOTTOM
+    height = _TOP_MARGIN + frame.height + _BOTTOM_MARGIN
     return (
-        f"<figure class='plot'><figcaption><strong>{escape(title)}</strong>{_legend_html(comparison)}</figcaption>"
+        f"<figure class='plot'><figcaption><strong>{escape(title)}</strong>{_draw_legend(comparison)}</figcaption>"
         f"<svg viewBox='0 0 {_WIDTH:g} {height:.0f}' role='img' aria-label='{_escape(label)}'>{content}</svg></figure>"
     )
 
 
-def _grid_lines(frame: _Frame) -> Iterator[str]:
-    bottom, right = _TOP + frame.height, _WIDTH - _RIGHT
+def _draw_grid(frame: _Frame) -> Iterator[str]:
+    bottom, right = _TOP_MARGIN + frame.height, _WIDTH - _RIGHT_MARGIN
     for position, text in frame.ticks(0):
         x = frame.x(position)
-        yield f"<line class='grid' x1='{x:.1f}' x2='{x:.1f}' y1='{_TOP:g}' y2='{bottom:.1f}'/>"
+        yield f"<line class='grid' x1='{x:.1f}' x2='{x:.1f}' y1='{_TOP_MARGIN:g}' y2='{bottom:.1f}'/>"
         yield f"<text class='tick' x='{x:.1f}' y='{bottom + 15:.1f}' text-anchor='middle'>{text}</text>"
     for position, text in frame.ticks(1):
         y = frame.y(position)
-        yield f"<line class='grid' x1='{_LEFT:g}' x2='{right:g}' y1='{y:.1f}' y2='{y:.1f}'/>"
-        yield f"<text class='tick' x='{_LEFT - 7:g}' y='{y + 4:.1f}' text-anchor='end'>{text}</text>"
-    center = (_LEFT + right) / 2.0
+        yield f"<line class='grid' x1='{_LEFT_MARGIN:g}' x2='{right:g}' y1='{y:.1f}' y2='{y:.1f}'/>"
+        yield f"<text class='tick' x='{_LEFT_MARGIN - 7:g}' y='{y + 4:.1f}' text-anchor='end'>{text}</text>"
+    center = (_LEFT_MARGIN + right) / 2.0
     yield f"<text class='tick' x='{center:.1f}' y='{bottom + 32:.1f}' text-anchor='middle'>x [m]</text>"
-    middle = _TOP + frame.height / 2.0
+    middle = _TOP_MARGIN + frame.height / 2.0
     yield f"<text class='tick' transform='translate(12 {middle:.1f}) rotate(-90)' text-anchor='middle'>y [m]</text>"
 
 
-def _path_line(frame: _Frame, path: Points, kind: str, seed: str) -> str:
+def _draw_path(frame: _Frame, path: Points, kind: str, seed: str) -> str:
     points = " ".join(f"{frame.x(x):.1f},{frame.y(y):.1f}" for _, x, y in path)
     name = _escape(phrase("seed {seed}", seed=seed))
     return f"<polyline class='path {kind}' points='{points}'><title>{name}</title></polyline>"
 
 
-def _end_marks(frame: _Frame, pair: PathPair) -> Iterator[str]:
+def _draw_end_marks(frame: _Frame, pair: PathPair) -> Iterator[str]:
     """Yield the marks at the start and at the end of both paths."""
     for kind, path in (("old", pair.old), ("new", pair.new)):
         _, x, y = path[-1]
@@ -145,11 +147,11 @@ def _end_marks(frame: _Frame, pair: PathPair) -> Iterator[str]:
         yield f"<rect class='start' x='{left:.1f}' y='{top:.1f}' width='10' height='10'/>"
 
 
-def _distance_line(frame: _Frame, pair: PathPair) -> str:
+def _draw_distance(frame: _Frame, pair: PathPair) -> str:
     """Return the line between both robots at their largest distance, with the distance."""
     (x1, y1), (x2, y2) = ((frame.x(x), frame.y(y)) for x, y in pair.ends)
     x, y = (x1 + x2) / 2.0, (y1 + y2) / 2.0
-    is_left = x < _WIDTH - _RIGHT - _NOTE
+    is_left = x < _WIDTH - _RIGHT_MARGIN - _NOTE_WIDTH
     return (
         f"<line class='apart' x1='{x1:.1f}' y1='{y1:.1f}' x2='{x2:.1f}' y2='{y2:.1f}'/>"
         f"<text class='note' x='{x + (9 if is_left else -9):.1f}' y='{y - 5:.1f}' "
@@ -157,7 +159,7 @@ def _distance_line(frame: _Frame, pair: PathPair) -> str:
     )
 
 
-def _legend_html(comparison: PathComparison) -> str:
+def _draw_legend(comparison: PathComparison) -> str:
     farthest, count = comparison.farthest, len(comparison.pairs)
     apart = phrase("farthest apart: seed {seed}, after {time:.3g} s", seed=farthest.seed, time=farthest.time)
     entries: list[tuple[str, Phrase]] = [
@@ -169,16 +171,19 @@ def _legend_html(comparison: PathComparison) -> str:
     if count > 1:
         text = phrase("thick: seed {seed}, the median of {count} runs", seed=comparison.typical.seed, count=count)
         entries.insert(2, ("", text))
-    return f"<span class='legend'>{''.join(_legend_entry(*entry) for entry in entries)}</span>"
+    return f"<span class='legend'>{''.join(_draw_legend_entry(*entry) for entry in entries)}</span>"
 
 
-def _legend_entry(mark: str, text: Phrase) -> str:
+def _draw_legend_entry(mark: str, text: Phrase) -> str:
     drawing = f"<svg viewBox='0 0 26 12' aria-hidden='true'>{mark}</svg>" if mark else ""
     return f"<span>{drawing}{_escape(text)}</span>"
 
 
-def _round_step(minimum: float) -> float:
-    """Return the smallest of the numbers 1, 2 and 5 times a power of ten that is not less than a minimum."""
+def _choose_round_step(minimum: float) -> float:
+    """Return the smallest round number that is not less than a minimum.
+
+    Round numbers are 1, 2 and 5, times a power of ten.
+    """
     power = 10.0 ** floor(log10(minimum))
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= minimum * (1.0 - 1e-9))
 

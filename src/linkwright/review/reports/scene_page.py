@@ -22,7 +22,7 @@ SCENE_STYLE = """
 """
 
 SCENE_SCRIPT = """
-const unpacked = async (element) => {
+const unpack = async (element) => {
   const bytes = Uint8Array.from(atob(element.textContent), (letter) => letter.charCodeAt(0));
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
 };
@@ -33,8 +33,8 @@ for (const scene of document.querySelectorAll("details.scene")) {
     const frame = document.createElement("iframe");
     frame.setAttribute("sandbox", "allow-scripts");
     frame.title = scene.querySelector("summary").textContent;
-    const [start, end] = (await unpacked(document.getElementById("viewer"))).split("\\0");
-    frame.srcdoc = start + (await unpacked(scene.querySelector("script"))) + end;
+    const [start, end] = (await unpack(document.getElementById("viewer"))).split("\\0");
+    frame.srcdoc = start + (await unpack(scene.querySelector("script"))) + end;
     scene.append(frame);
   });
 }
@@ -52,12 +52,12 @@ class Scenes:
     """
 
     def __init__(self, subjects: Sequence[Subject]) -> None:
-        self._shown: set[int] = set()
+        self._shown_scene_ids: set[int] = set()
         size = 0
         for subject in subjects:
             if subject.scene is not None and subject.scene.data and size + len(subject.scene.data) <= _MAX_BYTES:
                 size += len(subject.scene.data)
-                self._shown.add(id(subject.scene))
+                self._shown_scene_ids.add(id(subject.scene))
 
     @property
     def script(self) -> str:
@@ -66,28 +66,33 @@ class Scenes:
         Raises:
             LinkwrightError: VIEW202, the page of this installation was not built.
         """
-        if not self._shown:
+        if not self._shown_scene_ids:
             return ""
         from linkwright.panels.export.html import split_page
 
         title = localized(phrase("both versions in 3D"))
         viewer = gzip.compress("\0".join(split_page(title)).encode(), mtime=0)
-        return f"{_pack(viewer, 'viewer')}<script>{SCENE_SCRIPT}</script>"
+        return f"{_create_data_script(viewer, 'viewer')}<script>{SCENE_SCRIPT}</script>"
 
-    def element(self, scene: RobotScene | None) -> str:
-        """Return the element of a scene, or the reason why there is none; empty if no scene was requested."""
+    def create_element(self, scene: RobotScene | None) -> str:
+        """Return the element of a scene, or the reason why there is none.
+
+        The result is empty if no scene was requested.
+        """
         if scene is None:
             return ""
         if scene.reason is not None:
             return f"<p class='soft'>{_escape_text(scene.reason)}</p>"
-        if id(scene) not in self._shown:
-            reason = phrase("the scene in 3D is left out: those before it have {size:.0f} MB", size=_MAX_BYTES / 1e6)
+        if id(scene) not in self._shown_scene_ids:
+            reason = phrase(
+                "the scene in 3D is left out: the scenes before it already have {size:.0f} MB", size=_MAX_BYTES / 1e6
+            )
             return f"<p class='soft'>{_escape_text(reason)}</p>"
         title = _escape_text(phrase("both versions in 3D"))
-        return f"<details class='scene'><summary>{title}</summary>{_pack(scene.data)}</details>"
+        return f"<details class='scene'><summary>{title}</summary>{_create_data_script(scene.data)}</details>"
 
 
-def _pack(data: bytes, name: str = "") -> str:
+def _create_data_script(data: bytes, name: str = "") -> str:
     attribute = f" id='{name}'" if name else ""
     return f"<script type='application/gzip'{attribute}>{b64encode(data).decode()}</script>"
 

@@ -10,14 +10,14 @@ from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Effect, Review
 from linkwright.review.reports.sections import (
     Section,
-    alike_text,
-    cases_text,
+    divide_report,
+    format_alike,
+    format_cases,
+    format_change,
+    format_repeated,
+    format_summary,
     group_findings,
-    other_files,
-    repeated_text,
-    sections_of,
-    sentence_of,
-    summary_text,
+    list_other_files,
 )
 
 _MAX_OTHER_FILES = 20
@@ -28,20 +28,20 @@ _NEWLINE = "\N{SYMBOL FOR NEWLINE}"
 
 def as_text(review: Review) -> str:
     """Return the report as text in the user's language, a line for each change."""
-    return "".join(make_printable(line).replace("\n", _NEWLINE) + "\n" for line in _report_lines(review))
+    return "".join(make_printable(line).replace("\n", _NEWLINE) + "\n" for line in _format_report(review))
 
 
-def _report_lines(review: Review) -> Iterator[str]:
-    for section in sections_of(review):
-        yield from _section_lines(section)
+def _format_report(review: Review) -> Iterator[str]:
+    for section in divide_report(review):
+        yield from _format_section(section)
     if review.other_files:
         yield localized(phrase("other changed files"))
-        files = other_files(review)
+        files = list_other_files(review)
         for path, state in files[:_MAX_OTHER_FILES]:
             yield f"  {path}" if state is None else f"  {path} ({localized(state)})"
-        rest = len(files) - _MAX_OTHER_FILES
-        if rest > 0:
-            yield f"  {localized(counted('{count} more file', '{count} more files', rest))}"
+        remaining_count = len(files) - _MAX_OTHER_FILES
+        if remaining_count > 0:
+            yield f"  {localized(counted('{count} more file', '{count} more files', remaining_count))}"
         yield ""
     for title, findings in (
         (phrase("new findings"), review.new_findings),
@@ -49,27 +49,27 @@ def _report_lines(review: Review) -> Iterator[str]:
     ):
         if findings:
             yield localized(title)
-            yield from map(_finding_text, group_findings(findings))
+            yield from map(_format_finding, group_findings(findings))
             yield ""
     for note in review.notes:
         yield localized(phrase("note: {text}", text=note))
-    yield localized(summary_text(review))
+    yield localized(format_summary(review))
 
 
-def _section_lines(section: Section) -> Iterator[str]:
+def _format_section(section: Section) -> Iterator[str]:
     subject = section.subject
     yield subject.path
     for change in section.changes:
         mark = "!" if change.effect is Effect.BREAKING else "-"
-        cases = cases_text(change, subject)
-        yield f"  {mark} {localized(sentence_of(change))}{f' ({localized(cases)})' if cases else ''}"
+        cases = format_cases(change, subject)
+        yield f"  {mark} {localized(format_change(change))}{f' ({localized(cases)})' if cases else ''}"
         if change.reason is not None:
             yield f"    {localized(phrase('breaking: {reason}', reason=change.reason))}"
         if change.location is not None:
             yield f"    {change.location.file}:{change.location.line}:{change.location.column}"
     for path, count in section.repeated:
-        yield f"  - {localized(repeated_text(path, count))}"
-    alike = alike_text(section)
+        yield f"  - {localized(format_repeated(path, count))}"
+    alike = format_alike(section)
     if alike is not None:
         yield f"  = {localized(alike)}"
     for figure in subject.figures:
@@ -79,7 +79,7 @@ def _section_lines(section: Section) -> Iterator[str]:
     yield ""
 
 
-def _finding_text(finding: Diagnostic) -> str:
+def _format_finding(finding: Diagnostic) -> str:
     location = "" if finding.span is None else f"{finding.span.file}:{finding.span.line}: "
     message: Phrase | str = finding.message
     text = localized(message) if isinstance(message, Phrase) else message

@@ -42,11 +42,11 @@ class AddedLinks:
         link = self._links.get(difference.name)
         if link is None or (difference.subject, difference.kind) != ("link", "added"):
             return None
-        parts = [*self._parent_and_origin(link.name), *_link_contents(link)]
+        parts = [*self._format_joint(link.name), *_format_link(link)]
         text = phrase("{subject} '{name}' added", subject=term("link"), name=link.name)
         return phrase("{change}: {contents}", change=text, contents=joined(parts)) if parts else text
 
-    def _parent_and_origin(self, name: str) -> Iterator[Phrase]:
+    def _format_joint(self, name: str) -> Iterator[Phrase]:
         joint = self._joints.get(name)
         if joint is not None:
             yield phrase(
@@ -61,12 +61,12 @@ class AddedLinks:
                 yield phrase("rpy {angles}°", angles=angles)
 
 
-def _link_contents(link: Link) -> Iterator[Phrase]:
+def _format_link(link: Link) -> Iterator[Phrase]:
     """Yield the shapes and the mass of a link."""
-    for shape, count in Counter(_shape_text(visual.geometry) for visual in link.visuals).items():
-        yield _with_count(phrase("visual {shape}", shape=shape), count)
-    for shape, count in Counter(_shape_text(collision.geometry) for collision in link.collisions).items():
-        yield _with_count(phrase("collision {shape}", shape=shape), count)
+    for shape, count in Counter(_format_shape(visual.geometry) for visual in link.visuals).items():
+        yield _add_count(phrase("visual {shape}", shape=shape), count)
+    for shape, count in Counter(_format_shape(collision.geometry) for collision in link.collisions).items():
+        yield _add_count(phrase("collision {shape}", shape=shape), count)
     if link.inertial is not None and link.inertial.has_mass:
         yield phrase("mass {mass:.4g} kg", mass=link.inertial.properties.mass)
 
@@ -76,11 +76,11 @@ def _to_degrees(angle: float) -> float:
     return round(math.degrees(angle), 2) + 0.0
 
 
-def _with_count(part: Phrase, count: int) -> Phrase:
+def _add_count(part: Phrase, count: int) -> Phrase:
     return part if count == 1 else phrase("{part} ({count} times)", part=part, count=count)
 
 
-def _shape_text(geometry: Geometry) -> str:
+def _format_shape(geometry: Geometry) -> str:
     if isinstance(geometry, Mesh):
         return f"mesh {geometry.filename}"
     if isinstance(geometry, Box):

@@ -14,8 +14,8 @@ from linkwright.lint.argument_sets import UNDECLARED_CODE, UNUSED_CODE
 from linkwright.review.changes import Change
 from linkwright.review.file_pair import Fault, FilePair
 from linkwright.review.folders import without_folder
-from linkwright.review.robots.lone_robots import robot_text
-from linkwright.review.robots.partial_robots import PartialPair, missing_names, read_partial_robot
+from linkwright.review.robots.unpaired_robots import format_robot
+from linkwright.review.robots.partial_robots import PartialPair, find_missing_names, read_partial_robot
 from linkwright.review.versions import Version
 
 _MAX_CASES = 12
@@ -47,7 +47,7 @@ class Case:
 
 
 @dataclass
-class _Values:
+class _ArgumentValues:
     """An argument set with which one or both versions are called.
 
     Attributes:
@@ -70,17 +70,17 @@ class _Failure:
     """An argument set that fails in a version, and the results for both versions."""
 
     name: str
-    values: _Values
+    values: _ArgumentValues
     old: Description | LinkwrightError
     new: Description | LinkwrightError
 
 
 def find_cases(pair: FilePair) -> Iterator[Case]:
-    """Yield the results of the description for each argument set that a caller uses in one of the versions.
+    """Yield the description with each argument set that a caller of either version uses.
 
     A set that fails in both versions is reported as a problem; a set that fails in one version, as a change.
     """
-    sets = _argument_sets(pair)
+    sets = _collect_argument_sets(pair)
     certain = sum(not values.doubt for values in sets.values())
     if certain > _MAX_CASES:
         text = phrase("only {count} of {total} sets of argument values were compared", count=_MAX_CASES, total=certain)
@@ -93,12 +93,12 @@ def find_cases(pair: FilePair) -> Iterator[Case]:
         else:
             failures.append(result)
     if not pair.cases and all(_needs_values(failure) for failure in failures):
-        failures = yield from _cases_with_tried_values(pair, failures)
+        failures = yield from _try_values(pair, failures)
     _report_failures(pair, failures)
 
 
 def find_switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Case]:
-    """Yield the description with the opposite value of each boolean argument that both versions have.
+    """Yield the description with each boolean argument inverted that both versions have.
 
     The cases of callers that keep the default lack the parts under a condition. The other values come from
     the case that reads most of the changed files.
@@ -110,13 +110,13 @@ def find_switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Ca
     changed = {file.new_path for file in pair.versions.changed_files if file.new_path}
     if not compared:
         return
-    base = max(compared, key=lambda case: len(changed & {pair.versions.new.relative(file) for file in case.new.files}))
-    if base.old.expansion is None or base.new.expansion is None:
+    base_case = max(compared, key=lambda case: len(changed & {pair.versions.new.relative(file) for file in case.new.files}))
+    if base_case.old.expansion is None or base_case.new.expansion is None:
         return
-    arguments, old_arguments = base.new.expansion.arguments, base.old.expansion.arguments
+    arguments, old_arguments = base_case.new.expansion.arguments, base_case.old.expansion.arguments
     unused = {
         str(as_phrase(remark.message).arguments.get("name"))
-        for case in (base.old, base.new)
+        for case in (base_case.old, base_case.new)
         for remark in case.remarks
         if remark.code == UNUSED_CODE
     }
@@ -126,25 +126,25 @@ def find_switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Ca
         if value in _OPPOSITES and name in old_arguments and name not in unused
     }
     for name, value in list(opposites.items())[:_MAX_SWITCHES]:
-        new = {**base.models.new.values, name: value}
-        values = _Values({**base.models.old.values, name: value}, new, 1)
-        result = _make_case(pair, _case_name(new, pair.versions.new), values)
+        new = {**base_case.models.new.values, name: value}
+        values = _ArgumentValues({**base_case.models.old.values, name: value}, new, 1)
+        result = _make_case(pair, _format_values(new, pair.versions.new), values)
         if isinstance(result, Case):
             yield result
 
 
-def _make_case(pair: FilePair, name: str, values: _Values) -> Case | _Failure:
+def _make_case(pair: FilePair, name: str, values: _ArgumentValues) -> Case | _Failure:
     versions = pair.versions
     models = Pair(versions.old.model(pair.old_path, values.old), versions.new.model(pair.new_path, values.new))
-    old, new = _read(models.old), _read(models.new)
+    old, new = _try_read(models.old), _try_read(models.new)
     if isinstance(old, Description) and isinstance(new, Description):
         return Case(name, old, new, models)
-    partial = _partial_pair(models)
+    partial = _read_partial_pair(models)
     if partial is None:
         return _Failure(name, values, old, new)
     old_error, new_error = partial.old.error, partial.new.error
     if old_error is None and new_error is None:
-        pair.missing.update(dict.fromkeys(missing_names(partial, models.old, models.new)))
+        pair.missing.update(dict.fromkeys(find_missing_names(partial, models.old, models.new)))
         if partial.unevaluated_names:
             pair.add_unevaluated(partial.unevaluated_names)
         return Case(name, partial.old.description, partial.new.description, models, partial)
@@ -153,8 +153,8 @@ def _make_case(pair: FilePair, name: str, values: _Values) -> Case | _Failure:
     return _Failure(name, values, old, new)
 
 
-def _cases_with_tried_values(pair: FilePair, failures: list[_Failure]) -> Generator[Case, None, list[_Failure]]:
-    """Yield the description with values for arguments without one, and return the remaining failures.
+def _try_values(pair: FilePair, failures: list[_Failure]) -> Generator[Case, None, list[_Failure]]:
+    """Yield the description with values for missing arguments; return the other failures.
 
     Arguments in conditions are false, and then each in turn is true. Other arguments are empty.
     """
@@ -162,7 +162,7 @@ def _cases_with_tried_values(pair: FilePair, failures: list[_Failure]) -> Genera
     tried: list[str] = []
     result: Case | _Failure = failures[0]
     while isinstance(result, _Failure) and len(values) < _MAX_CASES:
-        argument = _argument_without_value(result.new) or _argument_without_value(result.old)
+        argument = _find_missing_argument(result.new) or _find_missing_argument(result.old)
         if argument is None or argument[0] in values:
             return failures
         name, is_condition = argument
@@ -180,15 +180,18 @@ def _cases_with_tried_values(pair: FilePair, failures: list[_Failure]) -> Genera
 
 
 def _try_case(pair: FilePair, values: Mapping[str, str]) -> Case | _Failure:
-    return _make_case(pair, _case_name(values, pair.versions.new), _Values(values, values, 1))
+    return _make_case(pair, _format_values(values, pair.versions.new), _ArgumentValues(values, values, 1))
 
 
 def _needs_values(failure: _Failure) -> bool:
-    return bool(_argument_without_value(failure.old) and _argument_without_value(failure.new))
+    return bool(_find_missing_argument(failure.old) and _find_missing_argument(failure.new))
 
 
-def _argument_without_value(result: Description | LinkwrightError) -> tuple[str, bool] | None:
-    """Return the name of an undeclared argument and whether a condition uses it; None for other results."""
+def _find_missing_argument(result: Description | LinkwrightError) -> tuple[str, bool] | None:
+    """Return the name of an undeclared argument, and whether a condition uses it.
+
+    The result is None unless an undeclared argument made the description unreadable.
+    """
     if isinstance(result, Description) or result.diagnostics[0].code != UNDECLARED_CODE:
         return None
     first = result.diagnostics[0]
@@ -198,26 +201,29 @@ def _argument_without_value(result: Description | LinkwrightError) -> tuple[str,
     return str(as_phrase(first.message).arguments.get("name", "")), is_condition
 
 
-def _argument_sets(pair: FilePair) -> dict[str, _Values]:
-    """Return the argument sets of both versions by name: the most certain sets first, the new version before the old."""
-    sets: dict[str, _Values] = {}
+def _collect_argument_sets(pair: FilePair) -> dict[str, _ArgumentValues]:
+    """Return the argument sets of both versions, by name.
+
+    The most certain sets are first, and the new version is before the old one.
+    """
+    sets: dict[str, _ArgumentValues] = {}
     for version, path in ((pair.versions.new, pair.new_path), (pair.versions.old, pair.old_path)):
-        for called in _called_sets(version, path):
+        for called in _find_called_sets(version, path):
             values = called.values
             translated = {name: pair.versions.translate_paths(value, version) for name, value in values.items()}
             old, new = (values, translated) if version.is_old else (translated, values)
             doubt = _count_doubts(called)
-            found = sets.setdefault(_case_name(new, pair.versions.new), _Values(old, new, doubt))
-            found.doubt = min(found.doubt, doubt)
+            known = sets.setdefault(_format_values(new, pair.versions.new), _ArgumentValues(old, new, doubt))
+            known.doubt = min(known.doubt, doubt)
             if version.is_old:
-                found.is_of_old = True
+                known.is_of_old = True
             else:
-                found.is_of_new = True
+                known.is_of_new = True
     return dict(sorted(sets.items(), key=lambda item: item[1].doubt))
 
 
-def _called_sets(version: Version, path: str) -> list[ArgumentSet]:
-    """Return the argument sets with which a description is called, or its defaults if it has no caller."""
+def _find_called_sets(version: Version, path: str) -> list[ArgumentSet]:
+    """Return the argument sets of the callers of a description, or its defaults if it has none."""
     return version.checker().argument_sets(version.file(path), ()) or [ArgumentSet({})]
 
 
@@ -228,26 +234,29 @@ def _count_doubts(called: ArgumentSet) -> int:
     return (0 if is_call else 1) + len(called.runtime_names) + (_MAX_CASES if is_guess else 0)
 
 
-def _case_name(values: Mapping[str, str], version: Version) -> str:
-    """Return the values as they are written on the command line, without the folder of the version."""
+def _format_values(values: Mapping[str, str], version: Version) -> str:
+    """Return values as they are written on the command line.
+
+    The folder of the version is removed from them.
+    """
     text = " ".join(f"{name}:={value}" for name, value in sorted(values.items()))
     return text.replace(str(version.root), ".")
 
 
-def _read(model: Model) -> Description | LinkwrightError:
+def _try_read(model: Model) -> Description | LinkwrightError:
     try:
         return model.read()
     except LinkwrightError as error:
         return error
 
 
-def _partial_pair(models: Pair) -> PartialPair | None:
+def _read_partial_pair(models: Pair) -> PartialPair | None:
     """Return both robots without missing packages and files, or None if they remain unreadable."""
     old, new = read_partial_robot(models.old), read_partial_robot(models.new)
     if old is None or new is None:
         return None
     partial = PartialPair(old, new)
-    return partial if missing_names(partial, models.old, models.new) else None
+    return partial if find_missing_names(partial, models.old, models.new) else None
 
 
 def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
@@ -258,8 +267,8 @@ def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
     """
     names: dict[tuple[Fault | None, Fault | None], list[str]] = {}
     for failure in failures:
-        old = fault_of(failure.old, pair.versions.old)
-        new = fault_of(failure.new, pair.versions.new)
+        old = find_fault(failure.old, pair.versions.old)
+        new = find_fault(failure.new, pair.versions.new)
         if old is not None and failure.values.doubt and (pair.cases or failure is not failures[0]):
             continue
         if old is None and new is not None and not failure.values.is_of_new:
@@ -278,10 +287,10 @@ def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
 def _report_contents(pair: FilePair, description: Description | LinkwrightError) -> None:
     """Report the parts of a robot whose description only the new version can read."""
     if isinstance(description, Description) and description.robot is not None:
-        pair.changes.append(Change(robot_text(description.robot)))
+        pair.changes.append(Change(format_robot(description.robot)))
 
 
-def fault_of(result: Description | LinkwrightError, version: Version) -> Fault | None:
+def find_fault(result: Description | LinkwrightError, version: Version) -> Fault | None:
     """Return the fault that makes a version unreadable, or None if it can be read."""
     if isinstance(result, Description):
         return None

@@ -1,7 +1,7 @@
-"""Find links of a robot that collide in the new version only, by MuJoCo.
+"""Find links of a robot that collide only in the new version, with MuJoCo.
 
-Each mesh is replaced by its convex hull, as in simulations. Links that a joint connects directly, or fixed joints only,
-are left out: they touch where they are connected.
+Each mesh is replaced by its convex hull, as in simulations. Links that are connected directly by a joint, or only by
+fixed joints, are left out, because they touch at their connection.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from linkwright.urdf import Collision, Mesh
 from linkwright.urdf.bodies import Bodies
 
 _SAMPLES = 300
-_MIN_COUNT = 3
+_MIN_COLLIDING_SAMPLES = 3
 """The minimum number of colliding samples of a reported collision. Small changes affect a few samples."""
-_MIN_CORNERS = 4
+_MIN_VERTICES = 4
 _MIN_THICKNESS = 1e-6
 """The maximum thickness of a mesh without volume, as a fraction of its length."""
-_DEPTH = 1e-4
+_MIN_DEPTH_M = 1e-4
 """The minimum depth in m of a collision. Shapes that only touch do not collide."""
 
 Array = NDArray[np.float64]
@@ -38,7 +38,10 @@ Pair = tuple[str, str]
 
 
 def may_change_collisions(differences: Iterable[Difference]) -> bool:
-    """Return whether differences can change collisions: shapes, poses of links, or limits of joints."""
+    """Return whether differences can change collisions.
+
+    These are differences in shapes, poses of links, and limits of joints.
+    """
     return any(
         difference.kind != "renamed"
         and (
@@ -49,10 +52,10 @@ def may_change_collisions(differences: Iterable[Difference]) -> bool:
     )
 
 
-def collision_changes(
+def compare_collisions(
     old: RobotMeasures, new: RobotMeasures, links: Mapping[str, str], disabled: Collection[frozenset[str]]
 ) -> Iterator[Change]:
-    """Yield the pairs of links that collide in the new version only.
+    """Yield the pairs of links that collide only in the new version.
 
     Nothing is yielded without MuJoCo (extra ``sim``) or for links that the old version lacks.
 
@@ -76,7 +79,7 @@ def collision_changes(
             continue
         if is_home and not was_home:
             yield Change(phrase("links '{first}' and '{second}' collide at home", first=pair[0], second=pair[1]))
-        elif count >= _MIN_COUNT and not old_count and not was_home:
+        elif count >= _MIN_COLLIDING_SAMPLES and not old_count and not was_home:
             text = phrase(
                 "links '{first}' and '{second}' can collide: in {share:.2g} % of {total} configurations, "
                 "in none before",
@@ -89,24 +92,24 @@ def collision_changes(
 
 
 def _find_collisions(measures: RobotMeasures) -> dict[Pair, tuple[bool, int]]:
-    """Return for each colliding pair whether it collides at home, and the number of sampled configurations.
+    """Return whether each colliding pair collides at home, and in how many configurations.
 
     Raises:
         ValueError: MuJoCo refuses a shape.
     """
-    scene = _Scene(measures)
-    if scene.model is None:
+    collision_model = _CollisionModel(measures)
+    if collision_model.model is None:
         return {}
     home = np.array([measures.frames[name] for name in measures.link_names])
-    at_home = scene.colliding_pairs(home)
+    at_home = collision_model.find_colliding_pairs(home)
     counts: dict[Pair, int] = dict.fromkeys(at_home, 0)
-    for frames in measures.sampled_frames(_SAMPLES):
-        for pair in scene.colliding_pairs(frames):
+    for frames in measures.sample_frames(_SAMPLES):
+        for pair in collision_model.find_colliding_pairs(frames):
             counts[pair] = counts.get(pair, 0) + 1
     return {pair: (pair in at_home, count) for pair, count in sorted(counts.items())}
 
 
-class _Scene:
+class _CollisionModel:
     """A model of MuJoCo in which each link with collisions is a free body.
 
     Attributes:
@@ -124,9 +127,9 @@ class _Scene:
         if self.model is not None:
             self._data = mujoco.MjData(self.model)
             self._indexes = [measures.link_names.index(name) for name in self._links]
-            self._ignored = _connected_pairs(measures)
+            self._ignored = _find_connected_pairs(measures)
 
-    def colliding_pairs(self, frames: Array) -> set[Pair]:
+    def find_colliding_pairs(self, frames: Array) -> set[Pair]:
         """Return the pairs of links that collide.
 
         Args:
@@ -140,7 +143,7 @@ class _Scene:
         self._mujoco.mj_kinematics(self.model, self._data)
         self._mujoco.mj_collision(self.model, self._data)
         contact = self._data.contact
-        deep = contact.geom[contact.dist < -_DEPTH]
+        deep = contact.geom[contact.dist < -_MIN_DEPTH_M]
         bodies = self.model.geom_bodyid[deep].reshape(-1, 2) - 1
         pairs = {(self._links[min(pair)], self._links[max(pair)]) for pair in bodies.tolist()}
         return pairs - self._ignored
@@ -158,49 +161,53 @@ class _Scene:
     def _add_shape(self, spec: Any, body: Any, collision: Collision) -> bool:
         """Add a collision shape to a body, and return whether MuJoCo can use it."""
         kinds, shape = self._mujoco.mjtGeom, collision.geometry
-        place = placement(collision.origin)
-        x, y, z, w = quaternion_from_matrix(np.array(place.rotation))
-        pose = {"pos": list(place.position), "quat": [w, x, y, z], "mass": 0.0}
+        shape_pose = placement(collision.origin)
+        x, y, z, w = quaternion_from_matrix(np.array(shape_pose.rotation))
+        options = {"pos": list(shape_pose.position), "quat": [w, x, y, z], "mass": 0.0}
         if isinstance(shape, Mesh):
-            points = self._points(collision, shape)
+            points = self._load_vertices(collision, shape)
             if points is None:
                 return False
             mesh = spec.add_mesh(name=f"mesh {len(spec.meshes)}", uservert=points.ravel().tolist())
-            body.add_geom(type=kinds.mjGEOM_MESH, meshname=mesh.name, **pose)
+            body.add_geom(type=kinds.mjGEOM_MESH, meshname=mesh.name, **options)
         elif isinstance(shape, Box) and min(shape.size) > 0:
-            body.add_geom(type=kinds.mjGEOM_BOX, size=[length / 2 for length in shape.size], **pose)
+            body.add_geom(type=kinds.mjGEOM_BOX, size=[length / 2 for length in shape.size], **options)
         elif isinstance(shape, Sphere) and shape.radius > 0:
-            body.add_geom(type=kinds.mjGEOM_SPHERE, size=[shape.radius, 0, 0], **pose)
+            body.add_geom(type=kinds.mjGEOM_SPHERE, size=[shape.radius, 0, 0], **options)
         elif isinstance(shape, (Cylinder, Capsule)) and min(shape.radius, shape.length) > 0:
             kind = kinds.mjGEOM_CYLINDER if isinstance(shape, Cylinder) else kinds.mjGEOM_CAPSULE
-            body.add_geom(type=kind, size=[shape.radius, shape.length / 2, 0], **pose)
+            body.add_geom(type=kind, size=[shape.radius, shape.length / 2, 0], **options)
         else:
             return False
         return True
 
-    def _points(self, collision: Collision, shape: Mesh) -> Array | None:
-        """Return the corners of a mesh, shape (corners, 3), or None if its convex hull has no volume."""
+    def _load_vertices(self, collision: Collision, shape: Mesh) -> Array | None:
+        """Return the vertices of a mesh, shape (vertices, 3).
+
+        The result is None if their convex hull has no volume.
+        """
         try:
             mesh = self._measures.meshes.load(shape, collision.element)
         except LinkwrightError:
             return None
-        points = _distinct_points(mesh.vertices[np.unique(mesh.faces)])
-        if len(points) < _MIN_CORNERS:
+        points = _find_distinct_points(mesh.vertices[np.unique(mesh.faces)])
+        if len(points) < _MIN_VERTICES:
             return None
         extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
         return points if extents[-1] > _MIN_THICKNESS * extents[0] else None
 
 
-def _distinct_points(points: Array) -> Array:
-    """Return the distinct points, shape (n, 3), found by a weighted sum that differs for each point.
+def _find_distinct_points(points: Array) -> Array:
+    """Return the distinct points, shape (n, 3).
 
-    Sorting these sums takes a fifth of the time of ``np.unique`` on rows.
+    They are found by a weighted sum of the coordinates, which differs for each point. Sorting these sums takes a fifth
+    of the time of ``np.unique`` on rows.
     """
     sums = points @ np.sqrt([1.0, 2.0, 3.0])
     return points[np.unique(sums, return_index=True)[1]]
 
 
-def _connected_pairs(measures: RobotMeasures) -> set[Pair]:
+def _find_connected_pairs(measures: RobotMeasures) -> set[Pair]:
     """Return the pairs of links in the same rigid body, or in bodies that a joint connects."""
     bodies = Bodies(measures.robot)
     order = {name: index for index, name in enumerate(measures.link_names)}

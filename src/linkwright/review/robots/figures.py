@@ -17,39 +17,41 @@ from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.kinematics import KinematicTree
 from linkwright.review.changes import Figure
 from linkwright.review.frames import to_matrix
-from linkwright.review.quantities import figure_of
+from linkwright.review.quantities import compare_quantity
 from linkwright.review.robots.reach import Chain, have_equal_distances, compare_reaches
 from linkwright.urdf import Collision, Mesh, Robot, Visual
 from linkwright.xmltree import Element
 
 _REACH_SAMPLES = 2_000
-_MIN_CHAIN = 3
+_MIN_CHAIN_JOINTS = 3
 """The minimum number of moving joints of a chain whose reach is compared."""
 _MAX_CHAINS = 4
 """The maximum number of chains whose reach is compared. The fingers of a hand would fill the report."""
-_UNLIMITED = np.pi
+_MAX_CONTINUOUS_RAD = np.pi
 """The largest sampled position of a continuous joint in rad, on both sides of zero."""
 
 Array = NDArray[np.float64]
 
 
-def figures_of(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
+def compare_figures(old: RobotMeasures, new: RobotMeasures) -> Iterator[Figure]:
     """Yield the quantities that differ between two robots."""
     for name, unit, measure in _QUANTITIES:
-        yield from figure_of(name, unit, measure(old), measure(new))
+        yield from compare_quantity(name, unit, measure(old), measure(new))
     old_chains, new_chains = old.chains(), new.chains()
     common = [link for link in new_chains if link in old_chains]
     if common:
-        samples = old.sampled_positions(_REACH_SAMPLES), new.sampled_positions(_REACH_SAMPLES)
+        samples = old.sample_positions(_REACH_SAMPLES), new.sample_positions(_REACH_SAMPLES)
         for link in common:
             if have_equal_distances(old_chains[link], new_chains[link], samples[0]):
                 continue
             reach = compare_reaches(old_chains[link], new_chains[link], *samples)
-            yield from figure_of(phrase("reach of '{link}'", link=link), "m", *reach)
+            yield from compare_quantity(phrase("reach of '{link}'", link=link), "m", *reach)
 
 
 class RobotMeasures:
-    """The quantities of a robot with all joints at the initial positions of joint_state_publisher.
+    """The quantities of a whole robot.
+
+    All joints are at the initial positions of joint_state_publisher.
 
     Args:
         robot: the robot with its links and joints.
@@ -62,7 +64,7 @@ class RobotMeasures:
         robot: the robot with its links and joints.
         meshes: the meshes of the robot.
         frames: the frames of the links, shape (4, 4) each.
-        link_names: the links in the order of the frames of `sampled_frames`.
+        link_names: the links in the order of the frames of `sample_frames`.
     """
 
     def __init__(
@@ -103,7 +105,7 @@ class RobotMeasures:
         boxes = []
         for name, frame in self.frames.items():
             for visual in self.robot.links[name].visuals:
-                box = self._bounds(visual, frame)
+                box = self._compute_bounds(visual, frame)
                 if box is None:
                     return None
                 boxes.append(box)
@@ -137,17 +139,17 @@ class RobotMeasures:
         names = self._tree.joint_names
         turns = [self.robot.joints[name].type != "prismatic" for name in names]
         chains = {}
-        for link, joints in self._chain_ends().items():
+        for link, joints in self._find_chain_ends().items():
             moving = [index for index, name in enumerate(names) if name in joints]
-            chains[link] = Chain(names, moving, turns, low, high, partial(self._distances, self._tree.link_index(link)))
+            chains[link] = Chain(names, moving, turns, low, high, partial(self._compute_distances, self._tree.link_index(link)))
         return chains
 
-    def _distances(self, link: int, positions: Array) -> Array:
+    def _compute_distances(self, link: int, positions: Array) -> Array:
         """Return the distances of a link from the origin of the figures in m, shape (count,)."""
-        distances: Array = np.linalg.norm(self.frames_at(positions)[:, link, :3, 3], axis=-1)
+        distances: Array = np.linalg.norm(self.compute_frames(positions)[:, link, :3, 3], axis=-1)
         return distances
 
-    def frames_at(self, positions: Array) -> Array:
+    def compute_frames(self, positions: Array) -> Array:
         """Return the frames of the links in the frame of the figures.
 
         Args:
@@ -159,8 +161,8 @@ class RobotMeasures:
         frames: Array = self._root @ self._tree.forward(positions)
         return frames
 
-    def sampled_frames(self, count: int) -> Array:
-        """Return the frames of the links in many configurations within the limits; see `sampled_positions`.
+    def sample_frames(self, count: int) -> Array:
+        """Return the frames of the links at the positions of `sample_positions`.
 
         Args:
             count: the number of configurations.
@@ -168,10 +170,12 @@ class RobotMeasures:
         Returns:
             Homogeneous matrices, shape (count, links, 4, 4).
         """
-        return self.frames_at(self.sampled_positions(count))
+        return self.compute_frames(self.sample_positions(count))
 
-    def sampled_positions(self, count: int) -> Array:
-        """Return positions within the limits. They depend only on the old names and the limits of the joints.
+    def sample_positions(self, count: int) -> Array:
+        """Return random positions within the limits.
+
+        They depend only on the old names and the limits of the joints.
 
         Returns:
             Positions in rad or m, shape (count, joints).
@@ -185,8 +189,8 @@ class RobotMeasures:
         positions: Array = low + samples * (high - low)
         return positions
 
-    def _chain_ends(self) -> dict[str, set[str]]:
-        """Return the joints whose positions move the end of each chain, by the last link of the chain."""
+    def _find_chain_ends(self) -> dict[str, set[str]]:
+        """Return the joints that move the end of each chain, by the last link of the chain."""
         joints_by_child = {joint.child: joint for joint in self.robot.joints.values()}
         parents = {joint.parent for joint in self.robot.joints.values()}
         farthest: dict[str, tuple[int, str, set[str]]] = {}
@@ -200,7 +204,7 @@ class RobotMeasures:
                 chain.append(joint)
                 name = joint.parent
             moving = [joint.name for joint in chain if joint.name in self._tree.joint_names]
-            if len(moving) >= _MIN_CHAIN and (moving[0] not in farthest or farthest[moving[0]][0] < len(chain)):
+            if len(moving) >= _MIN_CHAIN_JOINTS and (moving[0] not in farthest or farthest[moving[0]][0] < len(chain)):
                 leaders = {joint.mimic.joint for joint in chain if joint.mimic is not None}
                 farthest[moving[0]] = len(chain), link, leaders.union(moving)
         return {link: joints for _, link, joints in list(farthest.values())[:_MAX_CHAINS]}
@@ -208,18 +212,21 @@ class RobotMeasures:
     @cached_property
     def _limits(self) -> tuple[Array, Array]:
         """The limits of the joints in rad or m, shape (joints,) each."""
-        low, high = np.full((2, len(self._tree.joint_names)), _UNLIMITED) * np.array([[-1.0], [1.0]])
+        low, high = np.full((2, len(self._tree.joint_names)), _MAX_CONTINUOUS_RAD) * np.array([[-1.0], [1.0]])
         for index, name in enumerate(self._tree.joint_names):
             joint = self.robot.joints[name]
             if joint.limit is not None and joint.type != "continuous":
                 low[index], high[index] = sorted((joint.limit.lower, joint.limit.upper))
         return low, high
 
-    def _bounds(self, visual: Visual, link_frame: Array) -> tuple[Array, Array] | None:
-        """Return the corners of the box around a visual in the frame of the figures, shape (3,) each."""
-        placed = placement(visual.origin)
-        rotation = link_frame[:3, :3] @ np.array(placed.rotation)
-        center = link_frame[:3, :3] @ np.array(placed.position) + link_frame[:3, 3]
+    def _compute_bounds(self, visual: Visual, link_frame: Array) -> tuple[Array, Array] | None:
+        """Return the corners of the box around a visual, in the frame of the figures.
+
+        Each has the shape (3,).
+        """
+        pose = placement(visual.origin)
+        rotation = link_frame[:3, :3] @ np.array(pose.rotation)
+        center = link_frame[:3, :3] @ np.array(pose.position) + link_frame[:3, 3]
         if isinstance(visual.geometry, Mesh):
             try:
                 mesh = self.meshes.load(visual.geometry, visual.element)
@@ -229,11 +236,11 @@ class RobotMeasures:
                 return center, center
             points = mesh.vertices[np.unique(mesh.faces)] @ rotation.T + center
             return points.min(axis=0), points.max(axis=0)
-        half = _half_lengths(visual.geometry, rotation)
+        half = _compute_half_lengths(visual.geometry, rotation)
         return center - half, center + half
 
 
-def _half_lengths(shape: SimpleShape, rotation: Array) -> Array:
+def _compute_half_lengths(shape: SimpleShape, rotation: Array) -> Array:
     """Return half the lengths of the box around a rotated shape in m, shape (3,)."""
     if isinstance(shape, Box):
         half: Array = np.abs(rotation) @ np.array(shape.size) / 2.0
@@ -245,11 +252,11 @@ def _half_lengths(shape: SimpleShape, rotation: Array) -> Array:
     return np.asarray(along + shape.radius * across)
 
 
-def _moving_joints(measures: RobotMeasures) -> int:
+def _count_moving_joints(measures: RobotMeasures) -> int:
     return sum(joint.type != "fixed" for joint in measures.robot.joints.values())
 
 
-def _principal_moments(measures: RobotMeasures) -> Array | None:
+def _compute_principal_moments(measures: RobotMeasures) -> Array | None:
     properties = measures.mass_properties
     return properties.principal().moments if properties.mass > 0 else None
 
@@ -257,10 +264,10 @@ def _principal_moments(measures: RobotMeasures) -> Array | None:
 _QUANTITIES: tuple[tuple[Phrase, str, Callable[[RobotMeasures], object]], ...] = (
     (phrase("links"), "", lambda measures: len(measures.robot.links)),
     (phrase("joints"), "", lambda measures: len(measures.robot.joints)),
-    (phrase("moving joints"), "", _moving_joints),
+    (phrase("moving joints"), "", _count_moving_joints),
     (phrase("mass"), "kg", lambda measures: measures.mass_properties.mass),
     (phrase("center of mass"), "m", lambda measures: measures.mass_properties.center),
-    (phrase("principal moments of inertia"), "kg m2", _principal_moments),
+    (phrase("principal moments of inertia"), "kg m2", _compute_principal_moments),
     (phrase("size"), "m", lambda measures: measures.size),
     (phrase("triangles of the meshes"), "", lambda measures: measures.mesh_files and measures.mesh_files[0]),
     (phrase("bytes of the meshes"), "", lambda measures: measures.mesh_files and measures.mesh_files[1]),

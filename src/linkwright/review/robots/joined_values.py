@@ -1,4 +1,4 @@
-"""Join the changes of the inertial of a link, or of the limits of a joint, in one line."""
+"""Join the changes in the inertial of a link, or in the limits of a joint, in one line."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ _BLOCK_TAGS = ("inertial", "limit")
 
 @dataclass(frozen=True, slots=True)
 class JoinedDifferences(Difference):
-    """The differences of several values of a block. The location is that of the first difference.
+    """The differences in several values of a block.
+
+    The location is that of the first difference.
 
     Attributes:
         values: the differences of values that both versions have.
@@ -30,13 +32,13 @@ class JoinedDifferences(Difference):
             subject=term(self.subject),
             name=self.name,
             property=self.property,
-            new=", ".join(map(_value_text, self.values)),
+            new=", ".join(map(_format_value, self.values)),
         )
 
 
 def join_value_differences(differences: Iterable[Difference]) -> Iterator[Difference]:
-    """Yield the differences, with changes of an inertial, or of the limits of a joint, joined into one."""
-    for key, group in groupby(differences, _block_of):
+    """Yield the differences, with those in an inertial, or in a joint's limits, joined."""
+    for key, group in groupby(differences, _find_block):
         values = tuple(group)
         if key is None or len(values) == 1:
             yield from values
@@ -53,15 +55,18 @@ def join_value_differences(differences: Iterable[Difference]) -> Iterator[Differ
         )
 
 
-def _block_of(difference: Difference) -> tuple[str, str] | None:
-    """Return the link or joint and the block of a changed value; None if the value cannot be joined."""
+def _find_block(difference: Difference) -> tuple[str, str] | None:
+    """Return the link or joint and the block of a changed value, or None.
+
+    The result is None if the value cannot be joined with others.
+    """
     block = difference.property.partition(" ")[0]
     is_value = difference.kind == "changed" and block in _BLOCK_TAGS and block != difference.property
     return (difference.name, block) if is_value and difference.old and difference.new else None
 
 
-def _value_text(difference: Difference) -> str:
-    """Return the change of a value with its unit, such as ``mass 2 -> 3 kg`` or ``upper 1 -> 2 rad``."""
+def _format_value(difference: Difference) -> str:
+    """Return the change in a value with its unit, such as ``mass 2 -> 3 kg``."""
     name = difference.property.rpartition(" ")[2]
     words = "center" if name == "xyz" else name, difference.old, "->", difference.new, difference.unit
     return " ".join(filter(None, words))

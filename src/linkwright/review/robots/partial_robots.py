@@ -19,7 +19,7 @@ from linkwright.xmltree import Element
 
 _KEPT_AS_WRITTEN = frozenset({"name", "link", "joint", "filename", "type"})
 """Attributes that may contain any text, so that unevaluated values are compared as written."""
-_CALL = "xacro:"
+_XACRO_PREFIX = "xacro:"
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class PartialPair:
 
     def is_certain(self, difference: Difference) -> bool:
         """Return whether a difference cannot be due to omitted parts."""
-        if difference.subject == "extension" and difference.name.startswith(_CALL):
+        if difference.subject == "extension" and difference.name.startswith(_XACRO_PREFIX):
             return True
         names = {difference.name, difference.old or "" if difference.kind == "renamed" else ""}
         if difference.subject in ("link", "joint") and names & (self.old.stand_ins | self.new.stand_ins):
@@ -87,19 +87,22 @@ class PartialPair:
 
 
 def read_partial_robot(model: Model) -> PartialRobot | None:
-    """Return a robot without missing files and packages, or None if it cannot be expanded without them."""
+    """Return a robot without the missing files and packages.
+
+    The result is None if the robot cannot be expanded without them.
+    """
     try:
         expansion, omissions = expand_with_omissions(Inputs(str(model.path), model.values), model.finder)
     except LinkwrightError:
         return None
     root = expansion.document.root
     unevaluated = frozenset(_drop_unevaluated(root))
-    stand_ins = frozenset(_connect(root))
+    stand_ins = frozenset(_connect_links(root))
     return PartialRobot(Description.of_expansion(str(model.path), expansion), omissions, stand_ins, unevaluated)
 
 
 def _has_more_omissions(one: PartialRobot, other: PartialRobot) -> bool:
-    """Return whether one version has more omissions than the other, which may explain absent parts."""
+    """Return whether one version omits more than the other, so that parts may be absent."""
     return (
         one.omissions.packages > other.omissions.packages
         or len(one.omissions.files) > len(other.omissions.files)
@@ -109,9 +112,9 @@ def _has_more_omissions(one: PartialRobot, other: PartialRobot) -> bool:
 
 
 def _drop_unevaluated(root: Element) -> Iterator[tuple[str, str]]:
-    """Remove unevaluated numbers from links, joints and materials, and yield the tags and names of these elements.
+    """Remove unevaluated numbers from links, joints and materials.
 
-    Unevaluated texts elsewhere remain, and are compared as written.
+    The tags and names of these elements are yielded. Unevaluated texts elsewhere remain, and are compared as written.
     """
     root.attributes.pop(UNEVALUATED, None)
     for child in root.elements():
@@ -125,7 +128,7 @@ def _drop_unevaluated(root: Element) -> Iterator[tuple[str, str]]:
             yield child.tag, child.attributes.get("name", "")
 
 
-def _connect(root: Element) -> Iterator[str]:
+def _connect_links(root: Element) -> Iterator[str]:
     """Add missing links, and joints to links without a parent, and yield the names of both."""
     links = {element.attributes.get("name", "") for element in root.elements("link")}
     parents: dict[str, str] = {}
@@ -142,7 +145,7 @@ def _connect(root: Element) -> Iterator[str]:
         return
     counts = dict.fromkeys(roots, 0)
     for name in parents:
-        counts[_root_of(name, parents)] = counts.get(_root_of(name, parents), 0) + 1
+        counts[_find_root(name, parents)] = counts.get(_find_root(name, parents), 0) + 1
     main_root = max(roots, key=lambda name: counts[name])
     for name in roots:
         if name != main_root:
@@ -152,7 +155,7 @@ def _connect(root: Element) -> Iterator[str]:
             yield f"{main_root} to {name}"
 
 
-def _root_of(link: str, parents: Mapping[str, str]) -> str:
+def _find_root(link: str, parents: Mapping[str, str]) -> str:
     for _ in range(len(parents)):
         if link not in parents:
             break
@@ -160,7 +163,7 @@ def _root_of(link: str, parents: Mapping[str, str]) -> str:
     return link
 
 
-def missing_names(pair: PartialPair, old: Model, new: Model) -> list[str]:
+def find_missing_names(pair: PartialPair, old: Model, new: Model) -> list[str]:
     """Return the names of the packages and files that are omitted because they are not found.
 
     The list is empty if nothing is missing, or if one of the versions has something that the other version needs.

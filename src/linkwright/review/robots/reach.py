@@ -56,10 +56,10 @@ class Chain:
         best = np.argsort(distances, kind="stable")[-_STARTS:]
         positions, distances = samples[best].copy(), distances[best].copy()
         for _ in range(_MAX_SWEEPS):
-            before = distances.max()
+            previous_distance = distances.max()
             for joint in self.moving:
                 self._improve(positions, distances, joint)
-            if distances.max() - before < _MIN_GAIN:
+            if distances.max() - previous_distance < _MIN_GAIN:
                 break
         index = int(np.argmax(distances))
         return float(distances[index]), positions[index]
@@ -68,7 +68,7 @@ class Chain:
         """Move a joint of each configuration to its best position."""
         candidates: list[Array] = [np.full(len(positions), limit[joint]) for limit in (self.low, self.high)]
         if self.turns[joint]:
-            candidates.append(self._peaks(positions, joint))
+            candidates.append(self._find_peaks(positions, joint))
         for values in candidates:
             moved = positions.copy()
             moved[:, joint] = np.clip(values, self.low[joint], self.high[joint])
@@ -76,8 +76,11 @@ class Chain:
             is_better = moved_distances > distances
             positions[is_better], distances[is_better] = moved[is_better], moved_distances[is_better]
 
-    def _peaks(self, positions: Array, joint: int) -> Array:
-        """Return the positions of a revolute joint with the largest distance, from three samples per configuration."""
+    def _find_peaks(self, positions: Array, joint: int) -> Array:
+        """Return the positions of a revolute joint with the largest distance.
+
+        They are computed from three samples per configuration.
+        """
         squares = []
         for step in range(3):
             turned = positions.copy()
@@ -90,7 +93,7 @@ class Chain:
         nearest: Array = peaks + 2.0 * np.pi * np.round((middle - peaks) / (2.0 * np.pi))
         return nearest
 
-    def positions_of(self, values: Mapping[str, float], default: Array) -> Array:
+    def to_positions(self, values: Mapping[str, float], default: Array) -> Array:
         """Return positions by name as an array within the limits, shape (joints,)."""
         positions = np.array([values.get(name, other) for name, other in zip(self.names, default, strict=True)])
         clipped: Array = np.clip(positions, self.low, self.high)
@@ -98,7 +101,7 @@ class Chain:
 
 
 def have_equal_distances(old: Chain, new: Chain, samples: Array) -> bool:
-    """Return whether two chains with equal limits have equal distances at the first sampled positions.
+    """Return whether two chains have equal limits and distances at the first samples.
 
     Such chains have the same reach.
     """
@@ -117,11 +120,11 @@ def compare_reaches(old: Chain, new: Chain, old_samples: Array, new_samples: Arr
     grow with tighter limits, because the search ended elsewhere.
     """
     sides = (old, old_samples), (new, new_samples)
-    found = [chain.farthest(samples) for chain, samples in sides]
+    farthest = [chain.farthest(samples) for chain, samples in sides]
     results = []
     for (chain, samples), (distance, _), (other, (_, other_best)) in zip(
-        sides, found, ((new, found[1]), (old, found[0])), strict=True
+        sides, farthest, ((new, farthest[1]), (old, farthest[0])), strict=True
     ):
-        start = chain.positions_of(dict(zip(other.names, other_best, strict=True)), samples[0])
+        start = chain.to_positions(dict(zip(other.names, other_best, strict=True)), samples[0])
         results.append(max(distance, chain.farthest(start[np.newaxis])[0]))
     return results[0], results[1]

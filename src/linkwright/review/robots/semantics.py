@@ -10,7 +10,7 @@ from linkwright.lint.targets import find_files_and_packages
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import compare_roots
 from linkwright.review.parts.expanded import find_expanded_elements
-from linkwright.review.robots.cases import fault_of
+from linkwright.review.robots.cases import find_fault
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 
@@ -18,10 +18,13 @@ SUFFIX = ".srdf.xacro"
 _DEFINITIONS = frozenset({"xacro:macro", "xacro:property", "xacro:arg", "xacro:include"})
 
 
-def semantic_files(version: Version) -> set[str]:
-    """Return the paths of the semantic descriptions in xacro that are more than definitions for other files."""
+def find_semantic_files(version: Version) -> set[str]:
+    """Return the paths of the semantic xacro descriptions.
+
+    Files that only contain definitions for other files are left out.
+    """
     files, _ = find_files_and_packages(version.root, (SUFFIX,))
-    paths = (version.relative(file) for file in files if _is_complete(file))
+    paths = (version.relative(file) for file in files if _has_content(file))
     return {path for path in paths if path is not None}
 
 
@@ -32,17 +35,17 @@ def compare_expanded_semantics(pair: FilePair) -> None:
     then compared as written.
     """
     old, new = (
-        _expand(version, path)
+        _try_expand(version, path)
         for version, path in ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
     )
     if isinstance(old, Description) and isinstance(new, Description):
         pair.expanded.update(find_expanded_elements(pair.versions, old, new))
         compare_roots(pair, old.document.root, new.document.root)
     elif isinstance(old, Description) or isinstance(new, Description):
-        pair.add_faults(fault_of(old, pair.versions.old), fault_of(new, pair.versions.new))
+        pair.add_faults(find_fault(old, pair.versions.old), find_fault(new, pair.versions.new))
 
 
-def _is_complete(file: Path) -> bool:
+def _has_content(file: Path) -> bool:
     try:
         root = read_document(str(file)).root
     except (LinkwrightError, OSError):
@@ -50,7 +53,7 @@ def _is_complete(file: Path) -> bool:
     return any(element.tag not in _DEFINITIONS for element in root.elements())
 
 
-def _expand(version: Version, path: str) -> Description | LinkwrightError:
+def _try_expand(version: Version, path: str) -> Description | LinkwrightError:
     file = version.file(path)
     try:
         return examine(file, packages=version.finder(file.parent))

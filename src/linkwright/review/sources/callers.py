@@ -283,7 +283,7 @@ class _Caller:
         """Yield the change that an import fails, unless the file handles the failure."""
         if id(node) in self._guarded_ids:
             return
-        text = phrase("imports '{file}', which does not exist any more", file=self._lost.path)
+        text = phrase("imports '{file}', which no longer exists", file=self._lost.path)
         if name is not None:
             text = phrase("imports '{name}', which '{file}' no longer has", name=name, file=self._lost.path)
         yield self._make_change(text, phrase("the import fails"), node)

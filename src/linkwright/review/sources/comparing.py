@@ -148,7 +148,7 @@ class _SourcePair:
         """Yield a change if no version of Python can parse the new source."""
         names = self.new.get_names(self.file.new_path)
         if names.error_line and names.is_error_certain:
-            text = phrase("cannot be parsed any more")
+            text = phrase("can no longer be parsed")
             reason = phrase("programs that run or import the file fail")
             yield Change(text, Effect.BREAKING, reason, Location(self.file.path, names.error_line, 1))
 
@@ -308,7 +308,7 @@ class _SourcePair:
             yield self._make_change(text, lost[0].span, self.old, self._find_removal_reason(lost, old_names))
         newly_hidden = [item for item in removed if item.name in non_public]
         if newly_hidden:
-            text = phrase("{kind} not public any more: {names}", kind=kind.plural, names=_format_names(newly_hidden))
+            text = phrase("{kind} no longer public: {names}", kind=kind.plural, names=_format_names(newly_hidden))
             yield self._make_change(
                 text, newly_hidden[0].span, self.old, self._find_removal_reason(newly_hidden, old_names)
             )
@@ -449,11 +449,11 @@ class _SourcePair:
         """Yield the names and methods that are still used but no longer defined or imported."""
         for name, span in new_names.undefined_names.items() if self.file.old_path is not None else ():
             if name in old_names.bound_names:
-                text = phrase("'{name}' is used, but nothing defines or imports it any more", name=name)
+                text = phrase("'{name}' is used, but is no longer defined or imported", name=name)
                 yield self._make_change(text, span, self.new, phrase("the code that uses the name fails"))
         for name, span in new_names.undefined_methods.items():
             if name in old_names.attributes:
-                text = phrase("calls its method '{name}', which nothing defines any more", name=name)
+                text = phrase("calls its method '{name}', which is no longer defined", name=name)
                 yield self._make_change(text, span, self.new, phrase("the call fails"))
 
     @staticmethod

@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.packages.readers.python_values import PythonFile
-from linkwright.review.installed_paths import python_packages
+from linkwright.review.installed_paths import find_python_packages
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
@@ -59,7 +59,7 @@ def is_installed_module(version: Version, package: str | None, path: str) -> boo
         return False
     file = PurePosixPath(path)
     folders = [
-        PurePosixPath(package) / part / name for name in python_packages(version, package) for part in ("", "src")
+        PurePosixPath(package) / part / name for name in find_python_packages(version, package) for part in ("", "src")
     ]
     return any(file.is_relative_to(folder) for folder in folders)
 
@@ -78,7 +78,7 @@ def find_failing_imports(version: Version, package: str, path: str, names: Sourc
     if Manifest(read_document(str(version.file(f"{package}/{MANIFEST}".lstrip("/"))))).is_ros1:
         return
     folder = version.file(path).parent
-    installed = {name.partition("/")[0] for name in python_packages(version, package)}
+    installed = {name.partition("/")[0] for name in find_python_packages(version, package)}
     for index, (name, _) in enumerate(names.absolute_imports):
         is_sibling = (folder / f"{name}.py").is_file() or (folder / name / PACKAGE_FILE).is_file()
         if is_sibling and name not in installed | sys.stdlib_module_names | {folder.name}:

@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.files.cmake_files import CMAKE_FILE
-from linkwright.review.installed_paths import package_facts, python_packages
+from linkwright.review.installed_paths import find_python_packages, read_package_facts
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
     HEADER_SUFFIXES,
@@ -98,18 +98,18 @@ class UnchangedSources:
     @cached_property
     def _python_folders(self) -> list[PurePosixPath] | None:
         """The Python files and folders that the package installs, or None if they are unknown."""
-        facts = package_facts(self._version, self._package)
+        facts = read_package_facts(self._version, self._package)
         has_cmake = self._version.file(f"{self._package}/{CMAKE_FILE}".lstrip("/")).is_file()
         if has_cmake or facts is None or not facts.is_complete:
             return None
-        names = python_packages(self._version, self._package)
+        names = find_python_packages(self._version, self._package)
         paths = [f"{part}{name}" for name in names for part in ("", "src/")]
         return [PurePosixPath(self._package) / path for path in (*paths, *facts.files.values())]
 
     @cached_property
     def _built_sources(self) -> frozenset[str] | None:
         """The C++ sources that the package builds, or None if they are unknown."""
-        facts = package_facts(self._version, self._package)
+        facts = read_package_facts(self._version, self._package)
         text = self._version.text(f"{self._package}/{CMAKE_FILE}".lstrip("/"))
         if facts is None or not facts.targets or _SOURCE_SEARCH.search(text):
             return None

@@ -96,7 +96,7 @@ def read_classes(path: Path) -> ClassRules:
 
 def _invalid_classes_error(document: YamlDocument, node: yaml.Node | None) -> LinkwrightError:
     hint = phrase("write for example `ball: [football, '*_ball']`, with each name only once")
-    return document.error(phrase("a file of classes must map names of classes to patterns of model names"), node, hint)
+    return document.error(phrase("a class file must map class names to patterns of model names"), node, hint)
 
 
 def derive_class(name: str) -> str:

@@ -9,7 +9,7 @@ from linkwright.descriptions.comparison import ROS2_CONTROL
 from linkwright.descriptions.pairs import Model
 from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined, joined_first, phrase
 from linkwright.review.breaking import MOVING_TYPES
-from linkwright.review.plugins import plugin_name, plugins_of
+from linkwright.review.plugins import find_plugin_name, find_plugins
 from linkwright.review.versions import Version
 from linkwright.urdf import Robot
 
@@ -17,8 +17,11 @@ _MAX_NAMES = 40
 """The maximum number of links, joints or plugins in the line about a robot."""
 
 
-def read_lone_robot(version: Version, path: str) -> tuple[Model, Robot] | None:
-    """Return the model and robot of a description with the values of its first caller, or None if unreadable."""
+def read_unpaired_robot(version: Version, path: str) -> tuple[Model, Robot] | None:
+    """Return the model and robot of a description, or None if it is unreadable.
+
+    The arguments have the values of the first caller.
+    """
     sets: Sequence[ArgumentSet] = version.checker().argument_sets(version.file(path), ())
     for arguments in (*sets[:1], ArgumentSet({})):
         model = version.model(path, arguments.values)
@@ -31,15 +34,15 @@ def read_lone_robot(version: Version, path: str) -> tuple[Model, Robot] | None:
     return None
 
 
-def robot_text(robot: Robot) -> Phrase:
+def format_robot(robot: Robot) -> Phrase:
     """Return the parts of a robot in one line."""
-    return phrase("robot '{name}': {parts}", name=robot.name, parts=joined(_part_counts(robot)))
+    return phrase("robot '{name}': {parts}", name=robot.name, parts=joined(_count_parts(robot)))
 
 
-def _part_counts(robot: Robot) -> Iterator[Phrase]:
+def _count_parts(robot: Robot) -> Iterator[Phrase]:
     moving = [joint.name for joint in robot.joints.values() if joint.type in MOVING_TYPES]
     hardware = [element for element in robot.extensions if element.tag == ROS2_CONTROL]
-    plugins = [plugin_name(plugin) for element in robot.extensions for plugin in plugins_of(element)]
+    plugins = [find_plugin_name(plugin) for element in robot.extensions for plugin in find_plugins(element)]
     yield counted(
         "{count} link ({names})",
         "{count} links ({names})",
