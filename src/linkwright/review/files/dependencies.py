@@ -43,7 +43,8 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
     names = PackageNames(find_renamed_packages(pair.versions))
     new_elements = _group_elements(new)
     old_elements = {
-        _Dependency(tag, names.translate_package(name)): elements for (tag, name), elements in _group_elements(old).items()
+        _Dependency(tag, names.translate_package(name)): elements
+        for (tag, name), elements in _group_elements(old).items()
     }
     changes: dict[_DependencyChange, list[_Dependency]] = {}
     for package in dict.fromkeys(key.package for key in (*new_elements, *old_elements)):
