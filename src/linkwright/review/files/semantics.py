@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +23,9 @@ _JOINT = "joint "
 _JOINT_TAG = re.compile(r"<joint\s[^<>]*>")
 _FIXED = re.compile(r"\stype\s*=\s*[\"']fixed[\"']")
 _NAME = re.compile(r"\sname\s*=\s*[\"']([^\"']*)[\"']")
+_VIRTUAL = "virtual_joint"
+_PARENT = "parent_frame"
+"""The attribute of a virtual joint with the frame in which MoveIt plans."""
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
 
 
@@ -67,9 +70,8 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
             pair.add(text, location, removal_reason(entry.tag, entry.name))
         elif key not in new:
             location = pair.location(entry.element.span(), is_old=True)
-            pair.add(
-                phrase("{entry} removed", entry=_entry_title(entry)), location, removal_reason(entry.tag, entry.name)
-            )
+            reason = removal_reason(entry.tag, entry.name) or _planning_frame_reason(entry, new.values())
+            pair.add(phrase("{entry} removed", entry=_entry_title(entry)), location, reason)
     for tag in _PAIRS:
         _compare_pairs(pair, tag, *(_elements_by_pair(root, tag) for root in (old_root, new_root)))
 
@@ -161,7 +163,20 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive: Collecti
             changes.append(f"{name} {before} -> {after}")
     if changes:
         text = phrase("{entry}: {changes}", entry=_entry_title(new), changes=joined_first(changes, MAX_NAMES))
-        pair.add(text, pair.location(new.element.span()), _lost_joints_reason(pair.versions.old, old, new, passive))
+        reason = _lost_joints_reason(pair.versions.old, old, new, passive) or _planning_frame_reason(old, [new])
+        pair.add(text, pair.location(new.element.span()), reason)
+
+
+def _planning_frame_reason(old: _Entry, new: Iterable[_Entry]) -> Phrase | None:
+    """Return the reason why a lost parent frame of a virtual joint is breaking, or None if it is not lost.
+
+    The model frame of MoveIt is the parent frame of the virtual joint, or the root link without such a joint.
+    """
+    frame = old.values.get(_PARENT, "")
+    frames = {entry.values.get(_PARENT) for entry in new if entry.tag == _VIRTUAL}
+    if old.tag != _VIRTUAL or not frame or frame in frames or any("$" in other for other in (frame, *frames) if other):
+        return None
+    return phrase("MoveIt does not plan in the frame '{name}' any more", name=frame)
 
 
 def _lost_joints_reason(version: Version, old: _Entry, new: _Entry, passive: Collection[str]) -> Phrase | None:
