@@ -342,7 +342,8 @@ def _served_reason(entry: Entry, names: list[str], new: LaunchOutline) -> Phrase
     others = [other for other in new.entries if other.name.startswith(TRANSFORM_PUBLISHERS) == is_transform]
     served = {name for other in others for name in _served_names(other, new)}
     names = [name for name in names if name not in served]
-    if not names:
+    same = [other for other in others if other.name == entry.name]
+    if not names or any(_EXPRESSION in name for other in same for name in _served_names(other, new)):
         return None
     if is_transform:
         return phrase("the transform of the frame '{name}' is missing", name=names[0])

@@ -176,11 +176,17 @@ class _Reader:
         self, target: ast.expr, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope
     ) -> None:
         """Find the actions of a loop; of each pass if the list is written in the file."""
+        chosen = self.texts.value(iterable)
+        if isinstance(chosen.node, ast.IfExp) and chosen.texts is self.texts:
+            self._visit_chosen_loops(target, chosen.node, body, scope)
+            return
         items = self.texts.items(self._mark_literals(iterable))
         passes = [self.texts.with_item(target, item) for item in items or ()]
         if items is None or None in passes or not self.helpers.take_passes(len(items)):
+            texts, self.texts = self.texts, self.texts.with_unknown_item(target)
             for statement in body:
                 self.visit(statement, scope)
+            self.texts = texts
             return
         self.evaluated.append(iterable)
         texts, loops = self.texts, self._loops
@@ -193,10 +199,24 @@ class _Reader:
         self.texts, self._loops = texts, loops
         self._outside.pop()
 
+    def _visit_chosen_loops(
+        self, target: ast.expr, choice: ast.IfExp, body: Sequence[ast.stmt | ast.expr], scope: Scope
+    ) -> None:
+        """Find the actions of a loop over one of two lists, with the condition that chooses the list."""
+        loops = self._loops
+        if_true, if_false = _conditions_of(choice.test)
+        for number, (condition, opposite, iterable) in enumerate(
+            ((if_true, if_false, choice.body), (if_false, if_true, choice.orelse))
+        ):
+            if opposite not in scope.conditions:
+                self._loops = (*loops, number)
+                self._visit_loop(target, iterable, body, scope.inside(condition))
+        self._loops = loops
+        self.covered.add(id(choice))
+
     def _visit_branches(self, node: ast.If, scope: Scope) -> None:
         """Find the actions of both branches, with the condition of the statement."""
-        source = " ".join(ast.unparse(node.test).split())
-        conditions = [f"{word} `{source}`" for word in ("if", "unless")]
+        conditions = _conditions_of(node.test)
         for condition, body in zip(conditions, (node.body, node.orelse), strict=True):
             inner = scope.inside(condition)
             for statement in body:
@@ -479,6 +499,12 @@ def _unknown_parts(name: str, value: BoundExpression, parts: Sequence[BoundExpre
     texts = [part.texts.text(part.node) for part in parts]
     is_list = len(parts) > 1 or isinstance(value.texts.value(value.node).node, (ast.List, ast.Tuple))
     return {name: f"[{', '.join(texts)}]" if is_list else texts[0]}
+
+
+def _conditions_of(test: ast.expr) -> tuple[str, str]:
+    """Return the conditions of both branches of a test."""
+    source = " ".join(ast.unparse(test).split())
+    return f"if `{source}`", f"unless `{source}`"
 
 
 def _unused_values(tree: ast.AST) -> frozenset[int]:
