@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 
 LAUNCH = """from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
@@ -56,3 +57,43 @@ def test_no_controller_is_lost_and_none_has_the_name_of_a_variable_if_a_list_is_
     changes, found_breaking = review_changes("arm.launch.py", LAUNCH, "for item in BOTH", "for item in load(kind)")
     assert any("'$(eval item)'" in change for change in changes)
     assert found_breaking == []
+
+
+@pytest.mark.parametrize(
+    ("new", "failures"),
+    [
+        (CHECK.replace('"one")', '"one", "none")').replace("no such", "unknown"), []),
+        (CHECK.replace('("both", "one")', "TABLE").replace("no such", "unknown"), []),
+        ("    if kind:\n" + NESTED.replace("no such", "unknown"), []),
+        (CHECK.replace(', "one"', "").replace("no such", "unknown"),
+         ["added: raise RuntimeError('unknown kind')"]),
+        (CHECK + "    if context:\n        if kind:\n            exit()\n", ["added: exit()"]),
+    ],
+)  # fmt: skip
+def test_only_a_failure_under_other_conditions_is_new(review_changes, new, failures):
+    _, found_breaking = review_changes("arm.launch.py", LAUNCH, CHECK, new)
+    assert found_breaking == failures
+
+
+@pytest.mark.parametrize(("default", "count"), [(', default_value=""', 0), ("", 1)])
+def test_a_new_argument_with_a_default_does_not_fail(repository, compare, default, count):
+    check = "    arms = LaunchConfiguration('arms').perform(context)\n    if arms not in TABLE:\n        exit(arms)\n"
+    argument = f'        DeclareLaunchArgument("arms"{default}),\n{ARGUMENT}'
+    repository.commit({"arm/launch/arm.launch.py": LAUNCH})
+    repository.write({"arm/launch/arm.launch.py": LAUNCH.replace(CHECK, CHECK + check).replace(ARGUMENT, argument)})
+    changes = [change for _, change in compare(repository).breaking_changes]
+    assert sum("exit" in str(change.sentence) for change in changes) == count
+
+
+def test_the_condition_of_a_failure_has_the_conditions_around_it(repository, compare):
+    check = "    if context or nodes:\n        if kind in BOTH:\n            exit(1)\n"
+    repository.commit({"arm/launch/arm.launch.py": LAUNCH})
+    repository.write({"arm/launch/arm.launch.py": LAUNCH.replace(CHECK, CHECK + check)})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == "the launch file fails if `(context or nodes) and kind in BOTH`"
+
+
+def test_a_launch_file_that_lost_an_import_fails(review_changes):
+    line = "from launch.substitutions import LaunchConfiguration\n"
+    expected = "'LaunchConfiguration' is used, but nothing defines or imports it any more"
+    assert review_changes("arm.launch.py", LAUNCH, line, "") == ([expected], [expected])

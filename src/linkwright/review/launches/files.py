@@ -24,6 +24,8 @@ from linkwright.review.launches.titles import added_entry_text, join_titles, rem
 from linkwright.review.launches.transforms import other_publisher
 from linkwright.review.launches.unused_arguments import report_unused_arguments
 from linkwright.review.list_changes import differing_excerpts, shorten
+from linkwright.review.sources.names import PYTHON_SUFFIX
+from linkwright.review.sources.reading import read_source_names
 
 _MAX_SOURCE = 120
 """The maximum number of characters of a statement that are shown."""
@@ -89,6 +91,18 @@ def compare_launch_files(pair: FilePair) -> None:
         _report_lone_entries(pair, removed, added, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
+        _report_undefined_names(pair)
+
+
+def _report_undefined_names(pair: FilePair) -> None:
+    """Report the names that a Python launch file still uses but no longer defines or imports."""
+    if pair.new_file.suffix != PYTHON_SUFFIX:
+        return
+    bound = read_source_names(pair.old_file).bound
+    for name, span in read_source_names(pair.new_file).undefined.items():
+        if name in bound:
+            text = phrase("'{name}' is used, but nothing defines or imports it any more", name=name)
+            pair.add(text, pair.location(span), phrase("the code that uses the name fails"))
 
 
 def _report_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outlines: tuple[LaunchOutline, ...]) -> None:
@@ -192,7 +206,7 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
         old_sources, new_sources = ({part.source for part in outline.definitions} for outline in (old, new))
         removed += [part for part in old.definitions if part.source not in new_sources]
         added += [part for part in new.definitions if part.source not in old_sources]
-    added = _report_failures(pair, removed, added)
+    added = _report_failures(pair, added, old, new)
     if not removed and not added:
         return
     location = pair.location(added[0].span) if added else None
@@ -206,17 +220,30 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
         pair.add(_code_text(removed, added), location)
 
 
-def _report_failures(pair: FilePair, removed: Sequence[CodePart], added: Sequence[CodePart]) -> list[CodePart]:
-    """Report new conditions under which the launch fails, and return the other new statements."""
-    known = {part.failing_condition for part in removed}
+def _report_failures(
+    pair: FilePair, added: Sequence[CodePart], old: LaunchOutline, new: LaunchOutline
+) -> list[CodePart]:
+    """Report new conditions under which the launch fails, and return the other new statements.
+
+    A condition is not new if the old file failed under it, too. The default of a new argument is taken as valid.
+    """
+    known = [part.failing_tests for part in old.code if part.failing_tests]
+    old_names = {entry.name for entry in old.entries if entry.kind == "argument"}
+    optional = {
+        entry.name for entry in new.entries if entry.kind == "argument" and {"default", "value"} & entry.settings.keys()
+    }
     others = list(added)
     for part in added:
-        condition = part.failing_condition
-        if condition and condition not in known:
+        tests = part.failing_tests
+        is_known = any(all(any(test.implies(other) for test in tests) for other in failure) for failure in known)
+        is_optional = any(test.arguments & (optional - old_names) for test in tests)
+        if tests and not is_known and not is_optional:
+            condition = " and ".join(f"({test.text})" if " or " in test.text else test.text for test in tests)
             reason = phrase("the launch file fails if `{condition}`", condition=condition)
             text = phrase("added: {code}", code=shorten(part.source, _MAX_SOURCE))
             pair.add(text, pair.location(part.span), reason)
-            others = [other for other in others if other is not part and other.source != f"if {condition}: ..."]
+            headers = {f"if {test.text}: ..." for test in tests}
+            others = [other for other in others if other is not part and other.source not in headers]
     return others
 
 
