@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
@@ -309,12 +309,14 @@ class _Pair:
             text = phrase(
                 "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_name_text(item), new=other.name
             )
-            yield self._change(text, other.span, self.new, None)
+            reason = self._default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
+            yield self._change(text, other.span, self.new, reason)
         for item, other in _take_pairs(added, removed_expressions):
             text = phrase(
                 "{kind} {name} had a computed name: {old}", kind=kind.title, name=_name_text(item), old=other.name
             )
-            yield self._change(text, item.span, self.new, None)
+            reason = self._default_reason(other, old_names.defaults.get(other.name, ""), item.name, old_names)
+            yield self._change(text, item.span, self.new, reason)
         added_expressions = [item for item in added_expressions if self.new.count(item) > self.old.count(item)]
         removed_expressions = [item for item in removed_expressions if self.old.count(item) > self.new.count(item)]
         if added_expressions:
@@ -329,6 +331,11 @@ class _Pair:
             )
             yield self._change(text, removed_expressions[0].span, self.old, None)
             added.clear()
+
+    def _default_reason(self, item: SourceName, old: str, new: str, names: SourceNames) -> Phrase | None:
+        """Return the reason why another name by default is breaking, or None if it is unknown or equal."""
+        is_same = not old or not new or old.lstrip("/") == new.lstrip("/")
+        return None if is_same else self._removal_reason([replace(item, name=old)], names)
 
     def _expression_types(self, old: Sequence[SourceName], new: Sequence[SourceName]) -> Iterator[Change]:
         """Yield the names with the same expression but another type, if only one name has the expression."""
