@@ -97,3 +97,25 @@ def test_a_launch_file_that_lost_an_import_fails(review_changes):
     line = "from launch.substitutions import LaunchConfiguration\n"
     expected = "'LaunchConfiguration' is used, but nothing defines or imports it any more"
     assert review_changes("arm.launch.py", LAUNCH, line, "") == ([expected], [expected])
+
+
+SPAWNER = """def spawner(name, inactive=True):
+    arguments = [name, "--controller-manager", "/cm"]
+    if inactive:
+        arguments.append("--inactive")
+    else:
+        arguments.append("--activate")
+    if name_of_robot():
+        arguments.extend(["--namespace", "arm"])
+    arguments.extend(["--timeout", "5"])
+    return Node(package="controller_manager", executable="spawner", arguments=arguments)
+"""
+
+
+@pytest.mark.parametrize(("call", "word"), [("item", "--inactive"), ("item, inactive=False", "--activate")])
+def test_arguments_that_a_function_adds_to_a_list_are_told(review_changes, call, word):
+    start, end = LAUNCH.index("def spawner"), LAUNCH.index("\n\ndef setup")
+    text = LAUNCH.replace(LAUNCH[start:end], SPAWNER).replace("spawner(item)", f"spawner({call})")
+    changes, _ = review_changes("arm.launch.py", text, 'BOTH = ["left", "right"', 'BOTH = ["left", "right", "top"')
+    words = f"[top, --controller-manager, /cm, {word}, --timeout, 5]"
+    assert f"node 'controller_manager/spawner' of 'top' added: if `kind == 'both'`, arguments {words}" in changes

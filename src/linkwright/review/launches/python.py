@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.helpers import Function, HelperFunctions
+from linkwright.review.launches.list_additions import added_items
 from linkwright.review.launches.literals import CoveredLiterals, Literals
 from linkwright.review.launches.outlines import (
     CONDITION,
@@ -450,7 +451,10 @@ class _Reader:
         arguments = others.get("arguments")
         if arguments is not None and isinstance(arguments.texts.value(arguments.node).node, (ast.List, ast.Tuple)):
             words = arguments.texts.list_parts(arguments.node)
-            parts["arguments"] = f"[{', '.join(word.texts.joined_text(word.node) for word in words)}]"
+            texts = [word.texts.joined_text(word.node) for word in words]
+            if isinstance(arguments.node, ast.Name) and arguments.texts is self.texts:
+                texts += added_items(self.python, arguments.node, self.texts)
+            parts["arguments"] = f"[{', '.join(texts)}]"
             del others["arguments"]
         if "remappings" in others:
             parts |= _split_remappings(others.pop("remappings"))
