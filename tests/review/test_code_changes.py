@@ -248,3 +248,10 @@ def test_code_of_python_2_that_prints_a_list_is_read(review_lines):
     assert review_lines("arm/scripts/plan.py", text, text.replace("go(run.line)", "go()")) == [
         "code changed in 'plan()'"
     ]
+
+
+def test_overloads_that_change_places_are_no_change(repository, compare):
+    overloads = ["int f(int a)\n{\n  return a;\n}\n", "int f(double a)\n{\n  g(a);\n  return 1;\n}\n"]
+    repository.commit({**MANIFEST, "arm/src/f.cpp": "".join(overloads)})
+    repository.write({"arm/src/f.cpp": "".join(reversed(overloads))})
+    assert [sentence for found in compare(repository).subjects for sentence in sentences(found)] == []

@@ -213,3 +213,32 @@ def test_another_value_in_a_pattern_is_no_other_name(repository, compare, value)
     repository.commit({"arm/a.py": PATTERN})
     repository.write({"arm/a.py": PATTERN.replace("{name}", f"{{{value}}}")})
     assert breaking(compare(repository)) == []
+
+
+DEFAULT_TOPIC = """from rclpy.node import Node
+class Mapper(Node):
+    def __init__(self):
+        super().__init__("mapper")
+        self.declare_parameter("topic", "/lidar/cones")
+        self.topic = self.get_parameter("topic").value
+        self.create_subscription(Bool, self.topic, self.map, 10)
+        self.create_subscription(String, "mode", self.set, 10)
+"""
+
+
+@pytest.mark.parametrize(
+    ("topic", "is_breaking"), [('"slam/map"', True), ('"lidar/cones"', False), ("topic_of(self)", False)]
+)
+def test_a_topic_that_was_the_default_of_a_parameter_is_lost(repository, compare, topic, is_breaking):
+    repository.commit({"arm/mapper.py": DEFAULT_TOPIC})
+    repository.write({"arm/mapper.py": DEFAULT_TOPIC.replace("Bool, self.topic", f"Bool, {topic}")})
+    reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
+    assert reasons == (["programs that use the name '/lidar/cones' do not find it"] if is_breaking else [])
+
+
+def test_a_topic_whose_parameter_has_another_default_is_lost(repository, compare):
+    computed = DEFAULT_TOPIC.replace("/lidar/cones", "/lidar/map")
+    literal = computed.replace("Bool, self.topic", "Bool, '/lidar/cones'")
+    repository.commit({"arm/mapper.py": literal})
+    repository.write({"arm/mapper.py": computed})
+    assert breaking(compare(repository)) == ["subscription '/lidar/cones' (Bool) has a computed name now: self.topic"]

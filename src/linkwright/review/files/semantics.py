@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +23,9 @@ _JOINT_PREFIX = "joint "
 _JOINT_TAG = re.compile(r"<joint\s[^<>]*>")
 _FIXED = re.compile(r"\stype\s*=\s*[\"']fixed[\"']")
 _NAME = re.compile(r"\sname\s*=\s*[\"']([^\"']*)[\"']")
+_VIRTUAL_JOINT = "virtual_joint"
+_PARENT_FRAME = "parent_frame"
+"""The attribute of a virtual joint with the frame in which MoveIt plans."""
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
 
 
@@ -67,11 +70,8 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
             pair.add(text, location, find_removal_reason(entry.tag, entry.name))
         elif key not in new:
             location = pair.location(entry.element.span(), is_old=True)
-            pair.add(
-                phrase("{entry} removed", entry=_format_title(entry)),
-                location,
-                find_removal_reason(entry.tag, entry.name),
-            )
+            reason = find_removal_reason(entry.tag, entry.name) or _find_planning_frame_reason(entry, new.values())
+            pair.add(phrase("{entry} removed", entry=_format_title(entry)), location, reason)
     for tag in _PAIR_TAGS:
         _compare_pairs(pair, tag, *(_group_by_pair(root, tag) for root in (old_root, new_root)))
 
@@ -163,11 +163,21 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive_joints: C
             changes.append(f"{name} {before} -> {after}")
     if changes:
         text = phrase("{entry}: {changes}", entry=_format_title(new), changes=joined_first(changes, MAX_NAMES))
-        pair.add(
-            text,
-            pair.location(new.element.span()),
-            _find_lost_joints_reason(pair.versions.old, old, new, passive_joints),
-        )
+        reason = _find_lost_joints_reason(pair.versions.old, old, new, passive_joints)
+        pair.add(text, pair.location(new.element.span()), reason or _find_planning_frame_reason(old, [new]))
+
+
+def _find_planning_frame_reason(old: _Entry, new: Iterable[_Entry]) -> Phrase | None:
+    """Return the reason why a lost parent frame of a virtual joint is breaking; None if it is not lost.
+
+    The model frame of MoveIt is the parent frame of the virtual joint, or the root link without such a joint.
+    """
+    frame = old.values.get(_PARENT_FRAME, "")
+    frames = {entry.values.get(_PARENT_FRAME) for entry in new if entry.tag == _VIRTUAL_JOINT}
+    is_lost = old.tag == _VIRTUAL_JOINT and bool(frame) and frame not in frames
+    if not is_lost or any("$" in other for other in (frame, *frames) if other):
+        return None
+    return phrase("MoveIt no longer plans in the frame '{name}'", name=frame)
 
 
 def _find_lost_joints_reason(

@@ -406,7 +406,8 @@ def _find_served_name_reason(entry: Entry, names: list[str], new: LaunchOutline)
     others = [other for other in new.entries if other.name.startswith(TRANSFORM_PUBLISHERS) == is_transform]
     served = {name for other in others for name in _find_resolved_served_names(other, new)}
     names = [name for name in names if name not in served]
-    if not names:
+    same = [other for other in others if other.name == entry.name]
+    if not names or any(_EXPRESSION in name for other in same for name in _find_resolved_served_names(other, new)):
         return None
     if is_transform:
         return phrase("the transform of the frame '{name}' is missing", name=names[0])

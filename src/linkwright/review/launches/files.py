@@ -24,6 +24,8 @@ from linkwright.review.launches.titles import format_added_entry, format_removed
 from linkwright.review.launches.transforms import find_other_publisher
 from linkwright.review.launches.unused_arguments import report_unused_arguments
 from linkwright.review.list_changes import differing_excerpts, shorten
+from linkwright.review.sources.names import PYTHON_SUFFIX
+from linkwright.review.sources.reading import read_source_names
 
 _MAX_STATEMENT_CHARACTERS = 120
 """The maximum number of characters of a statement that are shown."""
@@ -82,6 +84,18 @@ def compare_launch_files(pair: FilePair) -> None:
         _report_unpaired_entries(pair, removed, added, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
+        _report_undefined_names(pair)
+
+
+def _report_undefined_names(pair: FilePair) -> None:
+    """Report the names that a Python launch file still uses but no longer defines or imports."""
+    if pair.new_file.suffix != PYTHON_SUFFIX:
+        return
+    old_names = read_source_names(pair.old_file).bound_names
+    for name, span in read_source_names(pair.new_file).undefined_names.items():
+        if name in old_names:
+            text = phrase("'{name}' is used, but is no longer defined or imported", name=name)
+            pair.add(text, pair.location(span), phrase("the code that uses the name fails"))
 
 
 def _report_undeclared(pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry]) -> None:
@@ -223,7 +237,7 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
         old_sources, new_sources = ({part.source for part in outline.definitions} for outline in (old, new))
         removed += [part for part in old.definitions if part.source not in new_sources]
         added += [part for part in new.definitions if part.source not in old_sources]
-    added = _report_failures(pair, removed, added)
+    added = _report_failures(pair, added, old, new)
     if not removed and not added:
         return
     location = pair.location(added[0].span) if added else None
@@ -241,18 +255,31 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
         pair.add(_format_code_change(removed, added), location)
 
 
-def _report_failures(pair: FilePair, removed: Sequence[CodePart], added: Sequence[CodePart]) -> list[CodePart]:
-    """Report new conditions under which the launch fails, and return the other new statements."""
-    old_conditions = {part.failing_condition for part in removed}
+def _report_failures(
+    pair: FilePair, added: Sequence[CodePart], old: LaunchOutline, new: LaunchOutline
+) -> list[CodePart]:
+    """Report new conditions under which the launch fails, and return the other new statements.
+
+    A condition is not new if the old file failed under it, too. The default of a new argument is taken as valid.
+    """
+    old_failures = [part.failing_tests for part in old.code if part.failing_tests]
+    old_names = {entry.name for entry in old.entries if entry.kind == "argument"}
+    optional = {
+        entry.name for entry in new.entries if entry.kind == "argument" and {"default", "value"} & entry.settings.keys()
+    }
     other_statements = list(added)
     for part in added:
-        condition = part.failing_condition
-        if condition and condition not in old_conditions:
+        tests = part.failing_tests
+        is_known = any(all(any(test.implies(other) for test in tests) for other in failure) for failure in old_failures)
+        is_optional = any(test.arguments & (optional - old_names) for test in tests)
+        if tests and not is_known and not is_optional:
+            condition = " and ".join(f"({test.text})" if " or " in test.text else test.text for test in tests)
             reason = phrase("the launch file fails if `{condition}`", condition=condition)
             text = phrase("added: {code}", code=shorten(part.source, _MAX_STATEMENT_CHARACTERS))
             pair.add(text, pair.location(part.span), reason)
+            headers = {f"if {test.text}: ..." for test in tests}
             other_statements = [
-                other for other in other_statements if other is not part and other.source != f"if {condition}: ..."
+                other for other in other_statements if other is not part and other.source not in headers
             ]
     return other_statements
 

@@ -7,6 +7,7 @@ from collections.abc import Collection
 from copy import copy
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.launches.failing_tests import find_failing_tests
 from linkwright.review.launches.outlines import CodePart
 from linkwright.review.launches.text import shorten_text
 
@@ -18,8 +19,6 @@ _LIST_METHODS = ("append", "extend")
 """The methods that add actions to lists."""
 _ACTION_ARGUMENTS = ("actions", "composable_node_descriptions", None)
 """The arguments of these calls that contain actions."""
-_EXIT_FUNCTIONS = ("sys.exit", "exit", "quit", "os._exit")
-"""The calls that end the process."""
 _BODY_FIELDS = ("body", "orelse", "finalbody", "handlers", "cases")
 """The fields of statements that contain nested statements."""
 _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
@@ -46,13 +45,13 @@ def read_other_code(python: PythonFile, covered: Collection[int], branches: Coll
         branches: the identities of the ``if`` statements whose conditions actions have.
     """
     normalizer = _CodeNormalizer(python, covered, branches)
-    conditions = _find_failing_conditions(python.tree)
+    tests = find_failing_tests(python)
     parts = (
         CodePart(
             normalizer.format_statement(node),
             _unparse(_copy_header(node)),
             python.span(node),
-            conditions.get(id(node), ""),
+            tests.get(id(node), ()),
         )
         for node in sorted(_find_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
     )
@@ -61,25 +60,6 @@ def read_other_code(python: PythonFile, covered: Collection[int], branches: Coll
 
 def _unparse(node: ast.AST) -> str:
     return " ".join(ast.unparse(node).split())
-
-
-def _find_failing_conditions(tree: ast.AST) -> dict[int, str]:
-    """Return the conditions under which the launch ends, by the identity of the statement."""
-    return {
-        id(statement): _unparse(branch.test)
-        for branch in ast.walk(tree)
-        if isinstance(branch, ast.If)
-        for statement in branch.body
-        if _ends_launch(statement)
-    }
-
-
-def _ends_launch(statement: ast.stmt) -> bool:
-    """Return whether a statement raises an exception or ends the process."""
-    if isinstance(statement, ast.Raise):
-        return True
-    value = statement.value if isinstance(statement, ast.Expr) else None
-    return isinstance(value, ast.Call) and called_name(value) in _EXIT_FUNCTIONS
 
 
 def _find_statements(tree: ast.AST) -> list[ast.stmt]:

@@ -89,6 +89,28 @@ def extract_condition(setting: str) -> str:
 
 
 @dataclass(frozen=True)
+class FailingTest:
+    """A test of an ``if`` statement under which a launch file fails.
+
+    Attributes:
+        text: the test as it is written.
+        subject: the expression that must have one of a few values; empty for other tests.
+        accepted: these values.
+        arguments: the arguments of the launch file whose values are tested.
+    """
+
+    text: str
+    subject: str = ""
+    accepted: frozenset[str] = frozenset()
+    arguments: frozenset[str] = frozenset()
+
+    def implies(self, other: FailingTest) -> bool:
+        """Return whether the other test holds, too, when this one holds."""
+        is_narrower = bool(self.subject) and self.subject == other.subject and other.accepted <= self.accepted
+        return is_narrower or self.text == other.text
+
+
+@dataclass(frozen=True)
 class CodePart:
     """A statement or element of a launch file that makes no action.
 
@@ -96,14 +118,14 @@ class CodePart:
         text: a comparable form without names of variables, comments and layout.
         source: the statement as it is written.
         span: the location of the action.
-        failing_condition: the condition under which the statement ends the launch with an error; empty for other
-            statements.
+        failing_tests: the tests of the ``if`` statements around a statement that ends the launch with an error, the
+            outermost first; empty for other statements.
     """
 
     text: str
     source: str
     span: Span
-    failing_condition: str = ""
+    failing_tests: tuple[FailingTest, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.helpers import Function, HelperFunctions
+from linkwright.review.launches.list_additions import find_added_items
 from linkwright.review.launches.literals import CoveredLiterals, Literals
 from linkwright.review.launches.other_code import find_definitions, read_other_code
 from linkwright.review.launches.outlines import (
@@ -182,11 +183,17 @@ class _Reader:
         self, target: ast.expr, iterable: ast.expr, body: Sequence[ast.stmt | ast.expr], scope: Scope
     ) -> None:
         """Find the actions of a loop, for each pass if the file contains the list literally."""
+        chosen = self.texts.resolve(iterable)
+        if isinstance(chosen.node, ast.IfExp) and chosen.texts is self.texts:
+            self._visit_chosen_loops(target, chosen.node, body, scope)
+            return
         items = self.texts.find_items(self._mark_literals(iterable))
         passes = [self.texts.with_item(target, item) for item in items or ()]
         if items is None or None in passes or not self.helpers.reserve_passes(len(items)):
+            texts, self.texts = self.texts, self.texts.with_unknown_item(target)
             for statement in body:
                 self.visit(statement, scope)
+            self.texts = texts
             return
         self.evaluated.append(iterable)
         texts, loops = self.texts, self._passes
@@ -199,10 +206,24 @@ class _Reader:
         self.texts, self._passes = texts, loops
         self._open_loops.pop()
 
+    def _visit_chosen_loops(
+        self, target: ast.expr, choice: ast.IfExp, body: Sequence[ast.stmt | ast.expr], scope: Scope
+    ) -> None:
+        """Find the actions of a loop over one of two lists, with the condition that chooses the list."""
+        loops = self._passes
+        if_true, if_false = _format_conditions(choice.test)
+        for number, (condition, opposite, iterable) in enumerate(
+            ((if_true, if_false, choice.body), (if_false, if_true, choice.orelse))
+        ):
+            if opposite not in scope.conditions:
+                self._passes = (*loops, number)
+                self._visit_loop(target, iterable, body, scope.with_condition(condition))
+        self._passes = loops
+        self.covered.add(id(choice))
+
     def _visit_branches(self, node: ast.If, scope: Scope) -> None:
         """Find the actions of both branches, with the condition of the statement."""
-        source = " ".join(ast.unparse(node.test).split())
-        conditions = [f"{word} `{source}`" for word in ("if", "unless")]
+        conditions = _format_conditions(node.test)
         for condition, body in zip(conditions, (node.body, node.orelse), strict=True):
             inner = scope.with_condition(condition)
             for statement in body:
@@ -444,7 +465,10 @@ class _Reader:
         arguments = others.get("arguments")
         if arguments is not None and isinstance(arguments.texts.resolve(arguments.node).node, (ast.List, ast.Tuple)):
             words = arguments.texts.find_list_parts(arguments.node)
-            parts["arguments"] = f"[{', '.join(word.texts.format_joined(word.node) for word in words)}]"
+            texts = [word.texts.format_joined(word.node) for word in words]
+            if isinstance(arguments.node, ast.Name) and arguments.texts is self.texts:
+                texts += find_added_items(self.python, arguments.node, self.texts)
+            parts["arguments"] = f"[{', '.join(texts)}]"
             del others["arguments"]
         if "remappings" in others:
             parts |= _split_remappings(others.pop("remappings"))
@@ -493,6 +517,12 @@ def _format_unknown_parts(name: str, value: BoundExpression, parts: Sequence[Bou
     texts = [part.texts.text(part.node) for part in parts]
     is_list = len(parts) > 1 or isinstance(value.texts.resolve(value.node).node, (ast.List, ast.Tuple))
     return {name: f"[{', '.join(texts)}]" if is_list else texts[0]}
+
+
+def _format_conditions(test: ast.expr) -> tuple[str, str]:
+    """Return the conditions of both branches of a test."""
+    source = " ".join(ast.unparse(test).split())
+    return f"if `{source}`", f"unless `{source}`"
 
 
 def _find_unused_values(tree: ast.AST) -> frozenset[int]:

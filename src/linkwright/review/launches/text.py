@@ -75,6 +75,13 @@ class ExpressionTexts:
         bindings = {name: value.texts.text(value.node) for name, value in items_by_name.items()}
         return ExpressionTexts(self._python, {**self._bindings, **bindings}, {**self._values, **items_by_name})
 
+    def with_unknown_item(self, target: ast.expr) -> ExpressionTexts:
+        """Return the texts with expressions of unknown value for the variables of a loop."""
+        names = [node.id for node in ast.walk(target) if isinstance(node, ast.Name)]
+        unknown = {name: f"$(eval {name})" for name in names}
+        values = {name: value for name, value in self._values.items() if name not in unknown}
+        return ExpressionTexts(self._python, {**self._bindings, **unknown}, values)
+
     def resolve(self, node: ast.expr) -> BoundExpression:
         """Return the value of a name, or any other expression unchanged."""
         node = self._python.resolved(node)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
@@ -358,12 +358,14 @@ class _SourcePair:
             text = phrase(
                 "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_format_name(item), new=other.name
             )
-            yield self._make_change(text, other.span, self.new, None)
+            reason = self._find_default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
+            yield self._make_change(text, other.span, self.new, reason)
         for item, other in _take_pairs(added, removed_expressions):
             text = phrase(
                 "{kind} {name} had a computed name: {old}", kind=kind.title, name=_format_name(item), old=other.name
             )
-            yield self._make_change(text, item.span, self.new, None)
+            reason = self._find_default_reason(other, old_names.defaults.get(other.name, ""), item.name, old_names)
+            yield self._make_change(text, item.span, self.new, reason)
         added_expressions = [
             item for item in added_expressions if self.new.count_expressions(item) > self.old.count_expressions(item)
         ]
@@ -384,6 +386,11 @@ class _SourcePair:
             )
             yield self._make_change(text, removed_expressions[0].span, self.old, None)
             added.clear()
+
+    def _find_default_reason(self, item: SourceName, old: str, new: str, names: SourceNames) -> Phrase | None:
+        """Return the reason why another name by default is breaking; None if it is unknown or equal."""
+        is_same = not old or not new or old.lstrip("/") == new.lstrip("/")
+        return None if is_same else self._find_removal_reason([replace(item, name=old)], names)
 
     def _compare_expression_types(self, old: Sequence[SourceName], new: Sequence[SourceName]) -> Iterator[Change]:
         """Yield the names whose expression is unchanged but whose type differs.

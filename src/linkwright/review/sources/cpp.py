@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 
@@ -71,7 +71,11 @@ _RATE = re.compile(
 )
 _COMPONENT = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(")
 _HANDLES = re.compile(r"\bNodeHandle\b(?P<names>[^;{}<>]*)[;{]")
-_HANDLE = re.compile(r'\b(?P<name>\w+)\s*\(\s*(?:\w+\s*,\s*)?"(?P<namespace>[^"]+)"\s*\)')
+_HANDLE = re.compile(r'\b(?P<name>\w+)\s*[({]\s*(?:\w+\s*,\s*)?"(?P<namespace>[^"]+)"\s*[)}]')
+_INITIALIZED_HANDLE = re.compile(
+    r'\bNodeHandle\s+(?P<name>\w+)\s*(?:=\s*(?:ros\s*::\s*)?NodeHandle\s*)?[({]\s*"(?P<namespace>[^"]+)"\s*[)}]'
+)
+_PLAIN_HANDLES = re.compile(r"\bNodeHandle\s+(\w+(?:\s*,\s*\w+)*)\s*;")
 _RECEIVER = re.compile(r"\b(?P<name>\w+)\s*(?:\.|->)\s*$")
 _CLASS = re.compile(
     r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z]\w*_(?:PUBLIC|EXPORT|API|DECL)(?:_TYPE)?\s+)?"
@@ -110,7 +114,6 @@ class _Reader:
         self._names = names
         self._text = _COMMENT_OR_TEXT.sub(_blank_comment, source.text)
         self._constants = _find_constants(self._text)
-        self._namespaces = _find_namespaces(self._text)
 
     def read(self) -> None:
         """Add the names."""
@@ -282,6 +285,11 @@ class _Reader:
         """The headers that may declare members of the classes of the source, without comments."""
         return [_COMMENT_OR_TEXT.sub(_blank_comment, text) for text in read_included_headers(Path(self._source.name))]
 
+    @cached_property
+    def _namespaces(self) -> Mapping[str, str]:
+        """The namespaces of ROS 1 node handles, by variable. A header may declare the handles of a class."""
+        return _find_namespaces(self._text, self._headers if "::" in self._text else [])
+
     def _find_literal_default(self, function: str, arguments: list[tuple[int, int]]) -> str:
         """Return the literal default of a parameter; empty if there is none.
 
@@ -398,18 +406,30 @@ def _find_constants(text: str) -> Mapping[str, str]:
     return constants
 
 
-def _find_namespaces(text: str) -> Mapping[str, str]:
-    """Return the namespaces of ROS 1 node handles, by variable."""
-    members = set(re.findall(r"\bNodeHandle\s+(\w+)\s*;", text))
+def _find_namespaces(text: str, headers: Sequence[str]) -> Mapping[str, str]:
+    """Return the namespaces of ROS 1 node handles, by variable.
+
+    Args:
+        text: the source without comments.
+        headers: the texts of the headers that may declare members of its classes.
+    """
+    own, declared = (
+        {name for source in sources for names in _PLAIN_HANDLES.findall(source) for name in re.findall(r"\w+", names)}
+        for sources in ([text], headers)
+    )
     namespaces = {
-        match["name"]: match["namespace"].rstrip("/")
-        for handles in _HANDLES.finditer(text)
-        for match in _HANDLE.finditer(handles["names"])
+        match["name"]: match["namespace"]
+        for source in (*headers, text)
+        for match in _INITIALIZED_HANDLE.finditer(source)
+        if source is text or match["name"] not in own
     }
-    for match in _HANDLE.finditer(text):
-        if match["name"] in members:
-            namespaces[match["name"]] = match["namespace"].rstrip("/")
-    return namespaces
+    for handles in _HANDLES.finditer(text):
+        namespaces |= {match["name"]: match["namespace"] for match in _HANDLE.finditer(handles["names"])}
+    for source in (*headers, text):
+        members = own | declared if source is text else declared - own
+        matches = (match for match in _HANDLE.finditer(source) if match["name"] in members)
+        namespaces |= {match["name"]: match["namespace"] for match in matches}
+    return {name: namespace.rstrip("/") for name, namespace in namespaces.items()}
 
 
 def _blank_comment(match: re.Match[str]) -> str:

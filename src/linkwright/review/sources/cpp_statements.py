@@ -58,6 +58,7 @@ def read_cpp_blocks(text: str) -> tuple[Mapping[str, Sequence[Sequence[Token]]],
     """
     reader = _Reader()
     is_balanced = _read_source(text, reader)
+    reader.sort_overloads()
     return (reader.blocks, reader.functions) if is_balanced else ({}, ())
 
 
@@ -92,6 +93,17 @@ class _Reader:
         self.functions: set[str] = set()
         self._blocks = [_Block("", is_function=False)]
         self._pending: list[Token] = []
+        self._starts: dict[str, list[int]] = {}
+        """The index of the first statement of each overload, by the name of the function."""
+
+    def sort_overloads(self) -> None:
+        """Sort the overloads of each function by their headers, so that their order in the source does not matter."""
+        for name, starts in self._starts.items():
+            if len(starts) > 1:
+                statements = self.blocks[name]
+                overloads = [statements[start:end] for start, end in zip(starts, [*starts[1:], None], strict=True)]
+                overloads.sort(key=lambda overload: [token.text for token in overload[0]])
+                self.blocks[name] = [*statements[: starts[0]], *(part for overload in overloads for part in overload)]
 
     def add(self, name: str, tokens: Sequence[Token]) -> None:
         """Add a statement."""
@@ -147,6 +159,7 @@ class _Reader:
                 name = "::".join(part for part in (block.name, _find_function_name(header)) if part)
                 is_function = True
                 self.functions.add(name)
+                self._starts.setdefault(name, []).append(len(self.blocks.get(name, ())))
             self.add(name, header)
             pending = []
         self._blocks.append(_Block(name, is_function, pending))

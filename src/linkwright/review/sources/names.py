@@ -98,6 +98,7 @@ class SourceNames:
     Attributes:
         names: the distinct literal names.
         expressions: the names that are expressions, whose values are unknown.
+        defaults: the names that expressions have by default, by the text of the expression.
         rates: the texts of rates and periods, each with its location.
         overrides: the names of functions that override a function of a base class.
         is_program: whether the source is a program and not a library.
@@ -119,6 +120,7 @@ class SourceNames:
 
     names: list[SourceName] = field(default_factory=list)
     expressions: list[SourceName] = field(default_factory=list)
+    defaults: dict[str, str] = field(default_factory=dict)
     rates: list[tuple[str, Span]] = field(default_factory=list)
     overrides: set[str] = field(default_factory=set)
     is_program: bool = False

@@ -15,6 +15,7 @@ from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
+from linkwright.review.sources.parameter_defaults import find_parameter_default
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python2 import as_python3
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
@@ -483,3 +484,6 @@ class _Reader:
     def _add_expression(self, kind: NameKind, node: ast.expr, type_name: str) -> None:
         text = " ".join(ast.unparse(node).split())
         self._names.expressions.append(SourceName(kind, text, type_name, self._python.span(node)))
+        default = "" if kind is NameKind.PARAMETER else find_parameter_default(self._python, node)
+        if default:
+            self._names.defaults[text] = default

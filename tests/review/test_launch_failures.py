@@ -1,0 +1,121 @@
+"""The lines of a review about Python launch files that fail or choose between lists of nodes."""
+
+from __future__ import annotations
+
+import pytest
+
+LAUNCH = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+BOTH = ["left", "right"]
+ONE = ["left"]
+TABLE = {"both": 1, "one": 2, "none": 3}
+
+
+def spawner(name):
+    return Node(package="controller_manager", executable="spawner", arguments=[name])
+
+
+def setup(context):
+    kind = LaunchConfiguration("kind").perform(context)
+    if kind not in ("both", "one"):
+        raise RuntimeError("no such kind")
+    nodes = []
+    if kind == "both":
+        nodes.extend(spawner(item) for item in BOTH)
+    return nodes
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("kind", default_value="both"),
+        OpaqueFunction(function=setup),
+    ])
+"""
+CHECK = '    if kind not in ("both", "one"):\n        raise RuntimeError("no such kind")\n'
+NESTED = "".join(f"    {line}\n" for line in CHECK.splitlines())
+ARGUMENT = '        DeclareLaunchArgument("kind"'
+
+
+def test_a_loop_over_a_chosen_list_starts_the_same_nodes(review_changes):
+    new = 'names = BOTH if kind == "both" else ONE\n        nodes.extend(spawner(item) for item in names)'
+    assert review_changes("arm.launch.py", LAUNCH, "nodes.extend(spawner(item) for item in BOTH)", new) == ([], [])
+
+
+def test_the_items_of_a_chosen_list_have_its_condition(review_changes):
+    old, new = (f"in (BOTH if kind == 'both' and {name} else ONE)" for name in ("gpu", "cpu"))
+    text = LAUNCH.replace("in BOTH", old)
+    spawned = "controller_manager/spawner' of"
+    changes, found_breaking = review_changes("arm.launch.py", text, old, new)
+    assert any(f"{spawned} 'right'" in change and "and cpu`" in change for change in changes)
+    assert found_breaking == []
+
+
+def test_no_controller_is_lost_and_none_has_the_name_of_a_variable_if_a_list_is_unknown(review_changes):
+    changes, found_breaking = review_changes("arm.launch.py", LAUNCH, "for item in BOTH", "for item in load(kind)")
+    assert any("'$(eval item)'" in change for change in changes)
+    assert found_breaking == []
+
+
+@pytest.mark.parametrize(
+    ("new", "failures"),
+    [
+        (CHECK.replace('"one")', '"one", "none")').replace("no such", "unknown"), []),
+        (CHECK.replace('("both", "one")', "TABLE").replace("no such", "unknown"), []),
+        ("    if kind:\n" + NESTED.replace("no such", "unknown"), []),
+        (CHECK.replace(', "one"', "").replace("no such", "unknown"),
+         ["added: raise RuntimeError('unknown kind')"]),
+        (CHECK + "    if context:\n        if kind:\n            exit()\n", ["added: exit()"]),
+    ],
+)  # fmt: skip
+def test_only_a_failure_under_other_conditions_is_new(review_changes, new, failures):
+    _, found_breaking = review_changes("arm.launch.py", LAUNCH, CHECK, new)
+    assert found_breaking == failures
+
+
+@pytest.mark.parametrize(("default", "count"), [(', default_value=""', 0), ("", 1)])
+def test_a_new_argument_with_a_default_does_not_fail(repository, compare, default, count):
+    check = "    arms = LaunchConfiguration('arms').perform(context)\n    if arms not in TABLE:\n        exit(arms)\n"
+    argument = f'        DeclareLaunchArgument("arms"{default}),\n{ARGUMENT}'
+    repository.commit({"arm/launch/arm.launch.py": LAUNCH})
+    repository.write({"arm/launch/arm.launch.py": LAUNCH.replace(CHECK, CHECK + check).replace(ARGUMENT, argument)})
+    changes = [change for _, change in compare(repository).breaking_changes]
+    assert sum("exit" in str(change.sentence) for change in changes) == count
+
+
+def test_the_condition_of_a_failure_has_the_conditions_around_it(repository, compare):
+    check = "    if context or nodes:\n        if kind in BOTH:\n            exit(1)\n"
+    repository.commit({"arm/launch/arm.launch.py": LAUNCH})
+    repository.write({"arm/launch/arm.launch.py": LAUNCH.replace(CHECK, CHECK + check)})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == "the launch file fails if `(context or nodes) and kind in BOTH`"
+
+
+def test_a_launch_file_that_lost_an_import_fails(review_changes):
+    line = "from launch.substitutions import LaunchConfiguration\n"
+    expected = "'LaunchConfiguration' is used, but is no longer defined or imported"
+    assert review_changes("arm.launch.py", LAUNCH, line, "") == ([expected], [expected])
+
+
+SPAWNER = """def spawner(name, inactive=True):
+    arguments = [name, "--controller-manager", "/cm"]
+    if inactive:
+        arguments.append("--inactive")
+    else:
+        arguments.append("--activate")
+    if name_of_robot():
+        arguments.extend(["--namespace", "arm"])
+    arguments.extend(["--timeout", "5"])
+    return Node(package="controller_manager", executable="spawner", arguments=arguments)
+"""
+
+
+@pytest.mark.parametrize(("call", "word"), [("item", "--inactive"), ("item, inactive=False", "--activate")])
+def test_arguments_that_a_function_adds_to_a_list_are_told(review_changes, call, word):
+    start, end = LAUNCH.index("def spawner"), LAUNCH.index("\n\ndef setup")
+    text = LAUNCH.replace(LAUNCH[start:end], SPAWNER).replace("spawner(item)", f"spawner({call})")
+    changes, _ = review_changes("arm.launch.py", text, 'BOTH = ["left", "right"', 'BOTH = ["left", "right", "top"')
+    words = f"[top, --controller-manager, /cm, {word}, --timeout, 5]"
+    assert f"node 'controller_manager/spawner' of 'top' added: if `kind == 'both'`, arguments {words}" in changes
