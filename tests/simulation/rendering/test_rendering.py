@@ -159,7 +159,10 @@ def test_meshes_are_textured(make_renderer_of_method, tmp_path, kind, request):
     color = make_renderer_of_method(simulation).render(make_optics(CAMERA), IDENTITY, Channels.COLOR).color.astype(int)
     left, right = color[60, 60], color[60, 100]
     assert left[1] == right[1] == 0
-    if request.node.callspec.params["make_renderer_of_method"] in ("embree", "mujoco"):  # these renderers draw each shape in one color
+    if request.node.callspec.params["make_renderer_of_method"] in (
+        "embree",
+        "mujoco",
+    ):  # these renderers draw each shape in one color
         assert left[0] == left[2] > 50
         return
     assert left[2] > 50
@@ -205,7 +208,10 @@ def test_primitive_shapes_are_textured(make_renderer_of_method, tmp_path, shape,
     assert not simulation.scene.diagnostics
     image = make_renderer_of_method(simulation).render(make_optics(CAMERA), IDENTITY, Channels.COLOR | Channels.DEPTH)
     assert image.depth[60, 80] == pytest.approx(distance, abs=2e-3)
-    if request.node.callspec.params["make_renderer_of_method"] in ("embree", "mujoco"):  # these renderers draw each shape in one color
+    if request.node.callspec.params["make_renderer_of_method"] in (
+        "embree",
+        "mujoco",
+    ):  # these renderers draw each shape in one color
         red, green, blue = image.color[60, 80].astype(int)
         assert red == green > 0
         assert blue == pytest.approx(red / 2, abs=2)
