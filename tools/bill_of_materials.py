@@ -65,7 +65,7 @@ def validate_bill(path: Path) -> list[str]:
     bill = json.loads(text)
     version = SchemaVersion.from_version(bill["specVersion"])
     if schema_error := JsonStrictValidator(version).validate_str(text):
-        raise SystemExit(f"{path} is no bill of CycloneDX {version.to_version()}: {schema_error}")
+        raise SystemExit(f"{path} is not a CycloneDX {version.to_version()} bill of materials: {schema_error}")
     return [component["name"] for component in bill["components"] if not component.get("licenses")]
 
 

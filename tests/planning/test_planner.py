@@ -12,9 +12,10 @@ from linkwright.geometry.arrays import quaternion_from_rpy
 from linkwright.geometry.shapes import Box, Sphere
 from linkwright.planning.collision_scene import CollisionScene, SceneObject
 from linkwright.planning.goals import Goal, JointTarget, LinkTarget
+from linkwright.planning.library import load_ompl
 from linkwright.planning.planner import Failure, Method, MotionPlanner, PlanError, PlanRequest
 from linkwright.planning.robot_model import PlacedShape
-from linkwright.planning.sampling import planner_class, subdivide
+from linkwright.planning.sampling import apply_parameters, planner_class, subdivide
 from tests.planning.arms import arm
 
 pytestmark = pytest.mark.extra("arm")
@@ -175,3 +176,12 @@ class TestLines:
 )
 def test_planner_by_name(name: str, planner: str | None) -> None:
     assert planner_class(name) == planner
+
+
+@pytest.mark.parametrize(("parameters", "expected"), [({"range": 0.3}, 0.3), ({"range": 0.0, "unknown": 1}, 0.7)])
+def test_planner_gets_its_parameters(parameters: dict[str, float], expected: float) -> None:
+    base, geometric = load_ompl().base, load_ompl().geometric
+    planner = geometric.RRTConnect(base.SpaceInformation(base.RealVectorStateSpace(2)))
+    planner.setRange(0.7)
+    apply_parameters(planner, parameters)
+    assert planner.getRange() == expected

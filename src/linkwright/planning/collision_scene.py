@@ -11,17 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from linkwright.geometry.arrays import Array
-from linkwright.kinematics.tree import MOVING_TYPES, resolve_mimics
-from linkwright.planning.robot_model import (
-    PlacedShape,
-    PositionExpansion,
-    Shapes,
-    add_robot,
-    add_shape,
-    body_name,
-    make_spec,
-    set_pose,
-)
+from linkwright.planning.robot_model import PlacedShape, RobotModel, Shapes, add_shape, body_name, set_pose
 from linkwright.simulation.library import load_mujoco
 from linkwright.urdf import Robot
 
@@ -92,45 +82,41 @@ class CollisionScene:
     def __init__(
         self, robot: Robot, shapes: Shapes, objects: Iterable[SceneObject], allowed: AllowedCollisions
     ) -> None:
-        self._mujoco = mujoco = load_mujoco()
-        moving = [joint.name for joint in robot.joints.values() if joint.type in MOVING_TYPES and any(joint.axis)]
-        joint_names, relations = resolve_mimics(robot, moving)
-        spec = make_spec()
-        spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
-        add_robot(spec, robot, moving, shapes)
         objects = tuple(objects)
-        for scene_object in objects:
-            _add_object(spec, scene_object)
         parts = [
             *((body_name(name), name) for name in robot.links if shapes.get(name)),
             *((_object_body(item), item.name) for item in objects),
         ]
-        for first, second in _allowed_pairs(parts, objects, allowed):
-            spec.add_exclude(bodyname1=first, bodyname2=second)
-        self._model = spec.compile()
-        self._data = mujoco.MjData(self._model)
-        self._expansion = PositionExpansion(joint_names, relations, self._model)
-        names_by_body = {self._model.body(body).id: name for body, name in parts}
-        self._names_by_geom = [names_by_body[int(body)] for body in self._model.geom_bodyid]
+
+        def complete(spec: Any) -> None:
+            spec.option.disableflags |= int(load_mujoco().mjtDisableBit.mjDSBL_FILTERPARENT)
+            for scene_object in objects:
+                _add_object(spec, scene_object)
+            for first, second in _allowed_pairs(parts, objects, allowed):
+                spec.add_exclude(bodyname1=first, bodyname2=second)
+
+        self._model = RobotModel(robot, shapes, complete)
+        mujoco_model = self._model.mujoco_model
+        names_by_body = {mujoco_model.body(body).id: name for body, name in parts}
+        self._names_by_geom = [names_by_body[int(body)] for body in mujoco_model.geom_bodyid]
 
     def is_free(self, positions: Array) -> bool:
         """Return whether nothing collides at the positions of all joints."""
         self._move(positions)
-        return not self._data.ncon
+        return not self._model.data.ncon
 
     def contacts(self, positions: Array) -> list[Contact]:
         """Return what collides at the positions of all joints."""
         self._move(positions)
         contacts = []
-        for contact in self._data.contact:
+        for contact in self._model.data.contact:
             first, second = (self._names_by_geom[geom] for geom in contact.geom)
             contacts.append(Contact(first, second, contact.pos.copy(), contact.frame[:3].copy(), -float(contact.dist)))
         return contacts
 
     def _move(self, positions: Array) -> None:
-        self._expansion.write(positions, self._data.qpos)
-        self._mujoco.mj_kinematics(self._model, self._data)
-        self._mujoco.mj_collision(self._model, self._data)
+        self._model.move(positions)
+        load_mujoco().mj_collision(self._model.mujoco_model, self._model.data)
 
 
 def _object_body(scene_object: SceneObject) -> str:

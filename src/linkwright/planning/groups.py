@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import inf, pi
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,6 @@ class JointLimits:
 
     Attributes:
         is_continuous: whether the joint turns without end; its bounds are then -pi and pi.
-        max_jerk: the maximum jerk, or infinity.
     """
 
     lower: float
@@ -35,7 +34,6 @@ class JointLimits:
     is_continuous: bool = False
     max_velocity: float = DEFAULT_MAX_VELOCITY
     max_acceleration: float = DEFAULT_MAX_ACCELERATION
-    max_jerk: float = inf
 
 
 def joint_limits(joint: Joint, overrides: Mapping[str, object] | None = None) -> JointLimits:
@@ -52,7 +50,6 @@ def joint_limits(joint: Joint, overrides: Mapping[str, object] | None = None) ->
         lower, upper = max(lower, safety.soft_lower_limit), min(upper, safety.soft_upper_limit)
     velocity = limit.velocity if limit is not None and limit.velocity > 0.0 else DEFAULT_MAX_VELOCITY
     acceleration = limit.acceleration if limit is not None else None
-    jerk = limit.jerk if limit is not None else None
     values = overrides or {}
     if values.get("has_position_limits") and not is_continuous:
         lower, upper = _number(values, "min_position", lower), _number(values, "max_position", upper)
@@ -61,9 +58,7 @@ def joint_limits(joint: Joint, overrides: Mapping[str, object] | None = None) ->
     acceleration = acceleration or DEFAULT_MAX_ACCELERATION
     if values.get("has_acceleration_limits"):
         acceleration = _number(values, "max_acceleration", acceleration)
-    if values.get("has_jerk_limits"):
-        jerk = _number(values, "max_jerk", jerk or inf)
-    return JointLimits(lower, upper, is_continuous, velocity, acceleration, jerk or inf)
+    return JointLimits(lower, upper, is_continuous, velocity, acceleration)
 
 
 def _number(values: Mapping[str, object], name: str, default: float) -> float:

@@ -6,7 +6,7 @@ child's body. MuJoCo computes the frames and Jacobians of an arm in a few micros
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,22 +37,30 @@ Shapes = Mapping[str, Sequence[PlacedShape]]
 class RobotModel:
     """A robot in MuJoCo, in a configuration that can be changed.
 
+    Args:
+        robot: the robot.
+        shapes: the collision shapes of its links; None for a model without collisions.
+        complete: called with the specification of the model before it is compiled, to add more to it.
+
     Attributes:
         joint_names: the joints that have a position of their own, in the order of positions.
         mujoco_model: the compiled model.
         data: the state of the model.
     """
 
-    def __init__(self, robot: Robot, shapes: Shapes | None = None) -> None:
-        self.robot = robot
+    def __init__(
+        self, robot: Robot, shapes: Shapes | None = None, complete: Callable[[Any], None] | None = None
+    ) -> None:
+        self._mujoco = mujoco = load_mujoco()
         moving = [joint.name for joint in robot.joints.values() if joint.type in MOVING_TYPES and any(joint.axis)]
         self.joint_names, relations = resolve_mimics(robot, moving)
-        spec = make_spec()
-        add_robot(spec, robot, moving, shapes or {})
-        self._mujoco = mujoco = load_mujoco()
+        spec = mujoco.MjSpec()
+        _add_robot(spec, robot, moving, shapes or {})
+        if complete is not None:
+            complete(spec)
         self.mujoco_model = spec.compile()
         self.data = mujoco.MjData(self.mujoco_model)
-        self._expansion = PositionExpansion(self.joint_names, relations, self.mujoco_model)
+        self._expansion = _PositionExpansion(self.joint_names, relations, self.mujoco_model)
         self._indexes = {name: index for index, name in enumerate(self.joint_names)}
 
     def index(self, joint: str) -> int:
@@ -94,7 +102,7 @@ class RobotModel:
         return np.array((*self.data.xpos[body], x, y, z, w))
 
 
-class PositionExpansion:
+class _PositionExpansion:
     """The expansion of joint positions to all moving joints, including mimic joints."""
 
     def __init__(self, joint_names: Sequence[str], relations: Mapping[str, Any], model: Any) -> None:
@@ -112,14 +120,7 @@ class PositionExpansion:
             target[:] = positions[self._sources] * self._factors + self._offsets
 
 
-def make_spec() -> Any:
-    """Return an empty model for kinematics and collisions, without dynamics."""
-    spec = load_mujoco().MjSpec()
-    spec.compiler.degree = False
-    return spec
-
-
-def add_robot(spec: Any, robot: Robot, moving_joints: Iterable[str], shapes: Shapes) -> None:
+def _add_robot(spec: Any, robot: Robot, moving_joints: Iterable[str], shapes: Shapes) -> None:
     """Add the links and the moving joints of a robot to a model."""
     mujoco = load_mujoco()
     moving = set(moving_joints)

@@ -50,7 +50,6 @@ class SamplingProblem:
         is_free: returns whether the positions of the group's joints are free of collisions, shape (joints,).
         planner: a planner of OMPL, see `planner_class`.
         parameters: the parameters of the planner, by OMPL's names.
-        seed: the seed of the random numbers.
     """
 
     def __init__(
@@ -116,6 +115,7 @@ class SamplingProblem:
             goal.addState(_make_state(space, positions))
         setup.setGoal(goal)
         planner = getattr(geometric, self._planner)(information)
+        apply_parameters(planner, self._parameters)
         setup.setPlanner(planner)
         setup.solve(timeout_s)
         if not setup.haveExactSolutionPath():
@@ -131,6 +131,19 @@ class SamplingProblem:
         lower = np.where(turning, start - 2 * pi, np.minimum(group.lower, start))
         upper = np.where(turning, start + 2 * pi, np.maximum(group.upper, start))
         return lower, upper
+
+
+def apply_parameters(planner: Any, parameters: Mapping[str, Any]) -> None:
+    """Set the parameters of a planner that have a setter; a range of 0 is chosen by OMPL.
+
+    Args:
+        planner: a planner of OMPL.
+        parameters: the values by OMPL's names, such as ``goal_bias``.
+    """
+    for name, value in parameters.items():
+        setter = getattr(planner, "set" + "".join(word.capitalize() for word in name.split("_")), None)
+        if setter is not None and not (name == "range" and not value):
+            setter(value)
 
 
 def _make_state(space: Any, positions: Array) -> Any:

@@ -25,24 +25,29 @@ def robot_shapes(robot: Robot, meshes: MeshLibrary) -> tuple[dict[str, list[Plac
     shapes: dict[str, list[PlacedShape]] = {}
     errors: list[LinkwrightError] = []
     for name, link in robot.links.items():
-        converted = [_convert_collision(collision, meshes, errors) for collision in link.collisions]
+        converted = [_try_to_convert(collision, meshes, errors) for collision in link.collisions]
         if placed_shapes := [placed_shape for placed_shape in converted if placed_shape is not None]:
             shapes[name] = placed_shapes
     return shapes, errors
 
 
-def _convert_collision(collision: Collision, meshes: MeshLibrary, errors: list[LinkwrightError]) -> PlacedShape | None:
+def _try_to_convert(collision: Collision, meshes: MeshLibrary, errors: list[LinkwrightError]) -> PlacedShape | None:
+    try:
+        return convert_collision(collision, meshes)
+    except LinkwrightError as error:
+        errors.append(error)
+        return None
+
+
+def convert_collision(collision: Collision, meshes: MeshLibrary) -> PlacedShape | None:
     """Return the shape of a collision, or None if it has no volume.
 
-    An error of its mesh is added to `errors`, and the result is None.
+    Raises:
+        LinkwrightError: the mesh cannot be read.
     """
     shape, pose = collision.geometry, row_from_pose(collision.origin)
     if isinstance(shape, Mesh):
-        try:
-            mesh = meshes.load(shape, collision.element)
-        except LinkwrightError as error:
-            errors.append(error)
-            return None
+        mesh = meshes.load(shape, collision.element)
         corners = hull_corners(mesh.vertices[np.unique(mesh.faces)])
         return None if corners is None else PlacedShape(corners, pose)
     sizes: tuple[float, ...]

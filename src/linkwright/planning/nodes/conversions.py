@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -220,18 +220,17 @@ def trajectory_message(names: Sequence[str], trajectory: Trajectory, frame: str)
     return message
 
 
-def updated_positions(names: Sequence[str], positions: Array, state: Any) -> tuple[Array, Mapping[str, float]]:
+def update_positions(names: Sequence[str], positions: Array, state: Any) -> Array:
     """Return positions that are updated by a sensor_msgs/msg/JointState.
 
-    The second result has the positions of joints that are not in `names`.
+    Args:
+        names: the joints of the positions; other joints of the message are left out.
+        positions: in rad or m, shape (joints,).
+        state: the message.
     """
     result = positions.copy()
     indexes = {name: index for index, name in enumerate(names)}
-    others: dict[str, float] = {}
     for name, position in zip(state.name, state.position, strict=False):
-        index = indexes.get(name)
-        if index is None:
-            others[name] = position
-        else:
-            result[index] = position
-    return result, others
+        if name in indexes:
+            result[indexes[name]] = position
+    return result

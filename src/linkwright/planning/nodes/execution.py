@@ -10,9 +10,7 @@ from typing import Any
 from linkwright.graph import ActionClient, Node
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
-from linkwright.graph.time.values import Duration
 from linkwright.messages import get_action, get_message
-from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _ACTIONS = {
     "FollowJointTrajectory": "control_msgs/action/FollowJointTrajectory",
@@ -98,7 +96,6 @@ class TrajectoryExecution:
     """
 
     def __init__(self, node: Node, controllers: Sequence[ControllerSettings]) -> None:
-        self._node = node
         self._controllers = controllers
         group = ReentrantCallbackGroup()
         self._clients = {
@@ -203,10 +200,3 @@ def _make_goal(controller: ControllerSettings, trajectory: Any) -> Any:
             selected.time_from_start = point.time_from_start
             part.points.append(selected)
     return goal
-
-
-def duration_s(trajectory: Any) -> float:
-    """Return the duration of a trajectory_msgs/msg/JointTrajectory in s."""
-    if not trajectory.points:
-        return 0.0
-    return Duration.from_msg(trajectory.points[-1].time_from_start).nanoseconds / NANOSECONDS_PER_SECOND

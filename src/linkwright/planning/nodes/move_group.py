@@ -22,7 +22,7 @@ from linkwright.planning.nodes.conversions import (
     RequestError,
     joint_state_message,
     trajectory_message,
-    updated_positions,
+    update_positions,
 )
 from linkwright.planning.nodes.execution import ExecutionError, TrajectoryExecution, read_controllers
 from linkwright.planning.nodes.kinematics_services import KinematicsServices
@@ -190,7 +190,7 @@ class MoveGroup(SingleNode):
         tolerance = float(self._parameters.get("trajectory_execution.allowed_start_tolerance", _START_TOLERANCE))
         if not trajectory.points or tolerance <= 0.0 or not self._robot.has_state:
             return
-        start, _ = updated_positions(
+        start = update_positions(
             self._robot.model.joint_names,
             self._robot.positions,
             joint_state_message(trajectory.joint_names, trajectory.points[0].positions),

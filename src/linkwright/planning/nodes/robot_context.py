@@ -19,7 +19,7 @@ from linkwright.messages import get_message
 from linkwright.packages import current_finder
 from linkwright.planning.collision_scene import AllowedCollisions
 from linkwright.planning.groups import resolve_groups
-from linkwright.planning.nodes.conversions import UnknownFrameError, joint_state_message, updated_positions
+from linkwright.planning.nodes.conversions import UnknownFrameError, joint_state_message, update_positions
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.semantics import read_semantics
 from linkwright.planning.shapes import robot_shapes
@@ -96,7 +96,7 @@ class RobotContext:
 
         Joints that it lacks keep their current positions.
         """
-        return updated_positions(self.model.joint_names, self.positions, state.joint_state)[0]
+        return update_positions(self.model.joint_names, self.positions, state.joint_state)
 
     def state_message(self, positions: Array) -> Any:
         """Return a moveit_msgs/msg/RobotState without attached objects."""
@@ -106,5 +106,5 @@ class RobotContext:
         return message
 
     def _on_joint_state(self, message: Any) -> None:
-        self.positions = updated_positions(self.model.joint_names, self.positions, message)[0]
+        self.positions = update_positions(self.model.joint_names, self.positions, message)
         self.has_state = True

@@ -147,5 +147,7 @@ class SceneMonitor:
         return is_changed
 
     def _publish(self) -> None:
+        if not self._publisher.get_subscription_count():
+            return
         state = self._robot.state_message(self._robot.positions)
         self._publisher.publish(self.scene.to_message(state, self._robot.robot.name, 0))
