@@ -19,26 +19,14 @@ from linkwright.lint.package import PackageContext
 from linkwright.lint.subject import Subject
 from linkwright.lint.targets import find_targets
 from linkwright.lint.xacro_facts import FileFacts
+from tests.cli.checked_robots import LONG_AXIS, SELECTION, VALID_ROBOT, XACRO
 from tests.sdf.worlds import write_files
 
-VALID_ROBOT = '<robot name="r">\n  <link name="base_link"/>\n</robot>\n'
-XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-LONG_AXIS = """<robot name="r">
-  <link name="base_link"/>
-  <link name="arm_link"/>
-  <joint name="arm_joint" type="continuous">
-    <parent link="base_link"/>
-    <child link="arm_link"/>
-    <axis xyz="0 0 2"/>
-  </joint>
-</robot>
-"""
 ROBOT_WITH_A_PROPERTY = f"""<robot name="{{name}}" {XACRO}>
   <xacro:property name="unused" value="1"/>
   <link name="base_link"/>
 </robot>
 """
-SELECTION = ["--select", "LW2"]
 
 
 @pytest.fixture(autouse=True)

@@ -41,11 +41,16 @@ class RequestError(Exception):
         self.code = code
 
 
-class UnknownFrameError(Exception):
+class UnknownFrameError(RequestError):
     """Raised for a frame that neither the robot nor tf knows.
 
-    The message is the name of the frame.
+    Attributes:
+        frame: the name of the frame.
     """
+
+    def __init__(self, frame: str) -> None:
+        super().__init__("FRAME_TRANSFORM_FAILURE", f"there is no frame '{frame}'")
+        self.frame = frame
 
 
 class InvalidShapeError(ValueError):

@@ -11,6 +11,7 @@ from linkwright.graph import ActionClient, Node
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_action, get_message
+from linkwright.planning.nodes.conversions import RequestError
 
 _ACTIONS = {
     "FollowJointTrajectory": "control_msgs/action/FollowJointTrajectory",
@@ -75,18 +76,6 @@ def read_controllers(parameters: Mapping[str, Any]) -> tuple[list[ControllerSett
     return controllers, problems
 
 
-class ExecutionError(Exception):
-    """Raised when a trajectory was not executed.
-
-    Attributes:
-        code: the name of the error code in moveit_msgs/msg/MoveItErrorCodes.
-    """
-
-    def __init__(self, code: str, reason: str) -> None:
-        super().__init__(reason)
-        self.code = code
-
-
 class TrajectoryExecution:
     """The controllers, and the trajectories that they execute.
 
@@ -113,13 +102,13 @@ class TrajectoryExecution:
             is_canceled: returns whether the execution must stop.
 
         Raises:
-            ExecutionError: no controllers move these joints, or a controller failed or was stopped.
+            RequestError: no controllers move these joints, or a controller failed or was stopped.
         """
         joint_trajectory = trajectory.joint_trajectory
         if not joint_trajectory.points:
             return
         if is_canceled():
-            raise ExecutionError("PREEMPTED", "the execution was canceled")
+            raise RequestError("PREEMPTED", "the execution was canceled")
         self._is_stopped = False
         controllers = self._select(joint_trajectory.joint_names)
         handles = [await self._send(controller, joint_trajectory) for controller in controllers]
@@ -128,13 +117,13 @@ class TrajectoryExecution:
         while not all(result.done() for result in pending):
             if self._is_stopped or is_canceled():
                 self._cancel_all()
-                raise ExecutionError("PREEMPTED", "the execution was stopped")
+                raise RequestError("PREEMPTED", "the execution was stopped")
             await asyncio.sleep(_POLL_S)
         for controller, result in zip(controllers, pending, strict=True):
             response = result.result()
             if response.status != GoalStatus.SUCCEEDED:
                 text = getattr(response.result, "error_string", "")
-                raise ExecutionError("CONTROL_FAILED", f"Controller '{controller.name}' failed: {text or 'aborted'}")
+                raise RequestError("CONTROL_FAILED", f"Controller '{controller.name}' failed: {text or 'aborted'}")
 
     def stop(self) -> None:
         """Stop the current execution."""
@@ -153,7 +142,7 @@ class TrajectoryExecution:
                 selected.append(controller)
                 remaining.difference_update(controller.joints)
         if remaining:
-            raise ExecutionError(
+            raise RequestError(
                 "CONTROL_FAILED",
                 f"Unable to identify any set of controllers that can actuate the specified joints: "
                 f"[ {' '.join(sorted(remaining))} ]",
@@ -171,10 +160,10 @@ class TrajectoryExecution:
                 break
             await asyncio.sleep(_POLL_S)
         else:
-            raise ExecutionError("CONTROL_FAILED", f"Action client not connected to action server: {controller.action}")
+            raise RequestError("CONTROL_FAILED", f"Action client not connected to action server: {controller.action}")
         handle = await client.send_goal_async(_make_goal(controller, trajectory))
         if handle is None or not handle.accepted:
-            raise ExecutionError("CONTROL_FAILED", f"Goal request rejected by controller '{controller.name}'")
+            raise RequestError("CONTROL_FAILED", f"Goal request rejected by controller '{controller.name}'")
         return handle, handle.get_result_async()
 
 

@@ -17,7 +17,6 @@ from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
 from linkwright.planning.nodes.conversions import (
     RequestError,
-    UnknownFrameError,
     pose_message,
     pose_row,
     trajectory_message,
@@ -67,9 +66,9 @@ class KinematicsServices:
             return response
         try:
             to_frame = invert(self._robot.frame_pose(request.header.frame_id, positions))
-        except UnknownFrameError as error:
-            self._node.get_logger().error(f"There is no frame '{error}'")
-            response.error_code.val = self._error_codes.FRAME_TRANSFORM_FAILURE
+        except RequestError as error:
+            self._node.get_logger().error(str(error))
+            response.error_code.val = getattr(self._error_codes, error.code)
             return response
         for link in links:
             stamped = stamped_class()
@@ -102,10 +101,7 @@ class KinematicsServices:
         tip = (names[0] if names else request.ik_link_name) or group.tip
         if tip is None or tip not in self._robot.robot.links:
             raise RequestError("INVALID_LINK_NAME", f"there is no link '{tip}'")
-        try:
-            target = compose(self._robot.frame_pose(stamped.header.frame_id, start), pose_row(stamped.pose))
-        except UnknownFrameError as error:
-            raise RequestError("FRAME_TRANSFORM_FAILURE", f"there is no frame '{error}'") from None
+        target = compose(self._robot.frame_pose(stamped.header.frame_id, start), pose_row(stamped.pose))
         timeout = Duration.from_msg(request.timeout).nanoseconds / NANOSECONDS_PER_SECOND
         goal = self._monitor.read_goal(request.constraints, start, tip)
         scene = self._collision_scene(request, request.robot_state, start)
@@ -210,10 +206,7 @@ class KinematicsServices:
 
     def _interpolate_waypoints(self, request: Any, start: Array, tip: str) -> Array:
         """Return poses of the tip on the lines between the waypoints of a request, shape (n, 7)."""
-        try:
-            frame = self._robot.frame_pose(request.header.frame_id, start)
-        except UnknownFrameError as error:
-            raise RequestError("FRAME_TRANSFORM_FAILURE", f"there is no frame '{error}'") from None
+        frame = self._robot.frame_pose(request.header.frame_id, start)
         pose = self._robot.frame_pose(tip, start)
         lines: list[Array] = [np.empty((0, 7))]
         for waypoint in request.waypoints:

@@ -24,7 +24,7 @@ from linkwright.planning.nodes.conversions import (
     trajectory_message,
     update_positions,
 )
-from linkwright.planning.nodes.execution import ExecutionError, TrajectoryExecution, read_controllers
+from linkwright.planning.nodes.execution import TrajectoryExecution, read_controllers
 from linkwright.planning.nodes.kinematics_services import KinematicsServices
 from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.planning_services import PlanningServices
@@ -155,10 +155,8 @@ class MoveGroup(SingleNode):
                 await self._execute(result.planned_trajectory, goal)
                 result.executed_trajectory = result.planned_trajectory
             publish_state("IDLE")
-        except (RequestError, ExecutionError) as error:
-            self._node.get_logger().error(str(error))
-            result.error_code.val = getattr(self._error_codes, error.code)
-            self._end_failed(goal)
+        except RequestError as error:
+            self._end_failed(goal, result, error)
             return result
         result.error_code.val = self._error_codes.SUCCESS
         goal.succeed()
@@ -168,10 +166,8 @@ class MoveGroup(SingleNode):
         result = get_action("moveit_msgs/action/ExecuteTrajectory").Result()
         try:
             await self._execute(goal.request.trajectory, goal)
-        except ExecutionError as error:
-            self._node.get_logger().error(str(error))
-            result.error_code.val = getattr(self._error_codes, error.code)
-            self._end_failed(goal)
+        except RequestError as error:
+            self._end_failed(goal, result, error)
             return result
         result.error_code.val = self._error_codes.SUCCESS
         goal.succeed()
@@ -179,14 +175,14 @@ class MoveGroup(SingleNode):
 
     async def _execute(self, trajectory: Any, goal: Any) -> None:
         if not self._parameters.get("allow_trajectory_execution", True):
-            raise ExecutionError(
+            raise RequestError(
                 "CONTROL_FAILED", "Cannot execute trajectory since ~allow_trajectory_execution was set to false"
             )
         self._check_start(trajectory.joint_trajectory)
         await self._execution.execute(trajectory, lambda: bool(goal.is_cancel_requested))
 
     def _check_start(self, trajectory: Any) -> None:
-        """Raise ExecutionError if a trajectory does not start where the robot is."""
+        """Raise RequestError if a trajectory does not start where the robot is."""
         tolerance = float(self._parameters.get("trajectory_execution.allowed_start_tolerance", _START_TOLERANCE))
         if not trajectory.points or tolerance <= 0.0 or not self._robot.has_state:
             return
@@ -199,14 +195,16 @@ class MoveGroup(SingleNode):
         differences = np.minimum(differences, np.abs(differences - 2.0 * np.pi))
         farthest = int(np.argmax(differences))
         if differences[farthest] > tolerance:
-            raise ExecutionError(
+            raise RequestError(
                 "CONTROL_FAILED",
                 f"Invalid Trajectory: start point deviates from current robot state more than {tolerance:g} at joint "
                 f"'{self._robot.model.joint_names[farthest]}'.",
             )
 
-    @staticmethod
-    def _end_failed(goal: Any) -> None:
+    def _end_failed(self, goal: Any, result: Any, error: RequestError) -> None:
+        """Log an error, set its code in the result, and end the goal as canceled or aborted."""
+        self._node.get_logger().error(str(error))
+        result.error_code.val = getattr(self._error_codes, error.code)
         if goal.is_cancel_requested:
             goal.canceled()
         else:

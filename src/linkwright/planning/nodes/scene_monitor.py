@@ -15,7 +15,6 @@ from linkwright.planning.nodes.conversions import (
     FrameLookup,
     InvalidShapeError,
     RequestError,
-    UnknownFrameError,
     goal_from_constraints,
 )
 from linkwright.planning.nodes.robot_context import RobotContext
@@ -83,8 +82,6 @@ class SceneMonitor:
         """
         try:
             goal = goal_from_constraints(constraints, self.frame_lookup(positions), default_link)
-        except UnknownFrameError as error:
-            raise RequestError("FRAME_TRANSFORM_FAILURE", f"there is no frame '{error}'") from None
         except InvalidShapeError as error:
             raise RequestError("INVALID_GOAL_CONSTRAINTS", f"a constraint region is not valid: {error}") from None
         joints = set(goal.joints).difference(self._robot.model.joint_names)

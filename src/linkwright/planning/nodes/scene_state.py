@@ -119,11 +119,8 @@ class SceneState:
             if not shapes_of(placed):
                 self._warn(f"There are no shapes specified in the collision object message of '{name}'")
                 return False
-        except UnknownFrameError as error:
-            self._warn(f"Unknown frame: {error}")
-            return False
-        except InvalidShapeError as error:
-            self._warn(f"The shapes of object '{name}' cannot be used: {error}")
+        except (UnknownFrameError, InvalidShapeError) as error:
+            self._warn(f"Object '{name}' cannot be used: {error}")
             return False
         placed.operation = _ADD
         self.objects[name] = placed
@@ -154,11 +151,8 @@ class SceneState:
                 return False
             if not shapes_of(placed):
                 return False
-        except UnknownFrameError as error:
-            self._warn(f"Unknown frame: {error}")
-            return False
-        except InvalidShapeError as error:
-            self._warn(f"The shapes of object '{name}' cannot be used: {error}")
+        except (UnknownFrameError, InvalidShapeError) as error:
+            self._warn(f"Object '{name}' cannot be used: {error}")
             return False
         placed.header.frame_id = link
         placed.pose = pose_message(compose(invert(link_pose), pose_row(placed.pose)))
