@@ -7,11 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from linkwright.graph import ActionClient, Node
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_action, get_message
-from linkwright.planning.nodes.conversions import RequestError
+from linkwright.planning.nodes.conversions import RequestError, joint_state_message, update_positions
+from linkwright.planning.nodes.robot_context import RobotContext
 
 _ACTIONS = {
     "FollowJointTrajectory": "control_msgs/action/FollowJointTrajectory",
@@ -20,6 +23,8 @@ _ACTIONS = {
 }
 _SERVER_TIMEOUT_S = 5.0
 _POLL_S = 0.02
+_START_TOLERANCE = 0.01
+"""The distance in rad or m of the robot from the start of a trajectory that is accepted by default."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,3 +194,27 @@ def _make_goal(controller: ControllerSettings, trajectory: Any) -> Any:
             selected.time_from_start = point.time_from_start
             part.points.append(selected)
     return goal
+
+
+def check_start(trajectory: Any, robot: RobotContext, parameters: Mapping[str, Any]) -> None:
+    """Raise RequestError if a trajectory does not start where the robot is.
+
+    Args:
+        trajectory: a trajectory_msgs/msg/JointTrajectory.
+        robot: the robot with its current state.
+        parameters: the parameters by name, among them ``trajectory_execution.allowed_start_tolerance``.
+    """
+    tolerance = float(parameters.get("trajectory_execution.allowed_start_tolerance", _START_TOLERANCE))
+    if not trajectory.points or tolerance <= 0.0 or not robot.has_state:
+        return
+    names = robot.model.joint_names
+    first = joint_state_message(trajectory.joint_names, trajectory.points[0].positions)
+    differences = np.abs(update_positions(names, robot.positions, first) - robot.positions)
+    differences = np.minimum(differences, np.abs(differences - 2.0 * np.pi))
+    farthest = int(np.argmax(differences))
+    if differences[farthest] > tolerance:
+        raise RequestError(
+            "CONTROL_FAILED",
+            f"Invalid Trajectory: start point deviates from current robot state more than {tolerance:g} at joint "
+            f"'{names[farthest]}'.",
+        )

@@ -10,9 +10,6 @@ from __future__ import annotations
 from time import perf_counter
 from typing import Any
 
-import numpy as np
-
-from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import LATCHED_QOS, ActionServer, Graph, Publisher
 from linkwright.graph.actions.goal import CancelResponse
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
@@ -20,22 +17,18 @@ from linkwright.messages import get_action, get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.planning.nodes.conversions import (
     RequestError,
-    joint_state_message,
     trajectory_message,
-    update_positions,
 )
-from linkwright.planning.nodes.execution import TrajectoryExecution, read_controllers
+from linkwright.planning.nodes.execution import TrajectoryExecution, check_start, read_controllers
 from linkwright.planning.nodes.kinematics_services import KinematicsServices
 from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.planning_services import PlanningServices
-from linkwright.planning.nodes.robot_context import RobotContext
+from linkwright.planning.nodes.robot_context import RobotContext, read_description, read_joint_limits
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 
 _DEFAULT_IK_TIMEOUT_S = 0.05
 _MIN_IK_TIMEOUT_S = 0.005
 _DEFAULT_SCALE = 0.1
-_START_TOLERANCE = 0.01
-"""The distance in rad or m of the robot from the start of a trajectory that is accepted by default."""
 
 
 class MoveGroup(SingleNode):
@@ -62,8 +55,11 @@ class MoveGroup(SingleNode):
 
     def _start(self) -> None:
         node, parameters = self._node, self._parameters
-        srdf = self._description("robot_description_semantic")
-        self._robot = RobotContext(node, self._description("robot_description"), srdf, self._joint_limits())
+        urdf, srdf = (
+            read_description(parameters, name, self.DEFAULT_NAME)
+            for name in ("robot_description", "robot_description_semantic")
+        )
+        self._robot = RobotContext(node, urdf, srdf, read_joint_limits(parameters))
         controllers, problems = read_controllers(parameters)
         for problem in problems:
             node.get_logger().error(problem)
@@ -100,24 +96,6 @@ class MoveGroup(SingleNode):
         publisher.publish(message)
 
     # --- parameters -----------------------------------------------------------------------------------------
-
-    def _description(self, name: str) -> str:
-        """Return the text of a description in a parameter."""
-        value = self._parameters.get(name)
-        if not isinstance(value, str) or not value.strip():
-            message = phrase("the parameter '{name}' of move_group is not set", name=name)
-            hint = phrase("give it the text of the description, for example with MoveItConfigsBuilder")
-            raise LinkwrightError(Diagnostic("ARM104", message, hint=hint))
-        return value
-
-    def _joint_limits(self) -> dict[str, dict[str, object]]:
-        prefix = "robot_description_planning.joint_limits."
-        limits: dict[str, dict[str, object]] = {}
-        for name, value in self._parameters.items():
-            if name.startswith(prefix):
-                joint, _, key = name[len(prefix) :].rpartition(".")
-                limits.setdefault(joint, {})[key] = value
-        return limits
 
     def _default_scale(self, kind: str) -> float:
         return float(
@@ -178,28 +156,8 @@ class MoveGroup(SingleNode):
             raise RequestError(
                 "CONTROL_FAILED", "Cannot execute trajectory since ~allow_trajectory_execution was set to false"
             )
-        self._check_start(trajectory.joint_trajectory)
+        check_start(trajectory.joint_trajectory, self._robot, self._parameters)
         await self._execution.execute(trajectory, lambda: bool(goal.is_cancel_requested))
-
-    def _check_start(self, trajectory: Any) -> None:
-        """Raise RequestError if a trajectory does not start where the robot is."""
-        tolerance = float(self._parameters.get("trajectory_execution.allowed_start_tolerance", _START_TOLERANCE))
-        if not trajectory.points or tolerance <= 0.0 or not self._robot.has_state:
-            return
-        start = update_positions(
-            self._robot.model.joint_names,
-            self._robot.positions,
-            joint_state_message(trajectory.joint_names, trajectory.points[0].positions),
-        )
-        differences = np.abs(start - self._robot.positions)
-        differences = np.minimum(differences, np.abs(differences - 2.0 * np.pi))
-        farthest = int(np.argmax(differences))
-        if differences[farthest] > tolerance:
-            raise RequestError(
-                "CONTROL_FAILED",
-                f"Invalid Trajectory: start point deviates from current robot state more than {tolerance:g} at joint "
-                f"'{self._robot.model.joint_names[farthest]}'.",
-            )
 
     def _end_failed(self, goal: Any, result: Any, error: RequestError) -> None:
         """Log an error, set its code in the result, and end the goal as canceled or aborted."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.descriptions.service import load
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.graph import Node
 from linkwright.graph.transforms.buffer import TransformBuffer
@@ -57,6 +59,7 @@ class RobotContext:
         self.frame = self.robot.root
         self.positions: Array = np.zeros(len(self.model.joint_names))
         self.has_state = False
+        self._lock = threading.RLock()
         self._extra_frames = {
             joint.parent_frame for joint in self.semantics.virtual_joints if joint.child_link == self.robot.root
         }
@@ -84,8 +87,9 @@ class RobotContext:
         if not name or name == self.frame or name in self._extra_frames:
             return np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
         if name in self.robot.links:
-            self.model.move(positions)
-            return self.model.link_pose(name)
+            with self._lock:
+                self.model.move(positions)
+                return self.model.link_pose(name)
         try:
             return np.asarray(self._transforms.lookup(self.frame, name), dtype=np.float64)
         except TransformException:
@@ -101,10 +105,45 @@ class RobotContext:
     def state_message(self, positions: Array) -> Any:
         """Return a moveit_msgs/msg/RobotState without attached objects."""
         message = get_message("moveit_msgs/msg/RobotState")()
-        self.model.move(positions)
-        message.joint_state = joint_state_message(*self.model.all_positions(), self.frame)
+        with self._lock:
+            self.model.move(positions)
+            message.joint_state = joint_state_message(*self.model.all_positions(), self.frame)
         return message
 
     def _on_joint_state(self, message: Any) -> None:
         self.positions = update_positions(self.model.joint_names, self.positions, message)
         self.has_state = True
+
+
+def read_joint_limits(parameters: Mapping[str, Any]) -> dict[str, dict[str, object]]:
+    """Return the entries of MoveIt's ``joint_limits.yaml``, by joint name.
+
+    Args:
+        parameters: the parameters of a node by name.
+    """
+    prefix = "robot_description_planning.joint_limits."
+    limits: dict[str, dict[str, object]] = {}
+    for name, value in parameters.items():
+        if name.startswith(prefix):
+            joint, _, key = name[len(prefix) :].rpartition(".")
+            limits.setdefault(joint, {})[key] = value
+    return limits
+
+
+def read_description(parameters: Mapping[str, Any], name: str, node: str) -> str:
+    """Return the text of a description in a parameter.
+
+    Args:
+        parameters: the parameters of a node by name.
+        name: the name of the parameter.
+        node: the name of the node for the error.
+
+    Raises:
+        LinkwrightError: ARM104, the parameter is not set.
+    """
+    value = parameters.get(name)
+    if not isinstance(value, str) or not value.strip():
+        message = phrase("the parameter '{name}' of {node} is not set", name=name, node=node)
+        hint = phrase("give it the text of the description, for example with MoveItConfigsBuilder")
+        raise LinkwrightError(Diagnostic("ARM104", message, hint=hint))
+    return value

@@ -30,18 +30,24 @@ class SceneMonitor:
         node: the node that subscribes and offers the services.
         robot: the robot in the scene.
         publishes_states: whether to publish the scene at regular times, and not only when objects change.
+        topic: the topic on which the scene is published.
 
     Attributes:
         scene: the scene.
     """
 
-    def __init__(self, node: Node, robot: RobotContext, *, publishes_states: bool) -> None:
+    def __init__(
+        self,
+        node: Node,
+        robot: RobotContext,
+        *,
+        publishes_states: bool,
+        topic: str = "monitored_planning_scene",
+    ) -> None:
         self.scene = SceneState(robot.frame, robot.allowed_collisions(), robot.robot.links, node.get_logger().warning)
         self._robot = robot
         self._collision_scene: CollisionScene | None = None
-        self._publisher: Publisher[Any] = node.create_publisher(
-            "moveit_msgs/msg/PlanningScene", "monitored_planning_scene", 10
-        )
+        self._publisher: Publisher[Any] = node.create_publisher("moveit_msgs/msg/PlanningScene", topic, 10)
         for topic, kind, callback in (
             ("planning_scene", "PlanningScene", self._on_scene),
             ("collision_object", "CollisionObject", self._on_object),
@@ -57,14 +63,17 @@ class SceneMonitor:
         if publishes_states:
             node.create_timer(_PERIOD_S, self._publish)
 
-    def frame_lookup(self, positions: Array) -> FrameLookup:
+    def frame_lookup(self, positions: Array, scene: SceneState | None = None) -> FrameLookup:
         """Return a function that finds the poses of links, objects and frames of tf.
 
-        Links have the given joint positions.
+        Args:
+            positions: the positions of all joints.
+            scene: the scene with the objects; by default the current one.
         """
+        objects = scene or self.scene
 
         def find(frame: str) -> Array:
-            pose = self.scene.object_pose(frame, partial(self._robot.frame_pose, positions=positions))
+            pose = objects.object_pose(frame, partial(self._robot.frame_pose, positions=positions))
             return self._robot.frame_pose(frame, positions) if pose is None else pose
 
         return find
@@ -115,6 +124,11 @@ class SceneMonitor:
             return CollisionScene(robot.robot, {}, (), robot.allowed_collisions())
         return CollisionScene(robot.robot, robot.shapes, scene.scene_objects(), scene.allowed)
 
+    def announce_change(self) -> None:
+        """Publish the scene after a change of `scene`."""
+        self._collision_scene = None
+        self._publish()
+
     def _get_scene(self, request: Any, response: Any) -> Any:
         state = self._robot.state_message(self._robot.positions)
         response.scene = self.scene.to_message(state, self._robot.robot.name, request.components.components)
@@ -139,8 +153,7 @@ class SceneMonitor:
 
     def _change_scene(self, change: Callable[[FrameLookup], bool]) -> bool:
         is_changed = change(self.frame_lookup(self._robot.positions))
-        self._collision_scene = None
-        self._publish()
+        self.announce_change()
         return is_changed
 
     def _publish(self) -> None:

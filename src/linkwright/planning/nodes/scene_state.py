@@ -80,13 +80,17 @@ class SceneState:
         if message.allowed_collision_matrix.entry_names or message.allowed_collision_matrix.default_entry_names:
             self._set_allowed(message.allowed_collision_matrix)
         for color in message.object_colors:
-            self._colors[color.id] = color
+            self.set_color(color)
         is_applied = True
         for collision_object in message.world.collision_objects:
             is_applied &= self.apply_object(collision_object, lookup)
         for attached in message.robot_state.attached_collision_objects:
             is_applied &= self.apply_attached(attached, lookup)
         return is_applied
+
+    def set_color(self, message: Any) -> None:
+        """Set the color of an object (moveit_msgs/msg/ObjectColor)."""
+        self._colors[message.id] = message
 
     def apply_object(self, message: Any, lookup: FrameLookup) -> bool:
         """Apply a moveit_msgs/msg/CollisionObject, and return whether that was possible."""
