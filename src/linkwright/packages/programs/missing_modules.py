@@ -36,7 +36,6 @@ _COMPILED_PACKAGES = {
     "PyKDL": "orocos_kdl",
     "image_geometry": "vision_opencv",
     "laser_geometry": "laser_geometry",
-    "moveit": "moveit2",
     "pcl_ros": "perception_pcl",
     "python_qt_binding": "rqt",
     "rqt_gui_py": "rqt",
