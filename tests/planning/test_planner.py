@@ -94,6 +94,13 @@ class TestSampling:
             positions[arm().indexes] = configuration
             assert level.is_met(arm().model, positions)
 
+    def test_splines_between_distant_points_are_checked(self) -> None:
+        keeps_pan = Goal({"pan": JointTarget(0.0, above=0.01, below=0.01)})
+        plan_request = request(start={}, path_constraint=keeps_pan, interval_s=100.0)
+        corners = np.array([[0.0] * 6, [0.5, 0.25] + [0.0] * 4, [0.0, 0.5] + [0.0] * 4])
+        with pytest.raises(PlanError):
+            MotionPlanner(arm().model, scene()).time_path(plan_request, arm().positions(), corners)
+
 
 class TestFailures:
     def failure(self, plan_request: PlanRequest, *objects: SceneObject) -> PlanError:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
+from itertools import pairwise
 from time import perf_counter
 from typing import Any
 
@@ -17,16 +18,17 @@ from linkwright.planning.collision_scene import CollisionScene, Contact
 from linkwright.planning.goals import Goal, goal_configurations
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
+from linkwright.planning.jerk import parameterize_smoothly
 from linkwright.planning.robot_model import RobotModel
-from linkwright.planning.sampling import DEFAULT_PLANNER, SamplingProblem, subdivide
-from linkwright.planning.timing import Trajectory, parameterize
+from linkwright.planning.sampling import DEFAULT_PLANNER, SamplingProblem
+from linkwright.planning.timing import Trajectory
 
 _GOAL_SHARE = 0.3
 """The share of the planning time in which configurations for the goal are searched."""
 _MAX_BOUND_VIOLATION = 0.1
 """The distance in rad or m by which the start may be outside of the bounds; it is then moved to the bound."""
 _LINE_STEP_M = 0.01
-_CHECK_STEP = 0.02
+_CHECK_STEP = 0.005
 """The largest step between two checked configurations of a trajectory, in rad or m over all joints."""
 _DEVIATIONS = (0.1, 0.02, 0.0)
 """The distances by which corners are rounded, in rad or m; the next one is tried if the trajectory collides."""
@@ -139,21 +141,30 @@ class MotionPlanner:
         group = request.group
         indexes = np.array([self._model.index(name) for name in group.joint_names])
         for deviation in _DEVIATIONS:
-            trajectory = parameterize(
+            trajectory = parameterize_smoothly(
                 path,
                 group.max_velocities * request.velocity_scale,
                 group.max_accelerations * request.acceleration_scale,
+                group.max_jerks,
                 max_deviation=deviation,
                 interval_s=request.interval_s,
             )
             positions = start.copy()
-            for configuration in subdivide(trajectory.positions, _CHECK_STEP):
+            for configuration in self._motion(trajectory):
                 positions[indexes] = configuration
                 if not self._is_valid(request, positions):
                     break
             else:
                 return trajectory
         raise PlanError(Failure.PLANNING_FAILED)
+
+    @staticmethod
+    def _motion(trajectory: Trajectory) -> Array:
+        """Return the configurations of the executed motion, in steps that are fine enough to check."""
+        pieces = np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1)
+        count = max(1, int(np.ceil(float(pieces.max(initial=0.0)) / _CHECK_STEP)))
+        splits = [np.linspace(*ends, count, endpoint=False) for ends in pairwise(trajectory.times)]
+        return trajectory.interpolate(np.concatenate((*splits, trajectory.times[-1:])))[0]
 
     def _checked_start(self, request: PlanRequest, indexes: Any) -> Array:
         """Return the start, moved to the bounds of the group's joints."""
