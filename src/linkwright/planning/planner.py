@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.planning.cartesian import follow_poses, line_poses
+from linkwright.planning.cartesian import ArcError, ArcPoint, arc_poses, follow_poses, line_poses
 from linkwright.planning.collision_scene import CollisionScene, Contact
 from linkwright.planning.goals import Goal, goal_configurations
 from linkwright.planning.groups import JointGroup
@@ -40,6 +40,7 @@ class Method(Enum):
     SAMPLING = "sampling"
     JOINT_LINE = "PTP"
     CARTESIAN_LINE = "LIN"
+    CARTESIAN_ARC = "CIRC"
 
 
 class Failure(Enum):
@@ -51,6 +52,7 @@ class Failure(Enum):
     GOAL_IN_COLLISION = "the goal is in collision"
     NO_IK_SOLUTION = "the goal is out of reach"
     INVALID_GOAL_CONSTRAINTS = "a joint of the goal is outside of its bounds"
+    INVALID_MOTION_PLAN = "there is no arc through the points"
     INVALID_ROBOT_STATE = "a joint of the start is outside of its bounds"
 
 
@@ -62,8 +64,8 @@ class PlanError(Exception):
         contacts: what collides at the start or at the goal.
     """
 
-    def __init__(self, failure: Failure, contacts: Sequence[Contact] = ()) -> None:
-        super().__init__(failure.value)
+    def __init__(self, failure: Failure, contacts: Sequence[Contact] = (), reason: str = "") -> None:
+        super().__init__(reason or failure.value)
         self.failure = failure
         self.contacts = contacts
 
@@ -84,6 +86,7 @@ class PlanRequest:
         velocity_scale: the share of the maximum velocities, from 0 to 1.
         acceleration_scale: the share of the maximum accelerations, from 0 to 1.
         interval_s: the time in s between two points of the trajectory.
+        arc: the center or a point of the arc for `Method.CARTESIAN_ARC`.
     """
 
     group: JointGroup
@@ -97,6 +100,7 @@ class PlanRequest:
     velocity_scale: float = 1.0
     acceleration_scale: float = 1.0
     interval_s: float = 0.1
+    arc: ArcPoint | None = None
 
 
 class MotionPlanner:
@@ -210,8 +214,8 @@ class MotionPlanner:
         self, request: PlanRequest, start: Array, goals: Sequence[Array], indexes: Any, is_valid: Any, deadline: float
     ) -> Array | None:
         """Return the corners of a path of the group's joints, shape (n, joints), or None."""
-        if request.method is Method.CARTESIAN_LINE:
-            return self._find_line(request, start, indexes, is_valid)
+        if request.method in (Method.CARTESIAN_LINE, Method.CARTESIAN_ARC):
+            return self._follow_curve(request, start, indexes, is_valid)
 
         def is_free(configuration: Array) -> bool:
             positions[indexes] = configuration
@@ -225,8 +229,8 @@ class MotionPlanner:
             return path if problem.is_path_free(path, _CHECK_STEP) else None
         return problem.solve(start[indexes], ends, max(deadline - perf_counter(), 0.1))
 
-    def _find_line(self, request: PlanRequest, start: Array, indexes: Any, is_valid: Any) -> Array | None:
-        """Return the path on which the tip of the group moves on a straight line to the goal."""
+    def _follow_curve(self, request: PlanRequest, start: Array, indexes: Any, is_valid: Any) -> Array | None:
+        """Return the path on which the tip of the group moves on a straight line or an arc to the goal."""
         goal = request.goals[0]
         tip = goal.links[0].link if goal.links else request.group.tip
         if tip is None:
@@ -242,7 +246,15 @@ class MotionPlanner:
             self._model.move(positions)
             last = self._model.link_pose(tip)
         solver = ChainSolver(self._model, request.group, tip)
-        path, fraction = follow_poses(solver, start, line_poses(first, last, _LINE_STEP_M), indexes, is_valid)
+        try:
+            poses = (
+                line_poses(first, last, _LINE_STEP_M)
+                if request.arc is None
+                else arc_poses(first, last, request.arc, _LINE_STEP_M)
+            )
+        except ArcError as error:
+            raise PlanError(Failure.INVALID_MOTION_PLAN, reason=str(error)) from None
+        path, fraction = follow_poses(solver, start, poses, indexes, is_valid)
         return path[:, indexes] if fraction == 1.0 else None
 
     def _is_valid(self, request: PlanRequest, positions: Array) -> bool:
