@@ -192,3 +192,9 @@ def test_planner_gets_its_parameters(parameters: dict[str, float], expected: flo
     planner.setRange(0.7)
     apply_parameters(planner, parameters)
     assert planner.getRange() == expected
+
+
+def test_invalid_numbers_of_link_targets_are_found() -> None:
+    target = LinkTarget("tool", orientation=np.array((np.nan, 0.0, 0.0, 1.0)))
+    assert Goal(links=(target,)).find_invalid_number() == "tool"
+    assert not Goal(links=(LinkTarget("tool"),)).find_invalid_number()

@@ -20,6 +20,8 @@ _ACCELERATION_SHARES = (1.0, 0.5, 0.25, 0.125)
 _FINE_STEPS = 50
 """The number of intervals of the averaged trajectory in the time of the average."""
 _MAX_FINE_INTERVAL_S = 0.005
+_MARGIN = 0.99
+"""The share of the limits of jerk that is used, because accelerations are exceeded a little between two points."""
 _STEPS = 4
 """The minimum number of points of the result in the time of the average."""
 
@@ -57,7 +59,7 @@ def parameterize_smoothly(
     trials = []
     for share in _ACCELERATION_SHARES:
         accelerations = share * max_accelerations
-        window_s = float(np.max(2.0 * accelerations / max_jerks))
+        window_s = float(np.max(2.0 * accelerations / (_MARGIN * max_jerks)))
         fine = parameterize(
             corners,
             max_velocities,

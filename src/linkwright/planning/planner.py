@@ -20,7 +20,7 @@ from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
 from linkwright.planning.jerk import parameterize_smoothly
 from linkwright.planning.robot_model import RobotModel
-from linkwright.planning.sampling import DEFAULT_PLANNER, SamplingProblem
+from linkwright.planning.sampling import DEFAULT_PLANNER, SamplingProblem, subdivide
 from linkwright.planning.timing import Trajectory
 
 _GOAL_SHARE = 0.3
@@ -32,6 +32,8 @@ _CHECK_STEP = 0.005
 """The largest step between two checked configurations of a trajectory, in rad or m over all joints."""
 _DEVIATIONS = (0.1, 0.02, 0.0)
 """The distances by which corners are rounded, in rad or m; the next one is tried if the trajectory collides."""
+_STOP_INTERVAL_S = 0.02
+"""The maximum time in s between two points of a trajectory that stops at corners, so that splines keep to the path."""
 
 
 class Method(Enum):
@@ -126,10 +128,13 @@ class MotionPlanner:
         start = self._checked_start(request, indexes)
         is_valid = partial(self._is_valid, request)
         goals = self._find_goals(request, start, is_valid)
-        path = self._find_path(request, start, goals, indexes, is_valid, deadline)
-        if path is None:
-            raise PlanError(Failure.PLANNING_FAILED)
-        return self.time_path(request, start, path)
+        while (path := self._find_path(request, start, goals, indexes, is_valid, deadline)) is not None:
+            try:
+                return self.time_path(request, start, path)
+            except PlanError:
+                if request.method is not Method.SAMPLING or perf_counter() >= deadline:
+                    raise
+        raise PlanError(Failure.PLANNING_FAILED)
 
     def time_path(self, request: PlanRequest, start: Array, path: Array) -> Trajectory:
         """Return the fastest trajectory along a path that is free of collisions.
@@ -151,7 +156,7 @@ class MotionPlanner:
                 group.max_accelerations * request.acceleration_scale,
                 group.max_jerks,
                 max_deviation=deviation,
-                interval_s=request.interval_s,
+                interval_s=request.interval_s if deviation > 0.0 else min(request.interval_s, _STOP_INTERVAL_S),
             )
             positions = start.copy()
             for configuration in self._motion(trajectory):
@@ -164,11 +169,15 @@ class MotionPlanner:
 
     @staticmethod
     def _motion(trajectory: Trajectory) -> Array:
-        """Return the configurations of the executed motion, in steps that are fine enough to check."""
+        """Return the configurations between the points of a trajectory, in steps that are fine enough to check.
+
+        Controllers execute splines between the points, and other programs draw straight lines.
+        """
         pieces = np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1)
         count = max(1, int(np.ceil(float(pieces.max(initial=0.0)) / _CHECK_STEP)))
         splits = [np.linspace(*ends, count, endpoint=False) for ends in pairwise(trajectory.times)]
-        return trajectory.interpolate(np.concatenate((*splits, trajectory.times[-1:])))[0]
+        executed = trajectory.interpolate(np.concatenate((*splits, trajectory.times[-1:])))[0]
+        return np.concatenate((executed, subdivide(trajectory.positions, _CHECK_STEP)))
 
     def _checked_start(self, request: PlanRequest, indexes: Any) -> Array:
         """Return the start, moved to the bounds of the group's joints."""

@@ -352,6 +352,18 @@ class TestPlans:
         error_code = response.motion_plan_response.error_code
         assert error_code.val == getattr(error_code, code)
 
+    @pytest.mark.parametrize("value", [float("nan"), float("inf")])
+    async def test_numbers_that_are_not_finite_have_a_code_and_a_reason(self, bench, logged, value: float) -> None:
+        request = motion_request(joint_constraints(pan=value))
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        code = response.motion_plan_response.error_code
+        assert code.val == code.INVALID_GOAL_CONSTRAINTS
+        assert "a constraint of 'pan' has a number that is not finite" in logged("ERROR")
+        request = motion_request(joint_constraints(), start_state=state(lift=value))
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        assert response.motion_plan_response.error_code.val == code.INVALID_ROBOT_STATE
+        assert "the position of joint 'lift' at the start is not finite" in logged("ERROR")
+
     async def test_unavailable_planner_is_replaced_with_a_warning(self, bench, logged) -> None:
         request = motion_request(joint_constraints(**START), planner_id="Unknown")
         response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)

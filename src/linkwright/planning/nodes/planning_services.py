@@ -7,6 +7,8 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import Any
 
+import numpy as np
+
 from linkwright.diagnostics import LinkwrightError, render
 from linkwright.geometry.arrays import Array
 from linkwright.graph import Node, Publisher
@@ -90,6 +92,9 @@ class PlanningServices:
         if not request.goal_constraints:
             raise RequestError("INVALID_GOAL_CONSTRAINTS", "no goal constraints are specified")
         start = self._robot.positions_of(request.start_state)
+        if not np.all(np.isfinite(start)):
+            joint = self._robot.model.joint_names[int(np.argmin(np.isfinite(start)))]
+            raise RequestError("INVALID_ROBOT_STATE", f"the position of joint '{joint}' at the start is not finite")
         scene = self._monitor.scene_with(request.start_state, start, scene)
         plan_request = self._make_request(request, group, start)
         async with self._planning:
