@@ -7,7 +7,7 @@ import pytest
 
 from linkwright.geometry.arrays import matrix_from_pose
 from linkwright.kinematics import KinematicTree
-from linkwright.planning.cartesian import follow_poses, line_poses
+from linkwright.planning.cartesian import ArcError, ArcPoint, arc_poses, follow_poses, line_poses
 from linkwright.planning.inverse_kinematics import ChainSolver
 from tests.planning.arms import arm
 
@@ -107,3 +107,33 @@ class TestLines:
         path, fraction = follow_poses(ChainSolver(arm().model, arm().group, "tool"), start, poses, arm().indexes)
         assert 0.0 < fraction < 0.5
         assert len(path) == 1 + round(fraction * len(poses))
+
+
+class TestArcs:
+    START, END = np.array((1.0, 0, 0, 0, 0, 0, 1)), np.array((0, 1.0, 0, 0, 0, np.sin(0.5), np.cos(0.5)))
+
+    @pytest.mark.parametrize(
+        ("point", "is_center", "angle"),
+        [
+            ((0.0, 0.0, 0.0), True, 0.5 * np.pi),
+            ((np.sqrt(0.5), np.sqrt(0.5), 0.0), False, 0.5 * np.pi),
+            ((-1.0, 0.0, 0.0), False, 1.5 * np.pi),
+        ],
+    )
+    def test_arc_has_the_radius_and_the_length(
+        self, point: tuple[float, float, float], is_center: bool, angle: float
+    ) -> None:
+        poses = arc_poses(self.START, self.END, ArcPoint(np.array(point), is_center), 0.01)
+        np.testing.assert_allclose(np.linalg.norm(poses[:, :3], axis=1), 1.0, atol=1e-9)
+        np.testing.assert_allclose(poses[-1], self.END, atol=1e-9)
+        steps = np.linalg.norm(np.diff(poses[:, :3], axis=0, prepend=self.START[None, :3]), axis=1)
+        assert steps.max() <= 0.01
+        assert steps.sum() == pytest.approx(angle, rel=1e-3)
+
+    @pytest.mark.parametrize(
+        ("point", "is_center", "reason"),
+        [((0.5, 0.5, 0.0), False, "on a line"), ((0.0, 0.2, 0.0), True, "different")],
+    )
+    def test_impossible_arcs(self, point: tuple[float, float, float], is_center: bool, reason: str) -> None:
+        with pytest.raises(ArcError, match=reason):
+            arc_poses(self.START, self.END, ArcPoint(np.array(point), is_center), 0.01)

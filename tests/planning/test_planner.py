@@ -94,6 +94,13 @@ class TestSampling:
             positions[arm().indexes] = configuration
             assert level.is_met(arm().model, positions)
 
+    def test_splines_between_distant_points_are_checked(self) -> None:
+        keeps_pan = Goal({"pan": JointTarget(0.0, above=0.01, below=0.01)})
+        plan_request = request(start={}, path_constraint=keeps_pan, interval_s=100.0)
+        corners = np.array([[0.0] * 6, [0.5, 0.25] + [0.0] * 4, [0.0, 0.5] + [0.0] * 4])
+        with pytest.raises(PlanError):
+            MotionPlanner(arm().model, scene()).time_path(plan_request, arm().positions(), corners)
+
 
 class TestFailures:
     def failure(self, plan_request: PlanRequest, *objects: SceneObject) -> PlanError:
@@ -185,3 +192,9 @@ def test_planner_gets_its_parameters(parameters: dict[str, float], expected: flo
     planner.setRange(0.7)
     apply_parameters(planner, parameters)
     assert planner.getRange() == expected
+
+
+def test_invalid_numbers_of_link_targets_are_found() -> None:
+    target = LinkTarget("tool", orientation=np.array((np.nan, 0.0, 0.0, 1.0)))
+    assert Goal(links=(target,)).find_invalid_number() == "tool"
+    assert not Goal(links=(LinkTarget("tool"),)).find_invalid_number()

@@ -113,3 +113,8 @@ class TestLimits:
         overrides = {"has_velocity_limits": True, "max_velocity": 0.5, "has_position_limits": True, "max_position": 1}
         limits = joint_limits(joint, overrides)
         assert (limits.lower, limits.upper, limits.max_velocity, limits.max_acceleration) == (-1.0, 1.0, 0.5, 1.0)
+
+    def test_jerk_is_limited_only_if_the_file_says_so(self) -> None:
+        joint = load(urdf()).joints["pan"]
+        assert joint_limits(joint, {"has_jerk_limits": True, "max_jerk": 20}).max_jerk == 20.0
+        assert joint_limits(joint, {"has_jerk_limits": False, "max_jerk": 20}).max_jerk == float("inf")

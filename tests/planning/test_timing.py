@@ -62,3 +62,14 @@ class TestCorners:
         steps = np.diff(trajectory.times)[:, None]
         mean_velocities = np.diff(trajectory.positions, axis=0) / steps
         assert np.all(np.abs(mean_velocities) <= velocities)
+
+
+def test_splines_between_points_follow_the_exact_motion() -> None:
+    corners = np.array([[0.0, 0.0], [1.0, 0.3], [0.2, 1.0]])
+    coarse, fine = (parameterize(corners, np.ones(2), np.ones(2), interval_s=interval) for interval in (0.1, 0.001))
+    positions, velocities, _ = coarse.interpolate(fine.times)
+    np.testing.assert_allclose(positions, fine.positions, atol=5e-4)
+    np.testing.assert_allclose(velocities, fine.velocities, atol=0.03)
+    at_points = coarse.interpolate(coarse.times)
+    for values, expected in zip(at_points, (coarse.positions, coarse.velocities, coarse.accelerations), strict=True):
+        np.testing.assert_allclose(values, expected, atol=1e-9)

@@ -100,6 +100,19 @@ class Goal:
     joints: Mapping[str, JointTarget] = field(default_factory=dict)
     links: Sequence[LinkTarget] = ()
 
+    def find_invalid_number(self) -> str:
+        """Return the first joint or link whose target has a number that is not finite, or an empty string."""
+        for name, joint in self.joints.items():
+            if not np.all(np.isfinite((joint.position, joint.above, joint.below))):
+                return name
+        for link in self.links:
+            rows = [link.offset, link.tolerances, *(region.pose for region in link.regions)]
+            if not all(
+                np.all(np.isfinite(row)) for row in (*rows, () if link.orientation is None else link.orientation)
+            ):
+                return link.link
+        return ""
+
     def is_met(self, model: RobotModel, positions: Array) -> bool:
         """Return whether the goal is fulfilled at the positions of all joints; the model is moved."""
         for name, target in self.joints.items():

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ class JointLimits:
     is_continuous: bool = False
     max_velocity: float = DEFAULT_MAX_VELOCITY
     max_acceleration: float = DEFAULT_MAX_ACCELERATION
+    max_jerk: float = inf
 
 
 def joint_limits(joint: Joint, overrides: Mapping[str, object] | None = None) -> JointLimits:
@@ -58,7 +59,8 @@ def joint_limits(joint: Joint, overrides: Mapping[str, object] | None = None) ->
     acceleration = acceleration or DEFAULT_MAX_ACCELERATION
     if values.get("has_acceleration_limits"):
         acceleration = _number(values, "max_acceleration", acceleration)
-    return JointLimits(lower, upper, is_continuous, velocity, acceleration)
+    jerk = _number(values, "max_jerk", inf) if values.get("has_jerk_limits") else inf
+    return JointLimits(lower, upper, is_continuous, velocity, acceleration, jerk if jerk > 0.0 else inf)
 
 
 def _number(values: Mapping[str, object], name: str, default: float) -> float:
@@ -78,6 +80,7 @@ class JointGroup:
         is_rotating: which joints are revolute or continuous, shape (joints,).
         max_velocities: in rad/s or m/s, shape (joints,).
         max_accelerations: in rad/s2 or m/s2, shape (joints,).
+        max_jerks: in rad/s3 or m/s3, shape (joints,); infinite for joints without a limit.
         links: the links that the joints of the group move directly, in the order of the joints.
         tip: the last link of a chain, or None for a group that is not a chain.
     """
@@ -90,6 +93,7 @@ class JointGroup:
     is_rotating: NDArray[np.bool_]
     max_velocities: Array
     max_accelerations: Array
+    max_jerks: Array
     links: tuple[str, ...]
     tip: str | None
 
@@ -152,6 +156,7 @@ def resolve_groups(
             np.array([robot.joints[name].type != "prismatic" for name in names]),
             np.array([limit.max_velocity for limit in all_limits]),
             np.array([limit.max_acceleration for limit in all_limits]),
+            np.array([limit.max_jerk for limit in all_limits]),
             tuple(robot.joints[name].child for name in names),
             _find_tip(robot, definition, joints),
         )

@@ -6,30 +6,34 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
+from itertools import pairwise
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.planning.cartesian import follow_poses, line_poses
+from linkwright.planning.cartesian import ArcError, ArcPoint, arc_poses, follow_poses, line_poses
 from linkwright.planning.collision_scene import CollisionScene, Contact
 from linkwright.planning.goals import Goal, goal_configurations
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
+from linkwright.planning.jerk import parameterize_smoothly
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.sampling import DEFAULT_PLANNER, SamplingProblem, subdivide
-from linkwright.planning.timing import Trajectory, parameterize
+from linkwright.planning.timing import Trajectory
 
 _GOAL_SHARE = 0.3
 """The share of the planning time in which configurations for the goal are searched."""
 _MAX_BOUND_VIOLATION = 0.1
 """The distance in rad or m by which the start may be outside of the bounds; it is then moved to the bound."""
 _LINE_STEP_M = 0.01
-_CHECK_STEP = 0.02
+_CHECK_STEP = 0.005
 """The largest step between two checked configurations of a trajectory, in rad or m over all joints."""
 _DEVIATIONS = (0.1, 0.02, 0.0)
 """The distances by which corners are rounded, in rad or m; the next one is tried if the trajectory collides."""
+_STOP_INTERVAL_S = 0.02
+"""The maximum time in s between two points of a trajectory that stops at corners, so that splines keep to the path."""
 
 
 class Method(Enum):
@@ -38,6 +42,7 @@ class Method(Enum):
     SAMPLING = "sampling"
     JOINT_LINE = "PTP"
     CARTESIAN_LINE = "LIN"
+    CARTESIAN_ARC = "CIRC"
 
 
 class Failure(Enum):
@@ -49,6 +54,7 @@ class Failure(Enum):
     GOAL_IN_COLLISION = "the goal is in collision"
     NO_IK_SOLUTION = "the goal is out of reach"
     INVALID_GOAL_CONSTRAINTS = "a joint of the goal is outside of its bounds"
+    INVALID_MOTION_PLAN = "there is no arc through the points"
     INVALID_ROBOT_STATE = "a joint of the start is outside of its bounds"
 
 
@@ -60,8 +66,8 @@ class PlanError(Exception):
         contacts: what collides at the start or at the goal.
     """
 
-    def __init__(self, failure: Failure, contacts: Sequence[Contact] = ()) -> None:
-        super().__init__(failure.value)
+    def __init__(self, failure: Failure, contacts: Sequence[Contact] = (), reason: str = "") -> None:
+        super().__init__(reason or failure.value)
         self.failure = failure
         self.contacts = contacts
 
@@ -82,6 +88,7 @@ class PlanRequest:
         velocity_scale: the share of the maximum velocities, from 0 to 1.
         acceleration_scale: the share of the maximum accelerations, from 0 to 1.
         interval_s: the time in s between two points of the trajectory.
+        arc: the center or a point of the arc for `Method.CARTESIAN_ARC`.
     """
 
     group: JointGroup
@@ -95,6 +102,7 @@ class PlanRequest:
     velocity_scale: float = 1.0
     acceleration_scale: float = 1.0
     interval_s: float = 0.1
+    arc: ArcPoint | None = None
 
 
 class MotionPlanner:
@@ -120,10 +128,13 @@ class MotionPlanner:
         start = self._checked_start(request, indexes)
         is_valid = partial(self._is_valid, request)
         goals = self._find_goals(request, start, is_valid)
-        path = self._find_path(request, start, goals, indexes, is_valid, deadline)
-        if path is None:
-            raise PlanError(Failure.PLANNING_FAILED)
-        return self.time_path(request, start, path)
+        while (path := self._find_path(request, start, goals, indexes, is_valid, deadline)) is not None:
+            trajectory = self._find_free_trajectory(request, start, path)
+            if trajectory is not None:
+                return trajectory
+            if request.method is not Method.SAMPLING or perf_counter() >= deadline:
+                break
+        raise PlanError(Failure.PLANNING_FAILED)
 
     def time_path(self, request: PlanRequest, start: Array, path: Array) -> Trajectory:
         """Return the fastest trajectory along a path that is free of collisions.
@@ -136,24 +147,44 @@ class MotionPlanner:
         Raises:
             PlanError: even the trajectory that stops at each corner collides.
         """
+        trajectory = self._find_free_trajectory(request, start, path)
+        if trajectory is None:
+            raise PlanError(Failure.PLANNING_FAILED)
+        return trajectory
+
+    def _find_free_trajectory(self, request: PlanRequest, start: Array, path: Array) -> Trajectory | None:
+        """Return the fastest trajectory along a path that is free of collisions, or None."""
         group = request.group
         indexes = np.array([self._model.index(name) for name in group.joint_names])
         for deviation in _DEVIATIONS:
-            trajectory = parameterize(
+            trajectory = parameterize_smoothly(
                 path,
                 group.max_velocities * request.velocity_scale,
                 group.max_accelerations * request.acceleration_scale,
+                group.max_jerks,
                 max_deviation=deviation,
-                interval_s=request.interval_s,
+                interval_s=request.interval_s if deviation > 0.0 else min(request.interval_s, _STOP_INTERVAL_S),
             )
             positions = start.copy()
-            for configuration in subdivide(trajectory.positions, _CHECK_STEP):
+            for configuration in self._motion(trajectory):
                 positions[indexes] = configuration
                 if not self._is_valid(request, positions):
                     break
             else:
                 return trajectory
-        raise PlanError(Failure.PLANNING_FAILED)
+        return None
+
+    @staticmethod
+    def _motion(trajectory: Trajectory) -> Array:
+        """Return the configurations between the points of a trajectory, in steps that are fine enough to check.
+
+        Controllers execute splines between the points, and other programs draw straight lines.
+        """
+        pieces = np.linalg.norm(np.diff(trajectory.positions, axis=0), axis=1)
+        count = max(1, int(np.ceil(float(pieces.max(initial=0.0)) / _CHECK_STEP)))
+        splits = [np.linspace(*ends, count, endpoint=False) for ends in pairwise(trajectory.times)]
+        executed = trajectory.interpolate(np.concatenate((*splits, trajectory.times[-1:])))[0]
+        return np.concatenate((executed, subdivide(trajectory.positions, _CHECK_STEP)))
 
     def _checked_start(self, request: PlanRequest, indexes: Any) -> Array:
         """Return the start, moved to the bounds of the group's joints."""
@@ -199,8 +230,8 @@ class MotionPlanner:
         self, request: PlanRequest, start: Array, goals: Sequence[Array], indexes: Any, is_valid: Any, deadline: float
     ) -> Array | None:
         """Return the corners of a path of the group's joints, shape (n, joints), or None."""
-        if request.method is Method.CARTESIAN_LINE:
-            return self._find_line(request, start, indexes, is_valid)
+        if request.method in (Method.CARTESIAN_LINE, Method.CARTESIAN_ARC):
+            return self._follow_curve(request, start, indexes, is_valid)
 
         def is_free(configuration: Array) -> bool:
             positions[indexes] = configuration
@@ -214,8 +245,8 @@ class MotionPlanner:
             return path if problem.is_path_free(path, _CHECK_STEP) else None
         return problem.solve(start[indexes], ends, max(deadline - perf_counter(), 0.1))
 
-    def _find_line(self, request: PlanRequest, start: Array, indexes: Any, is_valid: Any) -> Array | None:
-        """Return the path on which the tip of the group moves on a straight line to the goal."""
+    def _follow_curve(self, request: PlanRequest, start: Array, indexes: Any, is_valid: Any) -> Array | None:
+        """Return the path on which the tip of the group moves on a straight line or an arc to the goal."""
         goal = request.goals[0]
         tip = goal.links[0].link if goal.links else request.group.tip
         if tip is None:
@@ -231,7 +262,15 @@ class MotionPlanner:
             self._model.move(positions)
             last = self._model.link_pose(tip)
         solver = ChainSolver(self._model, request.group, tip)
-        path, fraction = follow_poses(solver, start, line_poses(first, last, _LINE_STEP_M), indexes, is_valid)
+        try:
+            poses = (
+                line_poses(first, last, _LINE_STEP_M)
+                if request.arc is None
+                else arc_poses(first, last, request.arc, _LINE_STEP_M)
+            )
+        except ArcError as error:
+            raise PlanError(Failure.INVALID_MOTION_PLAN, reason=str(error)) from None
+        path, fraction = follow_poses(solver, start, poses, indexes, is_valid)
         return path[:, indexes] if fraction == 1.0 else None
 
     def _is_valid(self, request: PlanRequest, positions: Array) -> bool:

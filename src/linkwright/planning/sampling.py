@@ -26,8 +26,10 @@ _MAX_STEP = 0.05
 """The largest step between two checked configurations while planning, in rad or m over all joints."""
 _CHECKS_PER_STEP = 10
 """How many times as many configurations of the final path are checked."""
-_SEARCH_SHARE = 0.5
-"""The share of the planning time for one search; planners that optimize the path use all of it."""
+_SEARCH_SHARE = 0.3
+"""The share of the remaining time for one search; planners that optimize the path use all of it."""
+_MIN_SEARCH_SHARE = 0.05
+"""The minimum share of the planning time for one search."""
 _MAX_SIMPLIFICATION_S = 0.15
 
 
@@ -79,9 +81,10 @@ class SamplingProblem:
         deadline = perf_counter() + timeout_s
         step = _MAX_STEP
         while (remaining := deadline - perf_counter()) > 0.0:
-            path = self._search(start, goals, step, min(remaining, timeout_s * _SEARCH_SHARE))
+            search_s = max(_SEARCH_SHARE * remaining, _MIN_SEARCH_SHARE * timeout_s)
+            path = self._search(start, goals, step, min(remaining, search_s))
             if path is None:
-                return None
+                continue
             if self.is_path_free(path, step / _CHECKS_PER_STEP):
                 return path
             step /= 2.0

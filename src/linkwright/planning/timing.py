@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -56,6 +57,42 @@ class Trajectory:
     def duration(self) -> float:
         """The duration in s."""
         return float(self.times[-1])
+
+    def interpolate(self, times: Array) -> tuple[Array, Array, Array]:
+        """Return positions, velocities and accelerations by the quintic splines that controllers use.
+
+        Each has the shape (n, joints).
+
+        Args:
+            times: in s, shape (n,).
+        """
+        if len(self.times) == 1:
+            rest = np.zeros((len(times), self.positions.shape[1]))
+            return rest + self.positions, rest, rest
+        indexes = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 2)
+        widths = np.diff(self.times)[indexes][:, None]
+        x = (np.clip(times, 0.0, self.duration) - self.times[indexes])[:, None] / widths
+        first, slope, bend = _scaled(self, indexes, widths)
+        last, end_slope, end_bend = _scaled(self, indexes + 1, widths)
+        change = last - first
+        c2 = bend / 2.0
+        c3 = 10.0 * change - 6.0 * slope - 4.0 * end_slope - 1.5 * bend + 0.5 * end_bend
+        c4 = -15.0 * change + 8.0 * slope + 7.0 * end_slope + 1.5 * bend - end_bend
+        c5 = 6.0 * change - 3.0 * (slope + end_slope) + 0.5 * (end_bend - bend)
+        return (
+            first + x * (slope + x * (c2 + x * (c3 + x * (c4 + x * c5)))),
+            (slope + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)))) / widths,
+            (2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * 20.0 * c5))) / widths**2,
+        )
+
+
+def _scaled(trajectory: Trajectory, indexes: Any, widths: Array) -> tuple[Array, Array, Array]:
+    """Return points of a trajectory whose derivatives are by the share of an interval instead of by the time."""
+    return (
+        trajectory.positions[indexes],
+        trajectory.velocities[indexes] * widths,
+        trajectory.accelerations[indexes] * widths**2,
+    )
 
 
 def parameterize(

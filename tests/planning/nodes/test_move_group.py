@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -144,6 +145,17 @@ def joint_constraints(**joints: float) -> Any:
 
 def motion_request(*goals: Any, **fields: Any) -> Any:
     return message("moveit_msgs/msg/MotionPlanRequest", group_name="arm", goal_constraints=list(goals), **fields)
+
+
+def position_constraint(pose: Any, y: float, z: float) -> Any:
+    """Return a constraint without a shape for the tool, at an offset in y and z from a pose."""
+    region = message("moveit_msgs/msg/BoundingVolume")
+    region.primitive_poses = [message("geometry_msgs/msg/Pose", position=copy(pose.position))]
+    region.primitive_poses[0].position.y += y
+    region.primitive_poses[0].position.z += z
+    constraint = message("moveit_msgs/msg/PositionConstraint", link_name="tool", constraint_region=region)
+    constraint.header.frame_id = "base"
+    return constraint
 
 
 def state(**joints: float) -> Any:
@@ -340,6 +352,18 @@ class TestPlans:
         error_code = response.motion_plan_response.error_code
         assert error_code.val == getattr(error_code, code)
 
+    @pytest.mark.parametrize("value", [float("nan"), float("inf")])
+    async def test_numbers_that_are_not_finite_have_a_code_and_a_reason(self, bench, logged, value: float) -> None:
+        request = motion_request(joint_constraints(pan=value))
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        code = response.motion_plan_response.error_code
+        assert code.val == code.INVALID_GOAL_CONSTRAINTS
+        assert "a constraint of 'pan' has a number that is not finite" in logged("ERROR")
+        request = motion_request(joint_constraints(), start_state=state(lift=value))
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        assert response.motion_plan_response.error_code.val == code.INVALID_ROBOT_STATE
+        assert "the position of joint 'lift' at the start is not finite" in logged("ERROR")
+
     async def test_unavailable_planner_is_replaced_with_a_warning(self, bench, logged) -> None:
         request = motion_request(joint_constraints(**START), planner_id="Unknown")
         response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
@@ -370,6 +394,41 @@ class TestPlans:
             fk = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"], robot_state=robot_state)
             tool = fk.pose_stamped[0].pose.position
             assert tool.x == pytest.approx(start.position.x, abs=2e-3)
+
+    @pytest.mark.parametrize(
+        ("name", "y", "code"),
+        [("interim", 0.05, 1), ("center", 0.05, 1), ("interim", None, -2), ("center", 0.09, -2), ("via", 0.05, -2)],
+    )
+    async def test_pilz_circle(self, bench, name: str, y: float | None, code: int) -> None:
+        fk = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"])
+        start = fk.pose_stamped[0].pose
+        goal = message("moveit_msgs/msg/Constraints", position_constraints=[position_constraint(start, 0.1, 0.0)])
+        goal.position_constraints[0].constraint_region.primitives = [
+            message("shape_msgs/msg/SolidPrimitive", type=2, dimensions=[0.001])
+        ]
+        orientation = message("moveit_msgs/msg/OrientationConstraint", link_name="tool", orientation=start.orientation)
+        orientation.header.frame_id = "base"
+        goal.orientation_constraints = [orientation]
+        constraints = message("moveit_msgs/msg/Constraints", name=name)
+        if y is not None:
+            constraints.position_constraints = [position_constraint(start, y, 0.05)]
+        request = motion_request(goal, pipeline_id="pilz_industrial_motion_planner", planner_id="CIRC")
+        request.path_constraints = constraints
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        result = response.motion_plan_response
+        assert result.error_code.val == code
+        points = result.trajectory.joint_trajectory.points
+        if code != 1:
+            assert not points
+            return
+        names = result.trajectory.joint_trajectory.joint_names
+        middle = state(**dict(zip(names, points[len(points) // 2].positions, strict=True)))
+        fk = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"], robot_state=middle)
+        tool, origin = fk.pose_stamped[0].pose.position, start.position
+        height = 0.0 if name == "interim" else 0.05
+        distance = np.hypot(tool.y - origin.y - 0.05, tool.z - origin.z - height)
+        assert distance == pytest.approx(np.hypot(0.05, height), abs=3e-3)
+        assert tool.z != pytest.approx(origin.z, abs=5e-3)
 
     async def test_cartesian_path_stops_before_obstacle(self, bench) -> None:
         fk = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"])
@@ -468,5 +527,5 @@ class TestStart:
         interfaces = (await bench.call("QueryPlannerInterfaces", "query_planner_interface")).planner_interfaces
         assert {item.pipeline_id: item.planner_ids for item in interfaces} == {
             "ompl": ["RRTConnectkConfigDefault", "Unknown"],
-            "pilz_industrial_motion_planner": ["PTP", "LIN"],
+            "pilz_industrial_motion_planner": ["PTP", "LIN", "CIRC"],
         }

@@ -11,6 +11,7 @@ from linkwright.geometry.arrays import Array, compose
 from linkwright.geometry.shapes import Box, Cylinder, Sphere
 from linkwright.graph.time.values import Duration
 from linkwright.messages import get_message
+from linkwright.planning.cartesian import ArcPoint
 from linkwright.planning.goals import Goal, JointTarget, LinkTarget
 from linkwright.planning.robot_model import PlacedShape
 from linkwright.planning.shapes import hull_corners
@@ -197,6 +198,30 @@ def goal_from_constraints(message: Any, lookup: FrameLookup, default_link: str |
             ),
         )
     return Goal(joints, tuple(targets.values()))
+
+
+def arc_point_from_constraints(message: Any, lookup: FrameLookup) -> ArcPoint:
+    """Return the center or the interim point in the path constraints of a request for Pilz' ``CIRC``.
+
+    Args:
+        message: a moveit_msgs/msg/Constraints.
+        lookup: returns the poses of frames.
+
+    Raises:
+        RequestError: the constraints do not define a point.
+        UnknownFrameError: the frame of the point is not known.
+    """
+    if message.name not in ("center", "interim"):
+        raise RequestError(
+            "INVALID_MOTION_PLAN", f"CIRC needs path constraints named 'center' or 'interim', not '{message.name}'"
+        )
+    poses = [pose for item in message.position_constraints[:1] for pose in item.constraint_region.primitive_poses]
+    if not poses:
+        raise RequestError("INVALID_MOTION_PLAN", f"the path constraint '{message.name}' of CIRC has no position")
+    row = compose(lookup(message.position_constraints[0].header.frame_id), pose_row(poses[0]))
+    if not np.all(np.isfinite(row)):
+        raise RequestError("INVALID_MOTION_PLAN", f"the position of '{message.name}' is not a number")
+    return ArcPoint(row[:3], message.name == "center")
 
 
 def joint_state_message(names: Sequence[str], positions: Array, frame: str = "") -> Any:

@@ -9,7 +9,7 @@ from typing import Any
 from linkwright.planning.planner import Method
 from linkwright.planning.sampling import DEFAULT_PLANNER, planner_class
 
-_PILZ = {"PTP": Method.JOINT_LINE, "LIN": Method.CARTESIAN_LINE}
+_PILZ = {"PTP": Method.JOINT_LINE, "LIN": Method.CARTESIAN_LINE, "CIRC": Method.CARTESIAN_ARC}
 _RESERVED = ("type", "planner_configs")
 
 

@@ -7,18 +7,21 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import Any
 
+import numpy as np
+
 from linkwright.diagnostics import LinkwrightError, render
 from linkwright.geometry.arrays import Array
 from linkwright.graph import Node, Publisher
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_message, get_service
+from linkwright.planning.goals import Goal
 from linkwright.planning.groups import JointGroup
-from linkwright.planning.nodes.conversions import RequestError, trajectory_message
+from linkwright.planning.nodes.conversions import RequestError, arc_point_from_constraints, trajectory_message
 from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
-from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
+from linkwright.planning.planner import Method, MotionPlanner, PlanError, PlanRequest
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.timing import Trajectory
 
@@ -89,6 +92,9 @@ class PlanningServices:
         if not request.goal_constraints:
             raise RequestError("INVALID_GOAL_CONSTRAINTS", "no goal constraints are specified")
         start = self._robot.positions_of(request.start_state)
+        if not np.all(np.isfinite(start)):
+            joint = self._robot.model.joint_names[int(np.argmin(np.isfinite(start)))]
+            raise RequestError("INVALID_ROBOT_STATE", f"the position of joint '{joint}' at the start is not finite")
         scene = self._monitor.scene_with(request.start_state, start, scene)
         plan_request = self._make_request(request, group, start)
         async with self._planning:
@@ -114,7 +120,11 @@ class PlanningServices:
                 f"Planner '{choice.replaced}' is not available; {choice.planner} takes its place"
             )
         goals = [self._monitor.read_goal(item, start, group.tip) for item in request.goal_constraints]
-        path_constraint = self._monitor.read_goal(request.path_constraints, start, group.tip)
+        arc, path_constraint = None, Goal()
+        if choice.method is Method.CARTESIAN_ARC:
+            arc = arc_point_from_constraints(request.path_constraints, self._monitor.frame_lookup(start))
+        else:
+            path_constraint = self._monitor.read_goal(request.path_constraints, start, group.tip)
         has_path_constraint = bool(path_constraint.joints or path_constraint.links)
         return PlanRequest(
             group,
@@ -127,6 +137,7 @@ class PlanningServices:
             request.allowed_planning_time or _DEFAULT_PLANNING_TIME_S,
             request.max_velocity_scaling_factor or self._default_scale("velocity"),
             request.max_acceleration_scaling_factor or self._default_scale("acceleration"),
+            arc=arc,
         )
 
     @staticmethod

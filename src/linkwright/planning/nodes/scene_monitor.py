@@ -97,6 +97,8 @@ class SceneMonitor:
         links = {target.link for target in goal.links}.difference(self._robot.robot.links)
         if unknown := sorted(joints | links):
             raise RequestError("INVALID_GOAL_CONSTRAINTS", f"the robot has no '{unknown[0]}'")
+        if name := goal.find_invalid_number():
+            raise RequestError("INVALID_GOAL_CONSTRAINTS", f"a constraint of '{name}' has a number that is not finite")
         return goal
 
     def scene_with(self, state: Any, positions: Array, scene: SceneState | None = None) -> SceneState:
