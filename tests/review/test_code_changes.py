@@ -175,6 +175,18 @@ def test_a_function_is_named_for_what_other_lines_do_not_tell(review_lines):
     ]
 
 
+@pytest.mark.parametrize("is_function", [True, False])
+@pytest.mark.parametrize("more", ["", "    rest = file.read()\n    file.truncate()\n"])
+def test_code_that_changes_beside_values_is_told(review_lines, is_function, more):
+    header = "def main():" if is_function else "if ready():"
+    old = f'{header}\n    text = compile("a:(x)")\n    file = open("log", "r")\n    line = file.readline()\n'
+    new = old.replace("a:", "a: ").replace('"r")\n', f'"r+")\n{more}')
+    name, other = ("values in main", "in 'main()'") if is_function else ("values", "outside of functions")
+    values, *others = review_lines("arm/main.py", old, new)
+    assert values.startswith(f"{name}: ")
+    assert others == ([f"code changed {other}"] if more else [])
+
+
 def test_functions_that_move_are_not_named(repository, compare):
     function = "\n\ndef clamp(value, low):\n    return max(value, low)\n"
     repository.commit({**MANIFEST, "arm/a.py": PYTHON, "arm/b.py": "B = 1\n"})

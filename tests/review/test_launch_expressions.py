@@ -65,3 +65,8 @@ def test_layout_of_an_expression_is_no_change(review_changes, expression, is_sam
     text = f'<launch>{arguments}<param name="q" value="$(arg b)"/></launch>'
     changes, _ = review_changes("arm.launch", text, old, expression)
     assert (changes == []) == is_same
+
+
+def test_performed_substitution_is_the_substitution(review_changes):
+    changes, _ = review_changes("arm.launch.py", FILE, '"config/arm.yaml"', 'robot.perform(context), "arm.yaml"')
+    assert any("-> [$(find-pkg-share arm)/$(var robot)/arm.yaml]" in change for change in changes), changes

@@ -85,6 +85,37 @@ def test_a_new_argument_with_a_default_does_not_fail(repository, compare, defaul
     assert sum("exit" in str(change.sentence) for change in changes) == count
 
 
+HELPER = """def resolve(arms, name="both"):
+    if arms not in TABLE:
+        raise RuntimeError(arms)
+    if name not in TABLE:
+        raise RuntimeError(name)
+
+
+def setup(context):
+"""
+
+
+@pytest.mark.parametrize(
+    ("call", "failures"),
+    [
+        ("resolve(LaunchConfiguration('arms').perform(context))", []),
+        ("resolve(LaunchConfiguration('arms').perform(context), kind)", []),
+        ("resolve(arms='a', name=LaunchConfiguration('arms').perform(context))", ["added: raise RuntimeError(arms)"]),
+        ("resolve(kind + 'x')", ["added: raise RuntimeError(arms)"]),
+        ("resolve(LaunchConfiguration('arms').perform(context), kind + 'x')", ["added: raise RuntimeError(name)"]),
+        ("resolve(*kind)", []),
+    ],
+)
+def test_the_tests_of_a_helper_hold_for_the_arguments_of_its_calls(review_changes, call, failures):
+    argument = f'        DeclareLaunchArgument("arms", default_value="both"),\n{ARGUMENT}'
+    old = LAUNCH[LAUNCH.index("def setup") :]
+    new = old.replace("def setup(context):\n", HELPER).replace(ARGUMENT, argument)
+    new = new.replace(CHECK, f"{CHECK}    {call}\n")
+    _, found_breaking = review_changes("arm.launch.py", LAUNCH, old, new)
+    assert found_breaking == failures
+
+
 def test_the_condition_of_a_failure_has_the_conditions_around_it(repository, compare):
     check = "    if context or nodes:\n        if kind in BOTH:\n            exit(1)\n"
     repository.commit({"arm/launch/arm.launch.py": LAUNCH})

@@ -16,6 +16,8 @@ _HOOK_VARIABLES = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
 """Variables that git sets for hooks. They would override the repository of a folder."""
 
 _SUBMODULE_MODE = "160000"
+_PROGRAM_MODE = "100755"
+_PLAIN_MODE = "100644"
 _MAX_LFS_POINTER_BYTES = 1024
 _LFS_POINTER = lazy_pattern(
     rb"version https://git-lfs\.github\.com/spec/v1\n(?:[^\n]+\n)*?oid sha256:(?P<hash>[0-9a-f]{64})\n"
@@ -38,11 +40,13 @@ class ChangedFile:
         old_path: the path in the old commit, relative to the root of the repository; None for an added file.
         new_path: the path in the new commit or in the working tree; None for a removed file.
         is_submodule: whether the path is that of a submodule.
+        is_executable: whether the file is a program in the new version, if only one version is; otherwise None.
     """
 
     old_path: str | None
     new_path: str | None
     is_submodule: bool = False
+    is_executable: bool | None = None
 
     @property
     def path(self) -> str:
@@ -273,4 +277,5 @@ def _parse_raw_changes(text: str) -> Iterator[ChangedFile]:
             None if old_mode == _NO_FILE_MODE or status.startswith("C") else old_path,
             None if new_mode == _NO_FILE_MODE else new_path,
             _SUBMODULE_MODE in (old_mode, new_mode),
+            new_mode == _PROGRAM_MODE if {old_mode, new_mode} == {_PROGRAM_MODE, _PLAIN_MODE} else None,
         )

@@ -46,7 +46,11 @@ def _find_path_state(file: ChangedFile) -> Phrase | None:
         return phrase("added")
     if file.new_path is None:
         return phrase("removed")
-    return None if file.old_path == file.new_path else phrase("renamed from {path}", path=file.old_path)
+    if file.old_path != file.new_path:
+        return phrase("renamed from {path}", path=file.old_path)
+    if file.is_executable is None:
+        return None
+    return phrase("executable now") if file.is_executable else phrase("no longer executable")
 
 
 def _find_foreign_kind(version: Version, path: str) -> Phrase | None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.outlines import FailingTest
@@ -13,32 +14,71 @@ _EXIT_FUNCTIONS = ("sys.exit", "exit", "quit", "os._exit")
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 
+@dataclass(frozen=True)
+class _Scope:
+    """The parameters of the function around a test.
+
+    Attributes:
+        calls: the arguments of each call of the function, by parameter.
+        unbound: the parameters whose values are unknown in a call.
+    """
+
+    calls: Sequence[Mapping[str, ast.expr]] = ()
+    unbound: frozenset[str] = field(default_factory=frozenset)
+
+
 def find_failing_tests(python: PythonFile) -> dict[int, tuple[FailingTest, ...]]:
     """Return the tests of the ``if`` statements around each failing statement, by the identity of the statement."""
-    return dict(_find_tests(python, python.tree, ()))
+    return dict(_find_tests(python, python.tree, (), _Scope()))
 
 
 def _find_tests(
-    python: PythonFile, node: ast.AST, tests: tuple[FailingTest, ...]
+    python: PythonFile, node: ast.AST, tests: tuple[FailingTest, ...], scope: _Scope
 ) -> Iterator[tuple[int, tuple[FailingTest, ...]]]:
     if isinstance(node, ast.If):
-        inner = (*tests, _read_test(python, node.test))
+        inner = (*tests, _read_test(python, node.test, scope))
         for statement in node.body:
             if _ends_launch(statement):
                 yield id(statement), inner
-        yield from _find_tests_in_body(python, node.body, inner)
+        yield from _find_tests_in_body(python, node.body, inner, scope)
         negated = ast.UnaryOp(ast.Not(), node.test)
-        yield from _find_tests_in_body(python, node.orelse, (*tests, FailingTest(_unparse(negated))))
+        yield from _find_tests_in_body(python, node.orelse, (*tests, FailingTest(_unparse(negated))), scope)
     else:
         children = [child for child in ast.iter_child_nodes(node) if not isinstance(child, ast.expr)]
-        yield from _find_tests_in_body(python, children, () if isinstance(node, _FUNCTIONS) else tests)
+        if isinstance(node, _FUNCTIONS):
+            tests, scope = (), _bind_parameters(python, node)
+        yield from _find_tests_in_body(python, children, tests, scope)
 
 
 def _find_tests_in_body(
-    python: PythonFile, body: Sequence[ast.AST], tests: tuple[FailingTest, ...]
+    python: PythonFile, body: Sequence[ast.AST], tests: tuple[FailingTest, ...], scope: _Scope
 ) -> Iterator[tuple[int, tuple[FailingTest, ...]]]:
     for child in body:
-        yield from _find_tests(python, child, tests)
+        yield from _find_tests(python, child, tests, scope)
+
+
+def _bind_parameters(python: PythonFile, function: ast.FunctionDef | ast.AsyncFunctionDef) -> _Scope:
+    """Return the arguments with which a file calls one of its functions.
+
+    A function that is only passed on, such as to ``OpaqueFunction``, has none.
+    """
+    calls = [node for node in ast.walk(python.tree) if isinstance(node, ast.Call)]
+    calls = [call for call in calls if isinstance(call.func, ast.Name) and call.func.id == function.name]
+    parameters = [*function.args.posonlyargs, *function.args.args]
+    positional = [parameter.arg for parameter in parameters]
+    names = [*positional, *(parameter.arg for parameter in function.args.kwonlyargs)]
+    defaults = dict(zip(reversed(positional), reversed(function.args.defaults), strict=False))
+    pairs = zip(function.args.kwonlyargs, function.args.kw_defaults, strict=True)
+    defaults.update((parameter.arg, default) for parameter, default in pairs if default is not None)
+    bindings = []
+    for call in calls:
+        arguments = dict(zip(positional, call.args, strict=False))
+        arguments.update((keyword.arg, keyword.value) for keyword in call.keywords if keyword.arg)
+        is_unpacked = any(isinstance(argument, ast.Starred) for argument in call.args)
+        is_unpacked = is_unpacked or any(keyword.arg is None for keyword in call.keywords)
+        bindings.append({} if is_unpacked else {**defaults, **arguments})
+    unbound = frozenset(name for name in names if any(name not in binding for binding in bindings))
+    return _Scope(bindings, unbound)
 
 
 def _ends_launch(statement: ast.stmt) -> bool:
@@ -49,23 +89,40 @@ def _ends_launch(statement: ast.stmt) -> bool:
     return isinstance(value, ast.Call) and called_name(value) in _EXIT_FUNCTIONS
 
 
-def _read_test(python: PythonFile, test: ast.expr) -> FailingTest:
+def _read_test(python: PythonFile, test: ast.expr, scope: _Scope) -> FailingTest:
     """Return a test with the values that it accepts, such as of ``kind not in ("a", "b")``."""
     subject, accepted = "", frozenset[str]()
+    names = {node.id for node in ast.walk(test) if isinstance(node, ast.Name)}
+    is_known = scope.unbound.isdisjoint(names)
     if isinstance(test, ast.Compare) and len(test.ops) == 1:
         values = _find_accepted_values(python, test.ops[0], test.comparators[0])
         if values:
-            subject, accepted = _unparse(test.left), frozenset(map(ast.dump, values))
-    names = [node for node in ast.walk(test) if isinstance(node, ast.Name)]
-    calls = (call for name in names for call in ast.walk(python.resolved(name)) if isinstance(call, ast.Call))
-    arguments = {
-        call.args[0].value
-        for call in calls
-        if called_name(call).rpartition(".")[2] == "LaunchConfiguration"
-        and call.args
-        and isinstance(call.args[0], ast.Constant)
-    }
-    return FailingTest(_unparse(test), subject, accepted, frozenset(map(str, arguments)))
+            left = [_bind(test.left, call) for call in scope.calls] or [test.left]
+            texts = {_unparse(node) for node in left}
+            accepted = frozenset(map(ast.dump, values))
+            subject = texts.pop() if len(texts) == 1 else _unparse(test.left)
+            is_known = is_known and not all(ast.dump(node) in accepted for node in left)
+    arguments = [_find_arguments(python, test, call) for call in scope.calls or ({},)]
+    return FailingTest(_unparse(test), subject, accepted, frozenset.intersection(*arguments), is_known)
+
+
+def _bind(node: ast.expr, call: Mapping[str, ast.expr]) -> ast.expr:
+    """Return the argument of a call if an expression is a parameter, or else the expression."""
+    return call.get(node.id, node) if isinstance(node, ast.Name) else node
+
+
+def _find_arguments(python: PythonFile, test: ast.expr, call: Mapping[str, ast.expr]) -> frozenset[str]:
+    """Return the arguments of the launch file whose values are tested in a call of the function around the test."""
+    names = [_bind(node, call) for node in ast.walk(test) if isinstance(node, ast.Name)]
+    expressions = [test, *map(python.resolved, names)]
+    calls = [node for expression in expressions for node in ast.walk(expression) if isinstance(node, ast.Call)]
+    return frozenset(
+        str(node.args[0].value)
+        for node in calls
+        if called_name(node).rpartition(".")[2] == "LaunchConfiguration"
+        and node.args
+        and isinstance(node.args[0], ast.Constant)
+    )
 
 
 def _find_accepted_values(python: PythonFile, operator: ast.cmpop, node: ast.expr) -> list[ast.expr]:

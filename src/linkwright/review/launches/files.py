@@ -260,7 +260,8 @@ def _report_failures(
 ) -> list[CodePart]:
     """Report new conditions under which the launch fails, and return the other new statements.
 
-    A condition is not new if the old file failed under it, too. The default of a new argument is taken as valid.
+    A condition is not new if the old file failed under it, too. The default of a new argument is taken as valid, and so
+    are unknown arguments of a helper function.
     """
     old_failures = [part.failing_tests for part in old.code if part.failing_tests]
     old_names = {entry.name for entry in old.entries if entry.kind == "argument"}
@@ -271,8 +272,8 @@ def _report_failures(
     for part in added:
         tests = part.failing_tests
         is_known = any(all(any(test.implies(other) for test in tests) for other in failure) for failure in old_failures)
-        is_optional = any(test.arguments & (optional - old_names) for test in tests)
-        if tests and not is_known and not is_optional:
+        is_harmless = any(not test.is_known or test.arguments & (optional - old_names) for test in tests)
+        if tests and not is_known and not is_harmless:
             condition = " and ".join(f"({test.text})" if " or " in test.text else test.text for test in tests)
             reason = phrase("the launch file fails if `{condition}`", condition=condition)
             text = phrase("added: {code}", code=shorten(part.source, _MAX_STATEMENT_CHARACTERS))

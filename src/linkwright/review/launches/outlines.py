@@ -97,12 +97,14 @@ class FailingTest:
         subject: the expression that must have one of a few values; empty for other tests.
         accepted: these values.
         arguments: the arguments of the launch file whose values are tested.
+        is_known: whether the values with which the function around it is called are known, and may fail.
     """
 
     text: str
     subject: str = ""
     accepted: frozenset[str] = frozenset()
     arguments: frozenset[str] = frozenset()
+    is_known: bool = True
 
     def implies(self, other: FailingTest) -> bool:
         """Return whether the other test holds, too, when this one holds."""

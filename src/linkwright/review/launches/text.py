@@ -280,6 +280,8 @@ class ExpressionTexts:
             owner = self._python.resolved(node.func.value)
             is_share = isinstance(owner, ast.Call) and called_name(owner).rpartition(".")[2] == "FindPackageShare"
             return part(owner) if is_share else None
+        if function == "perform" and isinstance(node.func, ast.Attribute):
+            return part(node.func.value)
         if first is None:
             return None
         if function in _COMPARISON_SUBSTITUTIONS and len(arguments) > 1:

@@ -19,6 +19,7 @@ from linkwright.review.sources.tokens import tokenize_cpp
 _QUOTED = re.compile(r"'([^']+)'")
 _LITERAL = re.compile("\"((?:\\\\.|[^\"\\\\])*)\"|'((?:\\\\.|[^'\\\\])*)'")
 _VALUES = "values in {name}: {values}"
+_MODULE_VALUES = "values: {values}"
 _MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
 
@@ -46,7 +47,8 @@ def find_code_change(
 ) -> CodeChange | None:
     """Return the changed functions that no other line names, or None.
 
-    If nothing else is reported, the change names classes whose code outside of functions changes, or imports.
+    If nothing else is reported, the change names classes whose code outside of functions changes, or imports. If values
+    in the code outside of functions are reported, it tells whether that code changes in more than them.
 
     Args:
         old: the code of the old version.
@@ -77,7 +79,11 @@ def find_code_change(
         name = new_names[0] if new_names else removed[0]
         line = _find_first_line(sides[0].functions[name], sides[1].functions.get(name, ()))
         return CodeChange(joined(texts, "; "), line, is_old=not new_names)
-    return None if reported else _find_outside_change(old, new)
+    if reported:
+        parts = old.outside.get("", ()), new.outside.get("", ())
+        is_unreported = lines.has_module_values and lines.has_unreported_change(*parts, "")
+        return _find_module_change(*parts) if is_unreported else None
+    return _find_outside_change(old, new)
 
 
 def _format_functions(
@@ -131,11 +137,16 @@ def _find_outside_change(old: Code, new: Code) -> CodeChange | None:
             )
     if texts:
         return CodeChange(joined(texts, "; "), *lines[0])
-    parts = new.outside.get("", ())
-    if parts and _get_texts(old.outside.get("", ())) != _get_texts(parts):
-        line = _find_first_line(parts, old.outside.get("", ()))
-        return CodeChange(phrase("code changed outside of functions"), line, is_old=False)
-    return _compare_imports(old.imports, new.imports)
+    return _find_module_change(old.outside.get("", ()), new.outside.get("", ())) or _compare_imports(
+        old.imports, new.imports
+    )
+
+
+def _find_module_change(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | None:
+    """Return the change in the statements outside of functions and classes, or None if they are equal."""
+    if not new or _get_texts(old) == _get_texts(new):
+        return None
+    return CodeChange(phrase("code changed outside of functions"), _find_first_line(new, old), is_old=False)
 
 
 def _compare_imports(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | None:
@@ -220,6 +231,9 @@ class _ReportedLines:
 
     Args:
         changes: the changes that the lines report.
+
+    Attributes:
+        has_module_values: whether a line reports values in the code outside of functions.
     """
 
     def __init__(self, changes: Sequence[Change]) -> None:
@@ -228,6 +242,7 @@ class _ReportedLines:
         self._functions = {
             str(change.sentence.arguments["name"]) for change in changes if change.sentence.template == _VALUES
         }
+        self.has_module_values = any(change.sentence.template == _MODULE_VALUES for change in changes)
         self._lines: Mapping[bool, Collection[int]] = {
             is_old: {change.location.line for change in changes if change.location and change.location.is_old == is_old}
             for is_old in (True, False)
@@ -254,22 +269,25 @@ class _ReportedLines:
             return False
         if len(before) * len(after) > _MAX_COMPARED_PAIRS:
             return True
-        has_values = name in self._functions
+        has_values = name in self._functions if name else self.has_module_values
         matcher = SequenceMatcher(None, before, after, autojunk=False)
         return any(
-            not self._reports(old[old_start:old_end], new[new_start:new_end], has_values=has_values)
+            not self._reports(old_part, new_part, has_values=has_values)
             for tag, old_start, old_end, new_start, new_end in matcher.get_opcodes()
             if tag != "equal"
+            for old_part, new_part in zip_longest(old[old_start:old_end], new[new_start:new_end])
         )
 
-    def _reports(self, old: Sequence[Part], new: Sequence[Part], *, has_values: bool) -> bool:
-        for parts, is_old in ((old, True), (new, False)):
-            if any(part.first_line <= line <= part.last_line for part in parts for line in self._lines[is_old]):
+    def _reports(self, old: Part | None, new: Part | None, *, has_values: bool) -> bool:
+        """Return whether a line reports the change in a statement, which only one version may have."""
+        for part, is_old in ((old, True), (new, False)):
+            if part is None:
+                continue
+            if any(part.first_line <= line <= part.last_line for line in self._lines[is_old]):
                 return True
-            literals = {text for part in parts for match in _LITERAL.finditer(part.text) for text in match.groups()}
-            if not literals.isdisjoint(self._names):
+            if not self._names.isdisjoint(text for match in _LITERAL.finditer(part.text) for text in match.groups()):
                 return True
-        return has_values and [_get_shape(part.text) for part in old] == [_get_shape(part.text) for part in new]
+        return has_values and old is not None and new is not None and _get_shape(old.text) == _get_shape(new.text)
 
 
 def _get_constructor_class(name: str) -> str:

@@ -1,0 +1,31 @@
+"""Find programs that are no longer executable but are still installed or started."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.launches.script_options import LAUNCH_SUFFIXES
+from linkwright.review.versions import Versions
+
+_USER_SUFFIXES = (*LAUNCH_SUFFIXES, "CMakeLists.txt")
+"""The ends of the names of files that install or start programs."""
+
+
+def find_lost_programs(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the programs that are no longer executable, each with a change.
+
+    Only a program that a build file or launch file of the repository names counts.
+    """
+    lost = [file for file in changed_files if file.is_executable is False]
+    users = [(path, versions.new.text(path)) for path in (versions.new.paths(_USER_SUFFIXES) if lost else ())]
+    for file in lost:
+        name = re.compile(rf"(?<![\w.-]){re.escape(PurePosixPath(file.path).name)}(?![\w.-])")
+        user = next((path for path, text in users if name.search(text)), None)
+        if user is not None:
+            reason = phrase("'{path}' installs or starts it, and it may not start without this permission", path=user)
+            yield file.path, Change(phrase("no longer executable"), Effect.BREAKING, reason, Location(file.path, 1, 1))

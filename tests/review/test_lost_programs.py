@@ -1,0 +1,29 @@
+"""The lines of a review about programs that become executable or are no longer."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.review.reports.text import as_text
+from tests.review.conftest import breaking
+
+LAUNCH = '<launch><node pkg="arm" exec="drive.py" name="drive"/></launch>\n'
+
+
+@pytest.mark.parametrize(
+    ("launch", "is_executable", "found"),
+    [
+        (LAUNCH, False, ["no longer executable"]),
+        (LAUNCH.replace("drive.py", "overdrive.py"), False, []),
+        (LAUNCH, True, []),
+    ],
+)
+def test_a_started_program_that_is_no_longer_executable_is_breaking(repository, compare, launch, is_executable, found):
+    path = "arm/scripts/drive.py"
+    repository.commit({path: "print(1)\n", "arm/launch/arm.launch.xml": launch})
+    for change in ("-x", "+x") if is_executable else ("+x", "-x"):
+        repository.git("update-index", f"--chmod={change}", path)
+        repository.git("commit", "-q", "--allow-empty", "-m", "The mode")
+    result = compare(repository, "HEAD~1..HEAD")
+    assert breaking(result) == found
+    assert ("executable now" if is_executable else "no longer executable") in as_text(result)
