@@ -31,7 +31,7 @@ from linkwright.review.sources.names import (
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.protected_members import find_lost_protected
 from linkwright.review.sources.reading import is_program_text
-from linkwright.review.sources.reasons import find_removal_reason, is_used_by_others
+from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.versions import TEST_FOLDERS, Versions
@@ -329,6 +329,8 @@ class _SourcePair:
 
         A new name of a client is breaking if the package serves only the old one.
         """
+        if old_item.kind is NameKind.MESSAGE_FRAME:
+            return find_message_frame_reason(old_item, names)
         reason = self._find_removal_reason([old_item], names)
         if reason is not None or old_item.kind not in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
             return reason
@@ -501,7 +503,7 @@ def _format_rename(old: SourceName, new: SourceName) -> Phrase:
 
 def _is_same_frame(old: SourceName, new: SourceName) -> bool:
     """Return whether two names mean the same frame. tf ignores slashes at the ends of a name."""
-    return old.kind is NameKind.FRAME and old.name.strip("/") == new.name.strip("/")
+    return old.kind in (NameKind.FRAME, NameKind.MESSAGE_FRAME) and old.name.strip("/") == new.name.strip("/")
 
 
 def _format_names(items: Sequence[SourceName]) -> Phrase:

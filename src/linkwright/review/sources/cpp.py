@@ -156,7 +156,8 @@ class _Reader:
     def _read_classes(self) -> None:
         """Add the classes and enumerations.
 
-        Other packages cannot use those that a class hides."""
+        Other packages cannot use those that a class hides.
+        """
         scopes = {end: classes for classes, end in read_scopes(self._text, HIDDEN)}
         protected = {end for _, end in read_scopes(self._text, PROTECTED)}
         for match in _CLASS.finditer(self._text):
