@@ -21,6 +21,14 @@ def test_the_only_node_of_a_source_is_renamed_although_another_file_has_the_new_
     assert breaking(compare(repository)) == ["node 'master2' renamed to 'master'"]
 
 
+def test_an_added_node_with_a_computed_name_is_told_with_names_that_another_node_has(repository, compare):
+    text = "import rospy\nrospy.init_node({})\np = rospy.Publisher('out', Bool, queue_size=1)\n"
+    repository.commit({**MANIFEST, "arm/a.py": text.format("'arm'")})
+    repository.write({"arm/b.py": text.format("make_name()")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["publishers added: 'out' (Bool)"]
+
+
 @pytest.mark.parametrize(
     "call",
     [
