@@ -35,3 +35,4 @@ def test_names_of_a_private_node_handle_are_private(repository, compare, header,
     repository.write({"arm/src/arm.cpp": INCLUDE + new})
     (found,) = compare(repository).subjects
     assert sentences(found)[0] == expected
+    assert not any(sentence.startswith("values") for sentence in sentences(found))

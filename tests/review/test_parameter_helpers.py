@@ -22,6 +22,10 @@ HEAD = "#include <ros/ros.h>\nvoid Arm::init() {{\n  {}\n}}\n"
          "parameters of the plugin added: 'noise' (0.1)"),
         ("a.cc", 'if (_sdf->HasElement("topic")) f();', "parameters of the plugin added: 'topic'"),
         ("a.cc", 'n_ = SdfParamDouble(*_sdf, "scale", 2.5);', "parameters of the plugin added: 'scale' (2.5)"),
+        ("a.cc", 'auto ray = sdf_->GetElement("ray"); auto n = ray->GetElement("n"); f(n->Get<float>("mean"));',
+         "parameters of the plugin added: 'ray', 'n', 'mean'"),
+        ("a.cc", 'const sdf::ElementPtr& e = g(); f(e->Get<double>("mean", 0.2));',
+         "parameters of the plugin added: 'mean' (0.2)"),
         ("a.cpp", 'gazebo_ros_->getParameter<double>(rate_, "updateRate", 9.0);',
          "parameters of the plugin added: 'updateRate' (9.0)"),
         ("a.py", "gain = load_param('gain', 2.0)", "parameters added: 'gain' (2.0)"),
@@ -35,7 +39,14 @@ def test_parameters_of_functions_of_the_repository_are_told(repository, compare,
 
 
 @pytest.mark.parametrize(
-    "call", ['setParam("gain", 1);', 'load_parameters("gains.yaml");', 'loadParam("config/gains.yaml");', 'f("gain");']
+    "call",
+    [
+        'setParam("gain", 1);',
+        'load_parameters("gains.yaml");',
+        'loadParam("config/gains.yaml");',
+        'f("gain");',
+        'auto e = mesh->GetElement("part"); e->Get<double>("gain");',
+    ],
 )
 def test_other_calls_read_no_parameter(repository, compare, call):
     repository.commit({**MANIFEST, "arm/src/a.cpp": HEAD.format("")})

@@ -106,7 +106,7 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
         ("a.py", OLD_PYTHON, ", latch=True", "", ["publisher 'state': latched yes -> no"], True),
         ("a.py", OLD_PYTHON, "Rate(20)", "Rate(50)", ["rate or period: Rate(20) -> Rate(50)"], False),
         ("a.py", OLD_PYTHON, 'frame_id = "arm_link"', 'frame_id = "tool"',
-         ["frame of messages 'arm_link' renamed to 'tool'"], False),
+         ["frame of messages 'arm_link' renamed to 'tool'"], True),
         ("a.py", OLD_PYTHON, '"probe"', '"tip"', ["frame 'probe' renamed to 'tip'"], True),
         ("a.py", OLD_PYTHON, '"probe"', '"/probe"', ["frame 'probe' renamed to '/probe'"], False),
         ("c.cpp", CPP, '"probe"', '"tip"', ["frame 'probe' renamed to 'tip'"], True),
@@ -137,7 +137,7 @@ MODULE = "class Tool:\n    pass\n\n\ndef grip():\n    pass\n\n\ndef _own():\n   
         ("c.cpp", CPP, '"reach"', '"reach_for"',
          ["action 'reach' (ReachAction) renamed to 'reach_for' (ReachAction)"], True),
         ("c.cpp", CPP, '"arm_link"', '"arm_base_link"',
-         ["frame of messages 'arm_link' renamed to 'arm_base_link'"], False),
+         ["frame of messages 'arm_link' renamed to 'arm_base_link'"], True),
         ("c.cpp", CPP, 'argv, "driver"', 'argv, "arm_driver"', ["node 'driver' renamed to 'arm_driver'"], True),
         ("c.cpp", CPP, "loop(20)", "loop(50)", ["rate or period: ros::Rate(20) -> ros::Rate(50)"], False),
         ("d.cpp", CPP2, '<int>("gain", 1)', '<double>("gain", 1.0)',
@@ -248,3 +248,20 @@ def test_a_function_with_the_same_code_and_another_name_is_renamed(repository, c
     result = compare(repository)
     assert sentences(subject(result, "arm/arm/values.py"))[0] == expected
     assert breaking(result) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("text", "new", "expected"),
+    [
+        ('pub = rospy.Publisher("p", PointStamped, queue_size=1)\nmsg.header.frame_id = "arm"\n', "hand",
+         ["frame of messages 'arm' renamed to 'hand'"]),
+        ('pub = rospy.Publisher("p", PointStamped, queue_size=1)\nmsg.header.frame_id = "arm"\n', "/arm", []),
+        ('client = actionlib.SimpleActionClient("p", MoveAction)\ngoal.header.frame_id = "arm"\n', "hand", []),
+        ('pub = rospy.Publisher("p", Map, queue_size=1)\na.frame_id = "arm"\nb.frame_id =  "arm"\n', "hand", []),
+    ],
+)  # fmt: skip
+def test_another_frame_of_published_messages_is_breaking(repository, compare, text, new, expected):
+    start = "import rospy\nrospy.init_node('arm_node')\n"
+    repository.commit({"a.py": start + text})
+    repository.write({"a.py": start + text.replace('id = "arm"', f'id = "{new}"')})
+    assert breaking(compare(repository)) == expected

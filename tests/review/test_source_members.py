@@ -21,6 +21,14 @@ def test_the_only_node_of_a_source_is_renamed_although_another_file_has_the_new_
     assert breaking(compare(repository)) == ["node 'master2' renamed to 'master'"]
 
 
+def test_an_added_node_with_a_computed_name_is_told_with_names_that_another_node_has(repository, compare):
+    text = "import rospy\nrospy.init_node({})\np = rospy.Publisher('out', Bool, queue_size=1)\n"
+    repository.commit({**MANIFEST, "arm/a.py": text.format("'arm'")})
+    repository.write({"arm/b.py": text.format("make_name()")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["publishers added: 'out' (Bool)"]
+
+
 @pytest.mark.parametrize(
     "call",
     [
@@ -178,3 +186,41 @@ def test_a_subscription_with_the_same_callback_is_renamed(repository, compare):
     repository.commit({"arm/src/node.cpp": text % ("Angles", "positions")})
     repository.write({"arm/src/node.cpp": text % ("State", "cmd")})
     assert breaking(compare(repository)) == ["subscription 'positions' (Angles) renamed to 'cmd' (State)"]
+
+
+PROTECTED_HEADER = """#pragma once
+class Arm {
+public:
+  Arm();
+protected:
+  enum Kind { NONE = 0, LONG = 1 };
+  int count;
+  void move(double speed);
+private:
+  struct Cache { int size; };
+};
+"""
+DERIVED = "classes that derive from the class and use the members do not build"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("  enum Kind { NONE = 0, LONG = 1 };\n", "", ["protected members removed: 'Arm::Kind'"]),
+        ("int count", "int number", ["protected members removed: 'Arm::count' (int)"]),
+        ("  void move(double speed);\n", "", ["protected members removed: 'Arm::move'"]),
+        ("  int count;\n  void move(double speed);\nprivate:\n", "  void move(double speed);\nprivate:\n  int count;\n",
+         ["protected members removed: 'Arm::count' (int)"]),
+        ("  Arm();\nprotected:\n", "  Arm();\n", []),
+        ("  struct Cache { int size; };\n", "", []),
+    ],
+)  # fmt: skip
+def test_classes_that_derive_from_an_installed_class_need_protected_members(repository, compare, old, new, expected):
+    path = "arm/include/arm/arm.hpp"
+    repository.commit({**HEADER_PACKAGE, path: PROTECTED_HEADER})
+    repository.write({path: PROTECTED_HEADER.replace(old, new)})
+    result = compare(repository)
+    assert breaking(result) == expected
+    assert [str(change.reason) for item in result.subjects for change in item.changes if change.reason] == (
+        [DERIVED] if expected else []
+    )

@@ -145,7 +145,9 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
         texts = set(_QUOTED.findall(item.old)) ^ set(_QUOTED.findall(item.new))
         return bool(texts) and all(any(_has_word(line, text[1:-1], "") for line in reported) for text in texts)
     is_text = item.new.endswith(("'", '"'))
-    return is_text and all(any(f"'{text}'" in line for line in reported) for text in (old, new))
+    # the line may show the name in the namespace of its node handle, such as '~' for a private one
+    patterns = [re.compile(rf"'(?:[\w~/]*[~/])?{re.escape(text)}'") for text in (old, new)]
+    return is_text and all(any(pattern.search(line) for line in reported) for pattern in patterns)
 
 
 def _has_word(line: str, word: str, joiner: str = ".") -> bool:

@@ -29,8 +29,9 @@ from linkwright.review.sources.names import (
     SourceNames,
 )
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
+from linkwright.review.sources.protected_members import find_lost_protected
 from linkwright.review.sources.reading import is_program_text
-from linkwright.review.sources.reasons import find_removal_reason, is_used_by_others
+from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.versions import TEST_FOLDERS, Versions
@@ -105,6 +106,7 @@ class _SourcePair:
         changes += self._compare_rates(old_names, new_names)
         changes += self._compare_imports(old_names, new_names)
         changes += self._find_undefined(old_names, new_names)
+        changes += self._compare_protected(old_names, new_names)
         if self.file.old_path is not None and self.file.new_path is not None:
             old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
             reported = [str(change.sentence) for change in changes]
@@ -301,7 +303,8 @@ class _SourcePair:
             text = phrase("{kind} added: {names}", kind=kind.plural, names=_format_names(added))
             reason = _find_required_reason(added) if self.file.old_path is not None else None
             yield self._make_change(text, added[0].span, self.new, reason)
-        non_public = self.new.get_names(self.file.new_path).non_public
+        new_names = self.new.get_names(self.file.new_path)
+        non_public = new_names.non_public | new_names.hidden_classes
         lost = [item for item in removed if item.name not in non_public]
         if lost:
             text = phrase("{kind} removed: {names}", kind=kind.plural, names=_format_names(lost))
@@ -326,6 +329,8 @@ class _SourcePair:
 
         A new name of a client is breaking if the package serves only the old one.
         """
+        if old_item.kind is NameKind.MESSAGE_FRAME:
+            return find_message_frame_reason(old_item, names)
         reason = self._find_removal_reason([old_item], names)
         if reason is not None or old_item.kind not in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
             return reason
@@ -463,6 +468,14 @@ class _SourcePair:
                 text = phrase("calls its method '{name}', which is no longer defined", name=name)
                 yield self._make_change(text, span, self.new, phrase("the call fails"))
 
+    def _compare_protected(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the protected members that classes of an installed header lost."""
+        lost = find_lost_protected(old_names, new_names)
+        if lost and self.file.new_path is not None and self._is_interface(self.file.old_path or self.file.path):
+            text = phrase("protected members removed: {names}", names=_format_names(lost))
+            reason = phrase("classes that derive from the class and use the members do not build")
+            yield self._make_change(text, lost[0].span, self.old, reason)
+
     @staticmethod
     def _make_change(text: Phrase, span: Span, side: ChangedSources, reason: Phrase | None) -> Change:
         path = side.version.relative(span.file)
@@ -490,7 +503,7 @@ def _format_rename(old: SourceName, new: SourceName) -> Phrase:
 
 def _is_same_frame(old: SourceName, new: SourceName) -> bool:
     """Return whether two names mean the same frame. tf ignores slashes at the ends of a name."""
-    return old.kind is NameKind.FRAME and old.name.strip("/") == new.name.strip("/")
+    return old.kind in (NameKind.FRAME, NameKind.MESSAGE_FRAME) and old.name.strip("/") == new.name.strip("/")
 
 
 def _format_names(items: Sequence[SourceName]) -> Phrase:

@@ -9,7 +9,14 @@ from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
 from linkwright.review.sources.cpp_callbacks import find_message_type
-from linkwright.review.sources.cpp_functions import DeclaredFunction, read_declared_functions, read_declared_members
+from linkwright.review.sources.cpp_functions import (
+    HIDDEN,
+    PROTECTED,
+    DeclaredFunction,
+    read_declared_functions,
+    read_declared_members,
+    read_scopes,
+)
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.name_patterns import find_format
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
@@ -142,10 +149,27 @@ class _Reader:
         for match in _COMPONENT.finditer(text):
             for begin, end in list(_find_arguments(text, match.end() - 1))[:1]:
                 self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)
-        for match in _CLASS.finditer(text):
-            self._add(NameKind.CLASS, match["name"], match.start("name"), match.end("name"))
+        self._read_classes()
         self._read_functions()
         self._names.is_program = re.search(r"\bint\s+main\s*\(", text) is not None
+
+    def _read_classes(self) -> None:
+        """Add the classes and enumerations.
+
+        Other packages cannot use those that a class hides.
+        """
+        scopes = {end: classes for classes, end in read_scopes(self._text, HIDDEN)}
+        protected = {end for _, end in read_scopes(self._text, PROTECTED)}
+        for match in _CLASS.finditer(self._text):
+            end = match.end() - 1
+            if end not in scopes:
+                self._add(NameKind.CLASS, match["name"], match.start("name"), match.end("name"))
+                continue
+            self._names.hidden_classes.add(match["name"])
+            if end in protected:
+                span = self._make_span(match.start("name"), match.end("name"))
+                name = "::".join([*scopes[end], match["name"]])
+                self._names.protected.append(SourceName(NameKind.CLASS, name, "", span))
 
     def _read_functions(self) -> None:
         """Add the functions and members of a header.
@@ -168,11 +192,17 @@ class _Reader:
         for member in read_declared_members(self._text):
             end = member.start + len(member.name.rpartition("::")[2])
             self._add(NameKind.MEMBER, member.name, member.start, end, member.type)
-        non_public = (
-            read_declared_functions(self._text, is_public=False),
-            read_declared_members(self._text, is_public=False),
-        )
+        non_public = (read_declared_functions(self._text, HIDDEN), read_declared_members(self._text, HIDDEN))
         self._names.non_public = frozenset(item.name for items in non_public for item in items)
+        for function in read_declared_functions(self._text, PROTECTED):
+            if not function.is_override:
+                short = function.name.rpartition("::")[2]
+                start = max(function.start, self._text.find(short, function.start))
+                span = self._make_span(start, start + len(short))
+                self._names.protected.append(SourceName(NameKind.FUNCTION, function.name, "", span))
+        for member in read_declared_members(self._text, PROTECTED):
+            span = self._make_span(member.start, member.start + len(member.name.rpartition("::")[2]))
+            self._names.protected.append(SourceName(NameKind.MEMBER, member.name, member.type, span))
 
     def _read_call(self, match: re.Match[str]) -> None:
         text, function = self._text, match["name"]

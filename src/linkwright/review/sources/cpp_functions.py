@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 _PREPROCESSOR = re.compile(r"^[ \t]*#(?:[^\n\\]|\\.|\\\n)*", re.MULTILINE)
@@ -23,6 +23,12 @@ _NOT_MEMBERS = frozenset(
 """The first words of declarations that do not declare data members."""
 _TYPE_KEYWORDS = frozenset({"const", "unsigned", "signed", "long", "struct", "typename", "short", "enum", "class"})
 _KEYWORDS = frozenset({"if", "for", "while", "switch", "return", "sizeof", "decltype", "alignas", "static_assert"})
+PUBLIC = frozenset({"public"})
+PROTECTED = frozenset({"protected"})
+HIDDEN = frozenset({"protected", "private"})
+
+_LEVELS = ("public", "protected", "private")
+"""The levels of access, the most open one first."""
 _OPENING = re.compile(r"[({\[<]")
 _CLOSING = re.compile(r"[)}\]>]")
 
@@ -65,26 +71,26 @@ class DeclaredMember(NamedTuple):
     start: int
 
 
-def read_declared_functions(text: str, *, is_public: bool = True) -> Iterator[DeclaredFunction]:
+def read_declared_functions(text: str, access: Collection[str] = PUBLIC) -> Iterator[DeclaredFunction]:
     """Yield the functions that a header declares.
 
     Args:
         text: the text of the header without comments.
-        is_public: whether to yield the public functions, or those that are private or protected.
+        access: the levels of access of the functions to yield.
     """
-    for chunk, classes, start in _read_chunks(text, is_public=is_public):
+    for chunk, classes, start, _ in _read_chunks(text, access):
         if "(" in chunk and not chunk.startswith(("using", "typedef", "friend")):
             yield from _read_function(chunk, classes, start)
 
 
-def read_declared_members(text: str, *, is_public: bool = True) -> Iterator[DeclaredMember]:
+def read_declared_members(text: str, access: Collection[str] = PUBLIC) -> Iterator[DeclaredMember]:
     """Yield the data members of the classes that a header declares.
 
     Args:
         text: the text of the header without comments.
-        is_public: whether to yield the public members, or those that are private or protected.
+        access: the levels of access of the members to yield.
     """
-    for chunk, classes, start in _read_chunks(text, is_public=is_public):
+    for chunk, classes, start, _ in _read_chunks(text, access):
         declaration = re.sub(r"(?<!:):(?!:)\s*\d+$", "", chunk)
         items = list(_split_parameters(declaration))
         first_match = _MEMBER.fullmatch(items[0].partition("=")[0].strip()) if items and classes else None
@@ -98,12 +104,24 @@ def read_declared_members(text: str, *, is_public: bool = True) -> Iterator[Decl
                 yield DeclaredMember(name, type_name, start + name_match.start())
 
 
-def _read_chunks(text: str, *, is_public: bool) -> Iterator[tuple[str, list[str], int]]:
-    """Yield the beginning of each declaration, its enclosing classes and its offset.
+def read_scopes(text: str, access: Collection[str]) -> Iterator[tuple[list[str], int]]:
+    """Yield the enclosing classes of each declaration with a body, and the offset of its opening brace.
 
     Args:
         text: the text of the header without comments.
-        is_public: whether to yield the public declarations, or the private and protected ones.
+        access: the levels of access of the declarations to yield.
+    """
+    for _, classes, _, end in _read_chunks(text, access):
+        if text[end] == "{":
+            yield classes, end
+
+
+def _read_chunks(text: str, levels: Collection[str]) -> Iterator[tuple[str, list[str], int, int]]:
+    """Yield the beginning of each declaration, its enclosing classes and the offsets of its beginning and end.
+
+    Args:
+        text: the text of the header without comments.
+        levels: the levels of access of the declarations to yield.
     """
     text = _PREPROCESSOR.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     scopes: list[_Scope] = []
@@ -120,9 +138,9 @@ def _read_chunks(text: str, *, is_public: bool) -> Iterator[tuple[str, list[str]
                 scopes[-1] = scopes[-1]._replace(access=access["access"])
                 start = index + 1
             continue
-        is_visible = all(scope.access == "public" for scope in scopes)
-        if character != "}" and all(scope.is_open for scope in scopes) and is_visible is is_public:
-            yield chunk, [scope.name for scope in scopes if scope.name], start
+        level = max((scope.access for scope in scopes), key=_LEVELS.index, default="public")
+        if character != "}" and all(scope.is_open for scope in scopes) and level in levels:
+            yield chunk, [scope.name for scope in scopes if scope.name], start, index
         if character == "{":
             scopes.append(_read_scope(chunk))
         elif character == "}" and scopes:

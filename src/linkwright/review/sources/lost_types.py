@@ -73,8 +73,11 @@ def _find_lost(versions: Versions, file: ChangedFile) -> list[str]:
     if file.old_path is None or PurePosixPath(file.path).suffix not in HEADER_SUFFIXES or file.is_submodule:
         return []
     old, new = (
-        {item.name for item in read_source_names(version.file(path or "")).of_kind(NameKind.CLASS)}
-        for version, path in ((versions.old, file.old_path), (versions.new, file.new_path))
+        {item.name for item in names.of_kind(NameKind.CLASS)} | names.hidden_classes
+        for names in (
+            read_source_names(versions.old.file(file.old_path)),
+            read_source_names(versions.new.file(file.new_path or "")),
+        )
     )
     return sorted(old - new)
 

@@ -115,6 +115,8 @@ class SourceNames:
         undefined_methods: the undefined methods that classes of a source call on themselves, each with
             the location of its first call.
         non_public: the private and protected members of the classes of a C++ header, with the names of the classes.
+        protected: the protected members, functions and nested classes of the classes of a C++ header.
+        hidden_classes: the names of the protected and private classes in a C++ source.
         has_star_import: whether an ``__init__.py`` imports all names of a module, so that it may have other names.
     """
 
@@ -135,6 +137,8 @@ class SourceNames:
     attributes: frozenset[str] = frozenset()
     undefined_methods: dict[str, Span] = field(default_factory=dict)
     non_public: frozenset[str] = frozenset()
+    protected: list[SourceName] = field(default_factory=list)
+    hidden_classes: set[str] = field(default_factory=set)
     has_star_import: bool = False
 
     def add(self, name: SourceName) -> None:

@@ -13,9 +13,15 @@ _CALL = re.compile(rf"\b(?P<name>\w*[Pp]aram(?:eter)?_?)\s*{_TEMPLATE}(?=\()")
 _NAME = re.compile(r"[~/]?[A-Za-z]\w*(?:[./]\w+)*")
 _FILE = re.compile(r".*\.(?:ya?ml|json|xml|urdf|srdf)")
 _SDF = r"\b\w*[sS][dD][fF]\w*"
-_ELEMENT = re.compile(
-    rf"{_SDF}\s*(?:->|\.)\s*(?:Get(?:Element)?|HasElement|FindElement)\s*{_TEMPLATE}\(\s*\"(?P<own>\w+)\"|"
-    rf"\b\w*Param\w*\s*{_TEMPLATE}\(\s*\*?{_SDF}\s*,\s*\"(?P<passed>\w+)\""
+_ELEMENT = (
+    rf"{{receiver}}\s*(?:->|\.)\s*(?:Get(?:Element)?|HasElement|FindElement)\s*{_TEMPLATE}\(\s*\"(?P<own>\w+)\"|"
+    rf"\b\w*Param\w*\s*{_TEMPLATE}\(\s*\*?{{receiver}}\s*,\s*\"(?P<passed>\w+)\""
+)
+"""The pattern of a read element; ``{receiver}`` is the pattern of the variables with elements."""
+_DECLARED = re.compile(r"\bsdf\s*::\s*ElementPtr\s*(?:const\s*)?&?\s*(?P<name>\w+)\s*[=;,){(]")
+_ASSIGNED = re.compile(
+    r"\b(?P<name>\w+)\s*=\s*(?:this\s*->\s*)?(?P<receiver>\w+)\s*(?:->|\.)\s*"
+    r"(?:GetElement|GetNextElement|GetFirstElement|FindElement)\s*\("
 )
 _GAZEBO = re.compile(r"\b\w*gazebo_ros\w*\s*(?:->|\.)\s*$")
 _DEFAULT = re.compile(r"\s*,\s*(?P<value>-?[\d.]+(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")\s*[,)]")
@@ -73,7 +79,17 @@ def read_elements(text: str) -> Iterator[ReadElement]:
     Args:
         text: the source without comments.
     """
-    for match in _ELEMENT.finditer(text):
+    names = "".join(rf"|\b{name}\b" for name in sorted(_find_elements(text)))
+    for match in re.finditer(_ELEMENT.replace("{receiver}", f"(?:{_SDF}{names})"), text):
         group = "own" if match["own"] is not None else "passed"
         default = _DEFAULT.match(text, match.end())
         yield ReadElement(match[group], "" if default is None else default["value"], match.start(group))
+
+
+def _find_elements(text: str) -> set[str]:
+    """Return the variables of a C++ source that are declared as elements of SDF or taken from other elements."""
+    names = {match["name"] for match in _DECLARED.finditer(text)}
+    for match in _ASSIGNED.finditer(text):
+        if match["receiver"] in names or re.fullmatch(_SDF, match["receiver"]):
+            names.add(match["name"])
+    return names

@@ -344,6 +344,7 @@ class _Reader:
             self._names.makes_node = True
             self._add(NameKind.NODE, _get_argument(call, 0, "node_name"), None)
         else:
+            self._names.makes_node |= function == "init_node"  # a node with a computed name
             self._read_other_call(call, function)
 
     def _read_ros1_call(self, call: ast.Call, function: str) -> None:

@@ -65,3 +65,15 @@ def find_removal_reason(items: Sequence[SourceName], names: SourceNames, path: s
             return phrase("programs that import '{name}' do not find it", name=text)
         return phrase("code of other packages that uses '{name}' does not build", name=text)
     return name_reason(str(text))
+
+
+def find_message_frame_reason(item: SourceName, names: SourceNames) -> Phrase | None:
+    """Return the reason why messages in another frame are breaking, or None if the source publishes no messages.
+
+    Args:
+        item: the old frame.
+        names: all names in the old source.
+    """
+    if all(other.kind is not NameKind.PUBLISHER for other in (*names.names, *names.expressions)):
+        return None
+    return phrase("programs that look for the frame '{name}' in the messages do not find it", name=item.name)
