@@ -167,6 +167,28 @@ def test_of_several_plans_the_shortest_path_is_taken(moveit):
     assert shortest.trajectory.path_length() == pytest.approx(min(1.0, *lengths), rel=0.02)
 
 
+def test_an_arc_leads_through_its_interim_point(moveit):
+    arm, tool = moveit.get_planning_component("arm"), RobotState(moveit.get_robot_model())
+    tool.joint_positions = {"lift": 0.4, "elbow": 1.2}
+    arm.set_start_state(robot_state=tool)
+    pose = tool.get_pose("tool")
+    goal = PoseStamped(pose=tool.get_pose("tool"))
+    goal.header.frame_id = "base"
+    goal.pose.position.y += 0.1
+    arm.set_goal_state(pose_stamped_msg=goal, pose_link="tool")
+    parameters = PlanRequestParameters(moveit, "line")
+    parameters.planner_id = "CIRC"
+    response = arm.plan(single_plan_parameters=parameters)
+    assert (bool(response), response.error_code.val) == (False, response.error_code.INVALID_MOTION_PLAN)
+    interim = (pose.position.x, pose.position.y + 0.05, pose.position.z + 0.05)
+    constraints = construct_link_constraint("tool", "base", interim, 0.001)
+    constraints.name = "interim"
+    arm.set_path_constraints(constraints)
+    trajectory = arm.plan(single_plan_parameters=parameters).trajectory
+    heights = [state.get_pose("tool").position.z for state, _ in trajectory]
+    assert max(heights) == pytest.approx(interim[2], abs=3e-3)
+
+
 def test_objects_are_found_until_they_are_removed(moveit):
     monitor = moveit.get_planning_scene_monitor()
     state = RobotState(moveit.get_robot_model())

@@ -67,7 +67,7 @@ class PlanningComponent:
         self._group = self._model.group(joint_model_group_name)
         self._start: RobotState | None = None
         self._goals: list[Any] = []
-        self._path_constraints: Any = None
+        self._path_constraints: Any = get_message("moveit_msgs/msg/Constraints")()
 
     @property
     def planning_group_name(self) -> str:
@@ -202,17 +202,21 @@ class PlanningComponent:
             session.log_warning(f"Planner '{choice.replaced}' is not available; {choice.planner} takes its place")
         trajectory, code = None, "SUCCESS"
         try:
+            path_constraint, arc = session.monitor.read_path_constraints(
+                choice.method, self._path_constraints, start.positions, group.tip
+            )
             request = PlanRequest(
                 group,
                 start.positions,
                 [session.monitor.read_goal(goal, start.positions, group.tip) for goal in self._goals],
-                self._read_path_constraint(start),
+                path_constraint,
                 choice.method,
                 choice.planner,
                 choice.parameters,
                 parameters.planning_time,
                 parameters.max_velocity_scaling_factor,
                 parameters.max_acceleration_scaling_factor,
+                arc=arc,
             )
             scene_state = session.monitor.scene_with(
                 robot_state_to_message(start), start.positions, None if scene is None else scene.scene
@@ -232,12 +236,6 @@ class PlanningComponent:
         if trajectory is not None:
             session.show(trajectory, response.start_state)
         return response
-
-    def _read_path_constraint(self, start: RobotState) -> Any:
-        if self._path_constraints is None:
-            return None
-        goal = self._session.monitor.read_goal(self._path_constraints, start.positions, self._group.tip)
-        return goal if goal.joints or goal.links else None
 
     def _named_state(self, name: str | None) -> RobotState | None:
         state = self._session.current_state()

@@ -14,14 +14,13 @@ from linkwright.geometry.arrays import Array
 from linkwright.graph import Node, Publisher
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_message, get_service
-from linkwright.planning.goals import Goal
 from linkwright.planning.groups import JointGroup
-from linkwright.planning.nodes.conversions import RequestError, arc_point_from_constraints, trajectory_message
+from linkwright.planning.nodes.conversions import RequestError, trajectory_message
 from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
-from linkwright.planning.planner import Method, MotionPlanner, PlanError, PlanRequest
+from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.timing import Trajectory
 
@@ -120,17 +119,14 @@ class PlanningServices:
                 f"Planner '{choice.replaced}' is not available; {choice.planner} takes its place"
             )
         goals = [self._monitor.read_goal(item, start, group.tip) for item in request.goal_constraints]
-        arc, path_constraint = None, Goal()
-        if choice.method is Method.CARTESIAN_ARC:
-            arc = arc_point_from_constraints(request.path_constraints, self._monitor.frame_lookup(start))
-        else:
-            path_constraint = self._monitor.read_goal(request.path_constraints, start, group.tip)
-        has_path_constraint = bool(path_constraint.joints or path_constraint.links)
+        path_constraint, arc = self._monitor.read_path_constraints(
+            choice.method, request.path_constraints, start, group.tip
+        )
         return PlanRequest(
             group,
             start,
             goals,
-            path_constraint if has_path_constraint else None,
+            path_constraint,
             choice.method,
             choice.planner,
             choice.parameters,

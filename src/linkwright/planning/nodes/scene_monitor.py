@@ -9,16 +9,19 @@ from typing import Any
 from linkwright.geometry.arrays import Array
 from linkwright.graph import Node, Publisher
 from linkwright.messages import get_service
+from linkwright.planning.cartesian import ArcPoint
 from linkwright.planning.collision_scene import CollisionScene
 from linkwright.planning.goals import Goal
 from linkwright.planning.nodes.conversions import (
     FrameLookup,
     InvalidShapeError,
     RequestError,
+    arc_point_from_constraints,
     goal_from_constraints,
 )
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_state import SceneState
+from linkwright.planning.planner import Method
 
 _PERIOD_S = 0.5
 
@@ -100,6 +103,25 @@ class SceneMonitor:
         if name := goal.find_invalid_number():
             raise RequestError("INVALID_GOAL_CONSTRAINTS", f"a constraint of '{name}' has a number that is not finite")
         return goal
+
+    def read_path_constraints(
+        self, method: Method, constraints: Any, positions: Array, default_link: str | None
+    ) -> tuple[Goal | None, ArcPoint | None]:
+        """Return what a moveit_msgs/msg/Constraints asks of a path: what must hold along it, or the point of an arc.
+
+        Args:
+            method: the method of the plan; only that of arcs reads a point.
+            constraints: the constraints.
+            positions: the positions of all joints, for frames of links.
+            default_link: the link of constraints that name none.
+
+        Raises:
+            RequestError: a frame, link or joint is not known, a region is not valid, or there is no point for an arc.
+        """
+        if method is Method.CARTESIAN_ARC:
+            return None, arc_point_from_constraints(constraints, self.frame_lookup(positions))
+        goal = self.read_goal(constraints, positions, default_link)
+        return (goal if goal.joints or goal.links else None), None
 
     def scene_with(self, state: Any, positions: Array, scene: SceneState | None = None) -> SceneState:
         """Return the scene with the objects that a moveit_msgs/msg/RobotState attaches."""
