@@ -9,8 +9,6 @@ from typing import Literal
 
 from linkwright.diagnostics import Phrase, phrase
 
-NO_OPTIONS: Mapping[str, int] = MappingProxyType({})
-
 
 @dataclass(frozen=True)
 class PanelProgram:
@@ -26,7 +24,7 @@ class PanelProgram:
     panel: str
     display_class: str = ""
     positional_kind: Literal["", "topic", "fields", "node"] = ""
-    ignored_options: Mapping[str, int] = field(default=NO_OPTIONS)
+    ignored_options: Mapping[str, int] = field(default_factory=dict)
 
 
 PANEL_PROGRAMS: Mapping[tuple[str, str], PanelProgram] = MappingProxyType(
