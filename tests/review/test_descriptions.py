@@ -306,9 +306,9 @@ def test_interface_that_other_hardware_offers_is_not_lost(package, compare):
 
 
 @pytest.mark.parametrize(
-    ("new", "is_breaking"), [("prismatic", True), ("continuous", False), ("fixed", True), ("revolute", False)]
+    ("new", "is_breaking"), [("prismatic", True), ("continuous", True), ("fixed", True), ("revolute", False)]
 )
-def test_other_unit_of_a_joint_is_breaking(package, compare, new, is_breaking):
+def test_other_type_of_a_joint_is_breaking(package, compare, new, is_breaking):
     package.write({"arm_description/urdf/segment.xacro": MACRO.replace('type="revolute"', f'type="{new}"')})
     assert bool(breaking(compare(package))) == is_breaking
 

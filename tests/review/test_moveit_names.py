@@ -21,18 +21,24 @@ SETTINGS = """controller_list:
     type: GripperCommand
 manager:
   controller_names: [wrist]
-  wrist: {action_ns: follow, type: FollowJointTrajectory, joints: [upper]}
+  wrist: {action_ns: follow, type: FollowJointTrajectory, joints: [upper, lower]}
 joint_limits:
-  upper: {has_velocity_limits: true, max_velocity: 1.0, has_acceleration_limits: false}
+  upper: {has_velocity_limits: true, max_velocity: 1.0, has_acceleration_limits: false, max_position: 2.0}
   lower: {has_velocity_limits: true, max_velocity: 2.0, has_acceleration_limits: false}
 planner_configs:
   EST: {type: geometric::EST, range: 0.0, goal_bias: 0.05}
   RRT: {type: geometric::RRT, range: 0.0, delay: 1}
 arm:
   planner_configs: [EST, RRT]
+  kinematics_solver: kdl
+leg:
+  kinematics_solver: kdl
+  kinematics_solver_timeout: 0.1
+  kinematics_solver_attempts: 3
 """
 HAND = "  - name: ns/hand_controller\n    action_ns: grip\n    type: GripperCommand\n"
 LOWER = "  lower: {has_velocity_limits: true, max_velocity: 2.0, has_acceleration_limits: false}\n"
+LEG = "leg:\n  kinematics_solver: kdl\n  kinematics_solver_timeout: 0.1\n  kinematics_solver_attempts: 3\n"
 RRT = "  RRT: {type: geometric::RRT, range: 0.0, delay: 1}\n"
 
 
@@ -73,6 +79,17 @@ def review_changes(repository, compare):
          "programs that plan with the planner 'RRT' do not find it"),
         ("  RRT:", "  RRTquick:", "planner_configs.RRT renamed to planner_configs.RRTquick",
          "programs that plan with the planner 'RRT' do not find it"),
+        ("action_ns: grip\n    type: GripperCommand", "action_ns: grip\n    type: FollowJointTrajectory",
+         "controller_list[ns/hand_controller].type GripperCommand -> FollowJointTrajectory",
+         ("the controller 'ns/hand_controller' must serve the action 'FollowJointTrajectory'"
+          " instead of 'GripperCommand'")),
+        ("[upper, lower]", "[upper, elbow]", "manager.wrist.joints [upper, lower] -> [upper, elbow]",
+         "MoveIt finds no controller for the joint 'lower'"),
+        ("max_position: 2.0", "max_position: 1.5", "joint_limits.upper.max_position 2.0 -> 1.5",
+         "positions of 'upper' above 1.5 are now outside of its limits"),
+        (LEG, "", "leg removed: kinematics_solver kdl, kinematics_solver_timeout 0.1, kinematics_solver_attempts 3",
+         "MoveIt has no inverse kinematics for the group 'leg'"),
+        ("leg:\n", "foot:\n", "leg renamed to foot", "MoveIt has no inverse kinematics for the group 'leg'"),
         ("[EST, RRT]", "[RRT]", "arm.planner_configs [EST, RRT] -> [RRT]",
          "programs that plan with the planner 'EST' do not find it"),
     ],
@@ -93,6 +110,10 @@ def test_name_that_is_gone_is_one_breaking_change(review_changes, old, new, sent
         ("  lower: {has_velocity_limits: true, max_velocity", "  lower: {has_velocity_limits: false, max_velocity"),
         ("action_ns: grip", "action_ns: $(arg action)"),
         ("[EST, RRT]", "[RRT, EST]"),
+        ("max_position: 2.0", "max_position: 2.5"),
+        ("max_position: 2.0", "max_position: 1.99"),
+        ("[upper, lower]", "[lower, upper, elbow]"),
+        ("leg:\n  kinematics_solver: kdl", "leg:\n  kinematics_solver: lma"),
         ("joint_limits:", "limits:\n  joint_limits:"),
     ],
 )

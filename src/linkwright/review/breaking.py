@@ -7,6 +7,7 @@ from collections.abc import Collection
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, interfaces_of
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.joint_limits import find_limited_reason
 from linkwright.review.names_in_plugins import NAME_TAGS, extract_used_name
 from linkwright.urdf import Robot
 
@@ -28,7 +29,7 @@ def find_breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phra
     if difference.subject == "link":
         return _find_link_reason(difference)
     if difference.subject == "joint":
-        return _find_joint_reason(difference, old)
+        return _find_joint_reason(difference, old, new)
     if difference.subject == "extension":
         return find_extension_reason(difference, interfaces_of(old.extensions) - interfaces_of(new.extensions))
     return None
@@ -39,7 +40,7 @@ def _find_link_reason(difference: Difference) -> Phrase | None:
     return frame_reason(name or "") if difference.kind in ("removed", "renamed") else None
 
 
-def _find_joint_reason(difference: Difference, old: Robot) -> Phrase | None:
+def _find_joint_reason(difference: Difference, old: Robot, new: Robot) -> Phrase | None:
     if difference.kind in ("removed", "renamed"):
         name = (difference.old if difference.kind == "renamed" else difference.name) or ""
         joint = old.joints.get(name)
@@ -52,7 +53,8 @@ def _find_joint_reason(difference: Difference, old: Robot) -> Phrase | None:
         return phrase("'{name}' no longer has a position in /joint_states", name=difference.name)
     if (difference.old == _LINEAR) != (difference.new == _LINEAR):
         return phrase("the positions of '{name}' change between rad and m", name=difference.name)
-    return None
+    new_joint = new.joints.get(difference.name)
+    return None if new_joint is None else find_limited_reason(difference.old, new_joint)
 
 
 def frame_reason(name: str) -> Phrase:

@@ -1,14 +1,15 @@
-"""Check shared names in MoveIt parameter files: controllers, planners and limited joints."""
+"""Check shared names in MoveIt parameter files: controllers, planners, groups and limited joints."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.breaking import joint_name_reason
 from linkwright.review.files.parameter_names import can_evaluate_to, list_part_paths, make_controller_reason
 from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.joint_limits import LOWER, UPPER, find_narrower_reason
 from linkwright.review.list_changes import list_items
 
 _CONTROLLER = re.compile(r"(?:.*[._])?controller_list\[(?!(?:old )?\d+\])(?P<name>[^\]]+)\]")
@@ -21,6 +22,13 @@ _LIMITED_JOINT = re.compile(r"(?:.*\.)?joint_limits\.(?P<name>[^.\[]+)")
 """The path of the limits of a joint."""
 _LIMIT = re.compile(r"has_\w+_limits|(max|min)_\w+")
 """The last name in the path of a limit of a joint."""
+_POSITION_LIMIT = re.compile(r"(?:.*\.)?joint_limits\.(?P<name>[^.\[]+)\.(?P<side>min|max)_position")
+"""The path of a position limit of a joint."""
+_POSITION_SIDES = {"min": LOWER, "max": UPPER}
+_CONTROLLER_VALUE = re.compile(r"(?P<part>(?:.*[.\[])?(?P<name>[^.\[\]]+)\]?)\.(?P<key>type|joints)")
+"""The path of the action or the joints of a controller."""
+_SOLVER = re.compile(r"(?:.*\.)?(?P<name>[^.\[]+)\.kinematics_solver")
+"""The path of the kinematics solver of a group."""
 _ACTION_NAMESPACE = re.compile(r"(?:.*[.\[])?(?P<controller>[^.\[\]]+)\]?\.action_ns")
 """The path of the namespace of the action that MoveIt calls."""
 
@@ -38,7 +46,13 @@ class MoveItRules:
         self._names = {
             pattern: {match["name"] for part in parts if (match := pattern.fullmatch(part))}
             for parts in [{part for name in new for part in list_part_paths(name)}]
-            for pattern in (_CONTROLLER, _PLANNER, _LIMITED_JOINT)
+            for pattern in (_CONTROLLER, _PLANNER, _LIMITED_JOINT, _SOLVER)
+        }
+        self._new_joints = {
+            joint
+            for name, value in new.items()
+            if (controller := _CONTROLLER_VALUE.fullmatch(name)) is not None and controller["key"] == "joints"
+            for joint in list_items(value.text)
         }
         parts = {part for name in old for part in list_part_paths(name)}
         self._old_planners = {match["name"] for part in parts if (match := _PLANNER.fullmatch(part))}
@@ -52,8 +66,9 @@ class MoveItRules:
         if action is not None and old.text and not can_evaluate_to(new.text, old.text):
             name = f"{action['controller']}/{old.text}"
             return phrase("the action server '{name}' gets no goals", name=name)
-        if not _PLANNER_LIST.fullmatch(parameter) or not old.is_list:
-            return None
+        reason = self._find_controller_reason(parameter, old, new) or _find_position_reason(parameter, old, new)
+        if reason is not None or not _PLANNER_LIST.fullmatch(parameter) or not old.is_list:
+            return reason
         items = list_items(new.text)
         removed = {
             name for name in list_items(old.text) if name and not any(can_evaluate_to(item, name) for item in items)
@@ -64,7 +79,7 @@ class MoveItRules:
     def find_removal_reason(self, parameter: str) -> Phrase | None:
         """Return the reason why removing a parameter is breaking, or None if it is not."""
         for part in list_part_paths(parameter):
-            for pattern, reason in ((_CONTROLLER, make_controller_reason), (_PLANNER, _make_planner_reason)):
+            for pattern, reason in _REMOVAL_REASONS:
                 match = pattern.fullmatch(part)
                 if match is not None and self._is_removed(pattern, match["name"]):
                     return reason(match["name"])
@@ -74,13 +89,35 @@ class MoveItRules:
         """Return the reason why renaming or moving a part is breaking; None if it is not."""
         joint = _LIMITED_JOINT.fullmatch(part)
         if joint is None:
-            return self.find_removal_reason(part)
+            solver = f"{part}.kinematics_solver"
+            return self.find_removal_reason(solver if solver in self._old else part)
         has_limits = any(
             name.startswith(f"{part}.") and _LIMIT.fullmatch(name.removeprefix(f"{part}.")) for name in self._old
         )
         return (
             joint_name_reason(joint["name"]) if has_limits and self._is_removed(_LIMITED_JOINT, joint["name"]) else None
         )
+
+    def _find_controller_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
+        """Return the reason why another action, or a lost joint, of a controller is breaking; None if it is not."""
+        match = _CONTROLLER_VALUE.fullmatch(parameter)
+        is_controller = match is not None and (
+            _CONTROLLER.fullmatch(match["part"]) or f"{match['part']}.action_ns" in self._old
+        )
+        if match is None or not is_controller:
+            return None
+        if match["key"] == "type":
+            is_other = bool(old.text and new.text) and not can_evaluate_to(new.text, old.text)
+            return phrase(
+                "the controller '{name}' must serve the action '{new}' instead of '{old}'",
+                name=match["name"], new=new.text, old=old.text,
+            ) if is_other else None  # fmt: skip
+        names = (name for name in list_items(old.text) if name and name not in self._new_joints)
+        lost = [name for name in names if not any(can_evaluate_to(joint, name) for joint in self._new_joints)]
+        return counted(
+            "MoveIt finds no controller for the joint {names}", "MoveIt finds no controller for the joints {names}",
+            len(lost), names=quoted_names(lost),
+        ) if lost else None  # fmt: skip
 
     def _is_removed(self, pattern: re.Pattern[str], name: str) -> bool:
         """Return whether the new file has parts of a kind, but none that can have the name.
@@ -91,5 +128,25 @@ class MoveItRules:
         return bool(names) and name not in names and not any(can_evaluate_to(new_name, name) for new_name in names)
 
 
+def _find_position_reason(parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
+    """Return the reason why a changed position limit of a joint is breaking; None if it is not."""
+    limit = _POSITION_LIMIT.fullmatch(parameter)
+    if limit is None:
+        return None
+    return find_narrower_reason(limit["name"], {_POSITION_SIDES[limit["side"]]: (old.text, new.text)})
+
+
+def _make_solver_reason(group: str) -> Phrase:
+    return phrase("MoveIt has no inverse kinematics for the group '{group}'", group=group)
+
+
 def _make_planner_reason(name: str) -> Phrase:
     return phrase("programs that plan with the planner '{name}' do not find it", name=name)
+
+
+_REMOVAL_REASONS = (
+    (_CONTROLLER, make_controller_reason),
+    (_PLANNER, _make_planner_reason),
+    (_SOLVER, _make_solver_reason),
+)
+"""The reasons why removing a part is breaking, by the path of the part."""

@@ -164,7 +164,8 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive_joints: C
     if changes:
         text = phrase("{entry}: {changes}", entry=_format_title(new), changes=joined_first(changes, MAX_NAMES))
         reason = _find_lost_joints_reason(pair.versions.old, old, new, passive_joints)
-        pair.add(text, pair.location(new.element.span()), reason or _find_planning_frame_reason(old, [new]))
+        reason = reason or _find_tip_reason(old, new) or _find_planning_frame_reason(old, [new])
+        pair.add(text, pair.location(new.element.span()), reason)
 
 
 def _find_planning_frame_reason(old: _Entry, new: Iterable[_Entry]) -> Phrase | None:
@@ -203,6 +204,22 @@ def _find_lost_joints_reason(
         "programs that move the joints {names} of the group '{group}' do not find them",
         len(lost), names=quoted_names(lost), group=new.name,
     )  # fmt: skip
+
+
+def _find_tip_reason(old: _Entry, new: _Entry) -> Phrase | None:
+    """Return the reason why another end of a chain is breaking; None for other changes.
+
+    It is the link that a pose goal moves if the goal names no link, see ``getEndEffectorLink`` of MoveIt.
+    """
+    tips = [[chain.attributes.get("tip_link", "") for chain in entry.element.elements("chain")] for entry in (old, new)]
+    if old.tag != "group" or [len(links) for links in tips] != [1, 1] or tips[0] == tips[1] or "$" in str(tips):
+        return None
+    return phrase(
+        "pose goals for the group '{group}' that name no link move '{new}' instead of '{old}'",
+        group=new.name,
+        new=tips[1][0],
+        old=tips[0][0],
+    )
 
 
 def _is_literal_joint(member: str) -> bool:

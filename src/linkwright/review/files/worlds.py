@@ -29,6 +29,7 @@ from linkwright.review.files.sdf_numbers import (
     join_inertials,
 )
 from linkwright.review.files.templates import is_template, may_be_equal, read_template
+from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.left_names import find_left_names
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.plugins import (
@@ -48,6 +49,8 @@ _NAMED_ELEMENT = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|se
 """The path of an element whose name programs and other models use."""
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
+_JOINT_LIMIT = re.compile(r"\bjoint (?P<name>\S+) axis2? limit (?P<side>lower|upper)$")
+"""The path of a position limit of a joint."""
 _SET_VARIABLE = re.compile(r"(?:^|.* )set [\w.]+(?: \d+)?")
 """The path of a variable that a template sets. Its name does not show the use of the value."""
 _INVISIBLE_TAGS = frozenset(
@@ -252,6 +255,9 @@ def _find_breaking_reason(difference: Difference, added: frozenset[str]) -> Phra
         reason = find_missing_topics_reason(difference, added)
         if reason is not None:
             return reason
+    limit = _JOINT_LIMIT.search(path)
+    if limit is not None and difference.old and difference.new:
+        return find_written_reason(limit["name"], limit["side"], difference.old, difference.new)
     is_used = "plugin " in difference.property or "sensor" in difference.property
     return find_plugin_name_reason(difference) if is_used else None
 

@@ -19,6 +19,7 @@ from linkwright.review.breaking import (
 from linkwright.review.changes import Change, Effect
 from linkwright.review.element_values import format_values
 from linkwright.review.files.semantics import find_removal_reason
+from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.merging import merge_reasons, name_edit
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
@@ -273,10 +274,12 @@ class _ReportedDifference:
         if len(difference.path) == 1 and old.tag in ("link", "joint"):
             name = old.attributes.get("name", "")
             if not is_removed:
-                return None
+                return self._find_joint_reason(old)
             if old.tag == "link":
                 return frame_reason(name)
             return joint_name_reason(name) if old.attributes.get("type") in MOVING_TYPES else None
+        if old.tag == "limit":
+            return self._find_joint_reason(old)
         if len(difference.path) == 1 and difference.value == "name" and old.tag == "world":
             return world_reason(old.attributes.get("name", ""))
         if len(difference.path) == 1 and is_removed and old.tag in ("group", "group_state", "end_effector"):
@@ -294,6 +297,14 @@ class _ReportedDifference:
         return find_extension_reason(
             Difference("extension", root, "changed", name, difference.old or "-", difference.new)
         )
+
+    def _find_joint_reason(self, old: Element) -> Phrase | None:
+        """Return the reason why a changed type or limit of a joint is breaking; None if it is not."""
+        difference = self.difference
+        tag, _, name = difference.path[0].partition(" ")
+        if tag != "joint" or old.tag not in ("joint", "limit") or not difference.old or not difference.new:
+            return None
+        return find_written_reason(name, difference.value, difference.old, difference.new)
 
     def _find_lost_name_reason(self, old: Element) -> Phrase | None:
         """Return the reason why removing a Gazebo element is breaking; None if it is not.

@@ -19,6 +19,7 @@ from linkwright.review.element_values import format_own_content
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import find_disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
+from linkwright.review.joint_limits import find_limits_reason
 from linkwright.review.merging import merge_reasons, merge_changes
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.parts.expanded import find_expanded_elements
@@ -139,6 +140,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             (None if is_still_offered(difference, added_names) else find_breaking_reason(difference, old, new))
             or find_missing_topics_reason(difference, added_names)
             or _find_expression_reason(difference)
+            or find_limits_reason(difference.values if isinstance(difference, JoinedDifferences) else (difference,), new)
         )
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         text = added_links.sentence(difference) or format_difference(difference)
