@@ -208,7 +208,7 @@ DERIVED = "classes that derive from the class and use the members do not build"
     [
         ("  enum Kind { NONE = 0, LONG = 1 };\n", "", ["protected members removed: 'Arm::Kind'"]),
         ("int count", "int number", ["protected members removed: 'Arm::count' (int)"]),
-        ("  void move(double speed);\n", "", ["protected members removed: 'Arm::move'"]),
+        ("  void move(double speed);\n", "", ["protected members removed: 'Arm::move' (double)"]),
         ("  int count;\n  void move(double speed);\nprivate:\n", "  void move(double speed);\nprivate:\n  int count;\n",
          ["protected members removed: 'Arm::count' (int)"]),
         ("  Arm();\nprotected:\n", "  Arm();\n", []),
@@ -224,3 +224,24 @@ def test_classes_that_derive_from_an_installed_class_need_protected_members(repo
     assert [str(change.reason) for item in result.subjects for change in item.changes if change.reason] == (
         [DERIVED] if expected else []
     )
+
+
+CALLS = "classes that derive from the class and call or define 'Arm::move' do not build"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "reason"),
+    [
+        ("int count", "double count", "protected member 'Arm::count': type int -> double", None),
+        ("void move(double speed)", "void move(int steps)", "protected function 'Arm::move': (double) -> (int)", CALLS),
+        ("void move(double speed)", "void move(double speed, int n = 1)",
+         "protected function 'Arm::move': (double) -> (double, int = ...)", None),
+        ("  int count;", "  int count;\n  int size;", "protected members added: 'Arm::size' (int)", None),
+    ],
+)  # fmt: skip
+def test_types_of_protected_members_of_an_installed_class(repository, compare, old, new, expected, reason):
+    path = "arm/include/arm/arm.hpp"
+    repository.commit({**HEADER_PACKAGE, path: PROTECTED_HEADER})
+    repository.write({path: PROTECTED_HEADER.replace(old, new)})
+    first = subject(compare(repository), path).changes[0]
+    assert (str(first.sentence), first.reason and str(first.reason)) == (expected, reason)

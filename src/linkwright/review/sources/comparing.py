@@ -18,7 +18,7 @@ from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, Chang
 from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
-from linkwright.review.sources.details import compare_details
+from linkwright.review.sources.details import compare_details, format_name, format_names
 from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
     PYTHON_SUFFIX,
@@ -29,7 +29,7 @@ from linkwright.review.sources.names import (
     SourceNames,
 )
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
-from linkwright.review.sources.protected_members import find_lost_protected
+from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.shared_constants import find_constant_users
@@ -37,8 +37,6 @@ from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
-_MAX_ARGUMENT_CHARACTERS = 80
-"""The maximum number of characters of shown arguments of an added function or class."""
 _MAX_FUNCTION_CHANGES = 3
 """The maximum number of functions with changed arguments in a file that have lines of their own."""
 _UNIT_NAMES = re.compile(
@@ -300,18 +298,18 @@ class _SourcePair:
         if not is_used_by_others(kind, self.file.path, old_names):
             return
         if added and (kind not in (NameKind.FUNCTION, NameKind.MEMBER) or self.file.old_path is not None):
-            text = phrase("{kind} added: {names}", kind=kind.plural, names=_format_names(added))
+            text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
             reason = _find_required_reason(added) if self.file.old_path is not None else None
             yield self._make_change(text, added[0].span, self.new, reason)
         new_names = self.new.get_names(self.file.new_path)
         non_public = new_names.non_public | new_names.hidden_classes
         lost = [item for item in removed if item.name not in non_public]
         if lost:
-            text = phrase("{kind} removed: {names}", kind=kind.plural, names=_format_names(lost))
+            text = phrase("{kind} removed: {names}", kind=kind.plural, names=format_names(lost))
             yield self._make_change(text, lost[0].span, self.old, self._find_removal_reason(lost, old_names))
         newly_hidden = [item for item in removed if item.name in non_public]
         if newly_hidden:
-            text = phrase("{kind} no longer public: {names}", kind=kind.plural, names=_format_names(newly_hidden))
+            text = phrase("{kind} no longer public: {names}", kind=kind.plural, names=format_names(newly_hidden))
             yield self._make_change(
                 text, newly_hidden[0].span, self.old, self._find_removal_reason(newly_hidden, old_names)
             )
@@ -361,13 +359,13 @@ class _SourcePair:
                 yield from self._compare_patterns(item, other)
         for item, other in _take_pairs(removed, added_expressions):
             text = phrase(
-                "{kind} {name} has a computed name now: {new}", kind=kind.title, name=_format_name(item), new=other.name
+                "{kind} {name} has a computed name now: {new}", kind=kind.title, name=format_name(item), new=other.name
             )
             reason = self._find_default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
             yield self._make_change(text, other.span, self.new, reason)
         for item, other in _take_pairs(added, removed_expressions):
             text = phrase(
-                "{kind} {name} had a computed name: {old}", kind=kind.title, name=_format_name(item), old=other.name
+                "{kind} {name} had a computed name: {old}", kind=kind.title, name=format_name(item), old=other.name
             )
             reason = self._find_default_reason(other, old_names.defaults.get(other.name, ""), item.name, old_names)
             yield self._make_change(text, item.span, self.new, reason)
@@ -379,7 +377,7 @@ class _SourcePair:
         ]
         if added_expressions:
             text = phrase(
-                "{kind} with computed names added: {names}", kind=kind.plural, names=_format_names(added_expressions)
+                "{kind} with computed names added: {names}", kind=kind.plural, names=format_names(added_expressions)
             )
             yield self._make_change(text, added_expressions[0].span, self.new, None)
             removed.clear()
@@ -387,7 +385,7 @@ class _SourcePair:
             text = phrase(
                 "{kind} with computed names removed: {names}",
                 kind=kind.plural,
-                names=_format_names(removed_expressions),
+                names=format_names(removed_expressions),
             )
             yield self._make_change(text, removed_expressions[0].span, self.old, None)
             added.clear()
@@ -469,12 +467,11 @@ class _SourcePair:
                 yield self._make_change(text, span, self.new, phrase("the call fails"))
 
     def _compare_protected(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the protected members that classes of an installed header lost."""
-        lost = find_lost_protected(old_names, new_names)
-        if lost and self.file.new_path is not None and self._is_interface(self.file.old_path or self.file.path):
-            text = phrase("protected members removed: {names}", names=_format_names(lost))
-            reason = phrase("classes that derive from the class and use the members do not build")
-            yield self._make_change(text, lost[0].span, self.old, reason)
+        """Yield the changes to protected members of the classes of an installed header."""
+        if None in (self.file.old_path, self.file.new_path) or not self._is_interface(self.file.old_path or ""):
+            return
+        for change in compare_protected(old_names, new_names):
+            yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, change.reason)
 
     @staticmethod
     def _make_change(text: Phrase, span: Span, side: ChangedSources, reason: Phrase | None) -> Change:
@@ -489,25 +486,13 @@ def _is_number(rate: str) -> bool:
     return re.search(r"[A-Za-z_]{2,}", _UNIT_NAMES.sub("", re.sub(r"(\d)[a-z]+", r"\1", argument))) is None
 
 
-def _format_name(item: SourceName) -> str:
-    """Return a name with its type, default or arguments."""
-    arguments = dict(item.details).get(Detail.ARGUMENTS, "()")
-    if arguments != "()" and len(arguments) <= _MAX_ARGUMENT_CHARACTERS:
-        return f"'{item.name}' {arguments}"
-    return f"'{item.name}' ({item.type})" if item.type else f"'{item.name}'"
-
-
 def _format_rename(old: SourceName, new: SourceName) -> Phrase:
-    return phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=_format_name(old), new=_format_name(new))
+    return phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=format_name(old), new=format_name(new))
 
 
 def _is_same_frame(old: SourceName, new: SourceName) -> bool:
     """Return whether two names mean the same frame. tf ignores slashes at the ends of a name."""
     return old.kind in (NameKind.FRAME, NameKind.MESSAGE_FRAME) and old.name.strip("/") == new.name.strip("/")
-
-
-def _format_names(items: Sequence[SourceName]) -> Phrase:
-    return joined_first(map(_format_name, items), MAX_NAMES)
 
 
 def _find_required_reason(items: Sequence[SourceName]) -> Phrase | None:

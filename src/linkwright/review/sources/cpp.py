@@ -185,7 +185,7 @@ class _Reader:
             else:
                 overloads.setdefault(function.name, []).append(function)
         for name, functions in overloads.items():
-            types = "; ".join(sorted(", ".join(function.parameters) for function in functions))
+            types = _join_overloads(functions)
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
             start = self._text.find(name.rpartition("::")[2], functions[0].start)
             self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
@@ -194,12 +194,15 @@ class _Reader:
             self._add(NameKind.MEMBER, member.name, member.start, end, member.type)
         non_public = (read_declared_functions(self._text, HIDDEN), read_declared_members(self._text, HIDDEN))
         self._names.non_public = frozenset(item.name for items in non_public for item in items)
+        protected: dict[str, list[DeclaredFunction]] = {}
         for function in read_declared_functions(self._text, PROTECTED):
             if not function.is_override:
-                short = function.name.rpartition("::")[2]
-                start = max(function.start, self._text.find(short, function.start))
-                span = self._make_span(start, start + len(short))
-                self._names.protected.append(SourceName(NameKind.FUNCTION, function.name, "", span))
+                protected.setdefault(function.name, []).append(function)
+        for name, functions in protected.items():
+            short = name.rpartition("::")[2]
+            start = max(functions[0].start, self._text.find(short, functions[0].start))
+            span = self._make_span(start, start + len(short))
+            self._names.protected.append(SourceName(NameKind.FUNCTION, name, _join_overloads(functions), span))
         for member in read_declared_members(self._text, PROTECTED):
             span = self._make_span(member.start, member.start + len(member.name.rpartition("::")[2]))
             self._names.protected.append(SourceName(NameKind.MEMBER, member.name, member.type, span))
@@ -422,6 +425,11 @@ class _Reader:
         while begin < end and self._text[begin].isspace():
             begin += 1
         return self._source.span(begin, max(end, begin + 1))
+
+
+def _join_overloads(functions: Sequence[DeclaredFunction]) -> str:
+    """Return the parameters of each overload of a function."""
+    return "; ".join(sorted(", ".join(function.parameters) for function in functions))
 
 
 def _find_constants(text: str) -> Mapping[str, str]:

@@ -3,17 +3,33 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.names import NO, Detail, NameKind, SourceName
 from linkwright.review.sources.signatures import parse_signature
 
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _BEST_EFFORT = re.compile(r"best_?effort|sensor_?data", re.IGNORECASE)
 _TRANSIENT = re.compile(r"transient_?local|latching", re.IGNORECASE)
+_MAX_ARGUMENT_CHARACTERS = 80
+"""The maximum number of characters of shown arguments of an added function or class."""
 _DEFAULT = " = ..."
 """The end of the text of a function parameter with a default."""
+
+
+def format_name(item: SourceName) -> str:
+    """Return a name with its type, default or arguments."""
+    arguments = dict(item.details).get(Detail.ARGUMENTS, "()")
+    if arguments != "()" and len(arguments) <= _MAX_ARGUMENT_CHARACTERS:
+        return f"'{item.name}' {arguments}"
+    return f"'{item.name}' ({item.type})" if item.type else f"'{item.name}'"
+
+
+def format_names(items: Sequence[SourceName]) -> Phrase:
+    """Return the names with their types, up to a limit."""
+    return joined_first(map(format_name, items), MAX_NAMES)
 
 
 def compare_details(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
@@ -41,8 +57,8 @@ def _compare_types(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, P
     if new.kind is NameKind.FUNCTION:
         reason = phrase("code that calls '{name}' with the old arguments does not build", name=new.name)
         yield (
-            _format_overload_change(new.name, old.type, new.type),
-            None if _accepts_all(old.type, new.type) else reason,
+            format_overload_change(new.name, old.type, new.type),
+            None if accepts_all(old.type, new.type) else reason,
         )
     elif new.kind in (NameKind.PARAMETER, NameKind.OPTION, NameKind.ELEMENT):
         text = phrase(
@@ -62,7 +78,7 @@ def _compare_types(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, P
         yield text, None if new.kind is NameKind.MEMBER else reason
 
 
-def _format_overload_change(name: str, old: str, new: str) -> Phrase:
+def format_overload_change(name: str, old: str, new: str) -> Phrase:
     """Return the change to the parameters of a function.
 
     Only overloads that one version lacks are shown.
@@ -79,7 +95,7 @@ def _format_overload_change(name: str, old: str, new: str) -> Phrase:
     return phrase("function '{name}': {old} -> {new}", name=name, old=removed, new=added)
 
 
-def _accepts_all(old: str, new: str) -> bool:
+def accepts_all(old: str, new: str) -> bool:
     """Return whether new overloads of a function accept the arguments of all old overloads."""
     overloads = [_split_overloads(text) for text in new.split("; ")]
     return all(any(_accepts(_split_overloads(text), overload) for overload in overloads) for text in old.split("; "))

@@ -13,12 +13,18 @@ _CALL = re.compile(rf"\b(?P<name>\w*[Pp]aram(?:eter)?_?)\s*{_TEMPLATE}(?=\()")
 _NAME = re.compile(r"[~/]?[A-Za-z]\w*(?:[./]\w+)*")
 _FILE = re.compile(r".*\.(?:ya?ml|json|xml|urdf|srdf)")
 _SDF = r"\b\w*[sS][dD][fF]\w*"
+_READ = rf"\s*(?:->|\.)\s*(?:Get(?:Element|Attribute)?|Has(?:Element|Attribute)|FindElement)\s*{_TEMPLATE}\(\s*"
 _ELEMENT = (
-    rf"{{receiver}}\s*(?:->|\.)\s*(?:Get(?:Element)?|HasElement|FindElement)\s*{_TEMPLATE}\(\s*\"(?P<own>\w+)\"|"
+    rf"{{receiver}}{_READ}\"(?P<own>\w+)\"|"
     rf"\b\w*Param\w*\s*{_TEMPLATE}\(\s*\*?{{receiver}}\s*,\s*\"(?P<passed>\w+)\""
 )
 """The pattern of a read element; ``{receiver}`` is the pattern of the variables with elements."""
-_DECLARED = re.compile(r"\bsdf\s*::\s*ElementPtr\s*(?:const\s*)?&?\s*(?P<name>\w+)\s*[=;,){(]")
+_CHAINED = re.compile(rf"\b(?:Get|GetNext|GetFirst|Find)Element\s*\([^()]*\)(?={_READ}\"(?P<own>\w+)\")")
+"""An element that is read from another one in the same expression, such as ``sdf->GetElement("a")->Get<int>("b")``."""
+_DECLARED = re.compile(
+    r"(?:\bsdf\s*::\s*Element(?:Const)?Ptr|\bshared_ptr\s*<\s*(?:const\s+)?sdf\s*::\s*Element(?:\s+const)?\s*>)"
+    r"\s*(?:const\s*)?&?\s*(?P<name>\w+)\s*[=;,){(]"
+)
 _ASSIGNED = re.compile(
     r"\b(?P<name>\w+)\s*=\s*(?:this\s*->\s*)?(?P<receiver>\w+)\s*(?:->|\.)\s*"
     r"(?:GetElement|GetNextElement|GetFirstElement|FindElement)\s*\("
@@ -80,9 +86,12 @@ def read_elements(text: str) -> Iterator[ReadElement]:
         text: the source without comments.
     """
     names = "".join(rf"|\b{name}\b" for name in sorted(_find_elements(text)))
-    for match in re.finditer(_ELEMENT.replace("{receiver}", f"(?:{_SDF}{names})"), text):
+    matches = [*re.finditer(_ELEMENT.replace("{receiver}", f"(?:{_SDF}{names})"), text)]
+    if matches:  # other libraries have elements, too
+        matches += _CHAINED.finditer(text)
+    for match in matches:
         group = "own" if match["own"] is not None else "passed"
-        default = _DEFAULT.match(text, match.end())
+        default = _DEFAULT.match(text, match.end(group) + 1)
         yield ReadElement(match[group], "" if default is None else default["value"], match.start(group))
 
 

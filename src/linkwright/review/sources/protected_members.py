@@ -1,13 +1,51 @@
-"""Find the protected members that the classes of a C++ header lost."""
+"""Compare the protected members of the classes of a C++ header, which derived classes use."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.review.sources.details import accepts_all, format_names, format_overload_change
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 
 _KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 
 
-def find_lost_protected(old: SourceNames, new: SourceNames) -> list[SourceName]:
+class ProtectedChange(NamedTuple):
+    """A change to protected members.
+
+    Attributes:
+        text: the change in one line.
+        span: the location.
+        reason: why the change is breaking, or None.
+        is_old: whether the location is in the old version.
+    """
+
+    text: Phrase
+    span: Span
+    reason: Phrase | None = None
+    is_old: bool = False
+
+
+def compare_protected(old: SourceNames, new: SourceNames) -> Iterator[ProtectedChange]:
+    """Yield the changes to protected members of classes that both versions of a header have."""
+    added, lost = _find_lost(new, old), _find_lost(old, new)
+    if added:
+        text = phrase("protected members added: {names}", names=format_names(added))
+        yield ProtectedChange(text, added[0].span)
+    if lost:
+        text = phrase("protected members removed: {names}", names=format_names(lost))
+        reason = phrase("classes that derive from the class and use the members do not build")
+        yield ProtectedChange(text, lost[0].span, reason, is_old=True)
+    before = {(item.kind, item.name): item for item in old.protected}
+    for item in new.protected:
+        other = before.get((item.kind, item.name))
+        if other is not None and other.type != item.type:
+            yield _compare_types(other, item)
+
+
+def _find_lost(old: SourceNames, new: SourceNames) -> list[SourceName]:
     """Return the protected members that derived classes can no longer use.
 
     Members of a lost class are left out, as are those that another class of the header has, such as a base class.
@@ -17,3 +55,13 @@ def find_lost_protected(old: SourceNames, new: SourceNames) -> list[SourceName]:
     usable = {item.name.rpartition("::")[2] for item in (*public, *new.protected)} | new.overrides
     lost = {item.name: item for item in old.protected if item.name.rpartition("::")[2] not in usable}
     return [item for item in lost.values() if item.name.split("::")[-2] in classes]
+
+
+def _compare_types(old: SourceName, new: SourceName) -> ProtectedChange:
+    """Return the change of the type of a member, or of the parameters of a function."""
+    if new.kind is not NameKind.FUNCTION:
+        text = phrase("protected member '{name}': type {old} -> {new}", name=new.name, old=old.type, new=new.type)
+        return ProtectedChange(text, new.span)
+    text = phrase("protected {change}", change=format_overload_change(new.name, old.type, new.type))
+    reason = phrase("classes that derive from the class and call or define '{name}' do not build", name=new.name)
+    return ProtectedChange(text, new.span, None if accepts_all(old.type, new.type) else reason)
