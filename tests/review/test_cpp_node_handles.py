@@ -1,4 +1,4 @@
-"""The lines of a review about names of node handles of ROS 1 that are members of a class."""
+"""The lines of a review about names of node handles of ROS 1, and of sub-nodes and remapped nodes of ROS 2."""
 
 from __future__ import annotations
 
@@ -36,3 +36,105 @@ def test_names_of_a_private_node_handle_are_private(repository, compare, header,
     (found,) = compare(repository).subjects
     assert sentences(found)[0] == expected
     assert not any(sentence.startswith("values") for sentence in sentences(found))
+
+
+NODELET = """#include <nodelet/nodelet.h>
+void Arm::onInit() {{
+  ros::NodeHandle & nh = getNodeHandle();
+  ros::NodeHandle pnh(getMTPrivateNodeHandle());
+  {}
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("call", "name"),
+    [
+        ('p = nh.advertise<std_msgs::Bool>("ready", 1);', "ready"),
+        ('p = pnh.advertise<std_msgs::Bool>("ready", 1);', "~ready"),
+        ('p = getPrivateNodeHandle().advertise<std_msgs::Bool>("ready", 1);', "~ready"),
+        ('p = this->getMTNodeHandle().advertise<std_msgs::Bool>("ready", 1);', "ready"),
+        ('nh_ = getPrivateNodeHandle(); p = nh_.advertise<std_msgs::Bool>("ready", 1);', "~ready"),
+        ('ros::NodeHandle left(getPrivateNodeHandle(), "left"); p = left.advertise<std_msgs::Bool>("ready", 1);',
+         "~left/ready"),
+        ('nh_.reset(new ros::NodeHandle("~")); p = nh_->advertise<std_msgs::Bool>("ready", 1);', "~ready"),
+        ('nh_ = std::make_shared<ros::NodeHandle>("left"); p = nh_->advertise<std_msgs::Bool>("ready", 1);',
+         "left/ready"),
+        ('nh_ = getPrivateNodeHandle(); nh_ = getNodeHandle(); p = nh_.advertise<std_msgs::Bool>("ready", 1);',
+         "ready"),
+    ],
+)  # fmt: skip
+def test_names_of_the_handles_of_a_nodelet(repository, compare, call, name):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": NODELET.format(call)})
+    repository.write({"arm/src/arm.cpp": NODELET.format(call.replace("ready", "done"))})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == [f"publisher '{name}' (Bool) renamed to '{name.replace('ready', 'done')}' (Bool)"]
+
+
+NODE = """#include <rclcpp/rclcpp.hpp>
+Arm::Arm() : Node("arm") {{
+  {}
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("call", "name"),
+    [
+        ('auto sub = this->create_sub_node("left"); p_ = sub->create_publisher<Bool>("ready", 10);', "left/ready"),
+        ('p_ = create_sub_node("left")->create_publisher<Bool>("ready", 10);', "left/ready"),
+        ('auto a = create_sub_node("left"); auto b = a->create_sub_node("tip"); b->create_publisher<Bool>("ready", 1);',
+         "left/tip/ready"),
+        ('auto sub = create_sub_node("left"); p_ = sub->create_publisher<Bool>("~/ready", 10);', "~/ready"),
+        ('auto sub = create_sub_node("left"); p_ = create_publisher<Bool>("ready", 10);', "ready"),
+    ],
+)  # fmt: skip
+def test_names_of_a_sub_node(repository, compare, call, name):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": NODE.format(call)})
+    repository.write({"arm/src/arm.cpp": NODE.format(call.replace("ready", "done"))})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == [f"publisher '{name}' (Bool) renamed to '{name.replace('ready', 'done')}' (Bool)"]
+
+
+def test_other_namespace_of_a_sub_node_renames_its_topics(repository, compare):
+    call = 'auto sub = create_sub_node("left");\n  p_ = sub->create_publisher<Bool>("ready", 10);'
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": NODE.format(call)})
+    repository.write({"arm/src/arm.cpp": NODE.format(call.replace("left", "right"))})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["publisher 'left/ready' (Bool) renamed to 'right/ready' (Bool)"]
+
+
+REMAPPED = """#include <rclcpp/rclcpp.hpp>
+int main() {
+  auto options = rclcpp::NodeOptions().arguments({"--ros-args", "-r", "ready:=left/ready", "--remap", "__ns:=/cell"});
+  auto node = std::make_shared<rclcpp::Node>("arm", options);
+  auto p = node->create_publisher<Bool>("ready", 10);
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("left/ready", "right/ready",
+         ["publisher '/cell/left/ready' (Bool) renamed to '/cell/right/ready' (Bool)"]),
+        ("/cell", "/hall", ["publisher '/cell/left/ready' (Bool) renamed to '/hall/left/ready' (Bool)"]),
+        ("__ns:=/cell", "__node:=tool",
+         ["publisher '/cell/left/ready' (Bool) renamed to 'left/ready' (Bool)", "node 'arm' renamed to 'tool'"]),
+        ('"-r", "ready:=left/ready", ', "",
+         ["publisher '/cell/left/ready' (Bool) renamed to '/cell/ready' (Bool)"]),
+    ],
+)  # fmt: skip
+def test_names_of_a_node_with_remappings_in_its_options(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": REMAPPED})
+    repository.write({"arm/src/arm.cpp": REMAPPED.replace(old, new)})
+    (found,) = compare(repository).subjects
+    assert [sentence for sentence in sentences(found) if "renamed" in sentence] == expected
+
+
+def test_options_of_several_nodes_remap_no_names(repository, compare):
+    text = REMAPPED.replace("  auto node", '  other.arguments({"--ros-args", "-r", "x:=y"});\n  auto node')
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": text})
+    repository.write({"arm/src/arm.cpp": text.replace('Bool>("ready"', 'Bool>("done"')})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["publisher 'ready' (Bool) renamed to 'done' (Bool)"]

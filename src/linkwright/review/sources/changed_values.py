@@ -143,10 +143,11 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
             return True
     if item.new.endswith(("]", ")", "}")):
         texts = set(_QUOTED.findall(item.old)) ^ set(_QUOTED.findall(item.new))
-        return bool(texts) and all(any(_has_word(line, text[1:-1], "") for line in reported) for text in texts)
+        words = [text[1:-1].rpartition(":=")[2] for text in texts]  # without the old name of a remapping
+        return bool(words) and all(any(_has_word(line, word, "") for line in reported) for word in words)
     is_text = item.new.endswith(("'", '"'))
-    # the line may show the name in the namespace of its node handle, such as '~' for a private one
-    patterns = [re.compile(rf"'(?:[\w~/]*[~/])?{re.escape(text)}'") for text in (old, new)]
+    # the line may show the name in the namespace of its node handle, such as '~' for a private one, or the namespace
+    patterns = [re.compile(rf"'(?:[\w~/]*[~/])?{re.escape(text)}(?:/[\w~/]*)?'") for text in (old, new)]
     return is_text and all(any(pattern.search(line) for line in reported) for pattern in patterns)
 
 

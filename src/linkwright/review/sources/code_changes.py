@@ -22,6 +22,8 @@ _VALUES = "values in {name}: {values}"
 _MODULE_VALUES = "values: {values}"
 _MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
+_MAX_NAMESPACES = 8
+"""The maximum number of words of a name whose parts are compared with the texts of statements."""
 
 
 class CodeChange(NamedTuple):
@@ -237,7 +239,8 @@ class _ReportedLines:
     """
 
     def __init__(self, changes: Sequence[Change]) -> None:
-        self._names = {name for change in changes for name in _QUOTED.findall(str(change.sentence))}
+        names = {name for change in changes for name in _QUOTED.findall(str(change.sentence))}
+        self._names = {part for name in names for part in (name, *_list_parts(name))}
         self._text = "\n".join(str(change.sentence) for change in changes)
         self._functions = {
             str(change.sentence.arguments["name"]) for change in changes if change.sentence.template == _VALUES
@@ -285,7 +288,8 @@ class _ReportedLines:
                 continue
             if any(part.first_line <= line <= part.last_line for line in self._lines[is_old]):
                 return True
-            if not self._names.isdisjoint(text for match in _LITERAL.finditer(part.text) for text in match.groups()):
+            literals = [text for match in _LITERAL.finditer(part.text) for text in match.groups() if text]
+            if not self._names.isdisjoint([*literals, *(text.rpartition(":=")[2].strip("/") for text in literals)]):
                 return True
         return has_values and old is not None and new is not None and _get_shape(old.text) == _get_shape(new.text)
 
@@ -303,6 +307,15 @@ def _get_constructor_class(name: str) -> str:
 def _get_shape(text: str) -> str:
     """Return the text of a statement with marks for its literals."""
     return parse_statement(tokenize_cpp(text)).shape
+
+
+def _list_parts(name: str) -> Iterator[str]:
+    """Yield the parts of a name with namespaces, such as ``arm/left`` and ``state`` of ``/arm/left/state``."""
+    words = name.strip("/").split("/")
+    if len(words) <= _MAX_NAMESPACES:
+        yield from (
+            "/".join(words[start:end]) for start in range(len(words)) for end in range(start + 1, len(words) + 1)
+        )
 
 
 def _list_scopes(name: str) -> Iterator[str]:

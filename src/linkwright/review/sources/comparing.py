@@ -18,6 +18,7 @@ from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, Chang
 from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
+from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import compare_details, format_name, format_names
 from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
@@ -269,7 +270,23 @@ class _SourcePair:
             return
         for item, text, reason in changed:
             is_breaking = is_called or kind is not NameKind.CLASS
+            if kind is NameKind.PARAMETER and reason is None:
+                reason = self._find_parameter_reason(item, old_names)
             yield self._make_change(text, item.span, self.new, reason if is_breaking else None)
+
+    def _find_parameter_reason(self, item: SourceName, old_names: SourceNames) -> Phrase | None:
+        """Return the reason why another default of a parameter is breaking; None if it is not."""
+        package = self.new.find_package(self.file.path)
+        new_names = self.new.get_names(self.file.new_path)
+        reason = find_default_reason(
+            item.name,
+            old_names,
+            new_names,
+            lambda lost: self._find_rename_reason(
+                SourceName(lost.kind, lost.name, "", item.span), SourceName(lost.kind, "", "", item.span), old_names
+            ),
+        )
+        return None if reason is None or is_set_in_package(self.new.version, package, item.name) else reason
 
     def _merge_functions(self, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]]) -> Change:
         """Return one change for many functions whose arguments changed."""

@@ -17,9 +17,12 @@ from linkwright.review.sources.cpp_functions import (
     read_declared_members,
     read_scopes,
 )
+from linkwright.review.sources.cpp_handles import Handles, add_namespace
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.name_patterns import find_format
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.node_options import Remappings, read_remappings
+from linkwright.review.sources.parameter_defaults import find_cpp_parameter_default
 from linkwright.review.sources.parameter_helpers import find_helper_calls, is_parameter_name, read_elements
 from linkwright.review.sources.shared_constants import read_header_constants
 
@@ -59,6 +62,8 @@ _ROS1_CALLS = frozenset(
 )
 """The methods whose names also occur in other libraries, so that only literal names count."""
 _COMMUNICATION_KINDS = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT)
+_GRAPH_KINDS = frozenset({*_COMMUNICATION_KINDS, NameKind.ACTION, NameKind.ACTION_CLIENT})
+"""The kinds of names that remappings change."""
 _NODE_FIRST_CALLS = frozenset({"declare_parameter_if_not_declared"})
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
 _OUTPUT_CALLS = frozenset({"getParam", "getParamCached", "get"})
@@ -77,13 +82,6 @@ _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
 )
 _COMPONENT = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(")
-_HANDLES = re.compile(r"\bNodeHandle\b(?P<names>[^;{}<>]*)[;{]")
-_HANDLE = re.compile(r'\b(?P<name>\w+)\s*[({]\s*(?:\w+\s*,\s*)?"(?P<namespace>[^"]+)"\s*[)}]')
-_INITIALIZED_HANDLE = re.compile(
-    r'\bNodeHandle\s+(?P<name>\w+)\s*(?:=\s*(?:ros\s*::\s*)?NodeHandle\s*)?[({]\s*"(?P<namespace>[^"]+)"\s*[)}]'
-)
-_PLAIN_HANDLES = re.compile(r"\bNodeHandle\s+(\w+(?:\s*,\s*\w+)*)\s*;")
-_RECEIVER = re.compile(r"\b(?P<name>\w+)\s*(?:\.|->)\s*$")
 _CLASS = re.compile(
     r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z]\w*_(?:PUBLIC|EXPORT|API|DECL)(?:_TYPE)?\s+)?"
     r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)[^;{]*)?\{",
@@ -133,7 +131,8 @@ class _Reader:
                 self._add_argument(kind, match.end() - 1, index)
         for match in _FRAME.finditer(text):
             kind = NameKind.FRAME if match["child"] else NameKind.MESSAGE_FRAME
-            self._add_literal(kind, match.start("value"), match.end("value"))
+            if not self._add_literal(kind, match.start("value"), match.end("value")):
+                self._add_default(kind, match["value"])
         for match in _STAMPED.finditer(text):
             for index in (2, 3):
                 self._add_argument(NameKind.FRAME, match.end() - 1, index)
@@ -242,13 +241,26 @@ class _Reader:
             ((begin, end) for begin, end in candidates if self._get_literal(begin, end) is not None), None
         )
         if name_offsets is not None:
-            receiver = _RECEIVER.search(text, max(0, match.start("name") - 80), match.start("name"))
-            namespace = self._namespaces.get(receiver["name"], "") if receiver and function in _ROS1_CALLS else ""
+            namespace = ""
+            if function in _ROS1_CALLS:
+                namespace = self._handles.find_handle_namespace(match.start("name"))
+            elif kind is not NameKind.PARAMETER:
+                namespace = self._handles.find_sub_namespace(match.start("name"))
             self._add_named_call(kind, function, type_name, arguments, name_offsets, namespace)
-        elif candidates and (function not in _ROS1_CALLS or (type_name and kind is not NameKind.PARAMETER)):
+        elif candidates:
             begin, end = candidates[0] if not is_action else candidates[min(1, len(candidates) - 1)]
             expression = SourceName(kind, " ".join(text[begin:end].split()), type_name, self._make_span(begin, end))
-            self._names.expressions.append(expression)
+            is_default = self._add_default(kind, expression.name)
+            if function not in _ROS1_CALLS or is_default or (type_name and kind is not NameKind.PARAMETER):
+                self._names.expressions.append(expression)
+
+    def _add_default(self, kind: NameKind, expression: str) -> bool:
+        """Add the name that an expression has by default, and return whether a parameter gives it."""
+        is_parameter = kind is NameKind.PARAMETER
+        parameter = None if is_parameter else find_cpp_parameter_default(self._text, expression)
+        if parameter is not None:
+            self._names.add_default(kind, expression, *parameter)
+        return parameter is not None
 
     def _add_format_pattern(self, kind: NameKind, type_name: str, begin: int, end: int) -> bool:
         """Add the pattern of a name that ``snprintf`` writes.
@@ -289,9 +301,7 @@ class _Reader:
             details.append((Detail.LATCH, YES))
         if kind is NameKind.SUBSCRIPTION and not type_name:
             type_name = self._find_callback_type(arguments)
-        name = self._get_literal(*name_offsets) or ""
-        if namespace and name and not name.startswith(("/", "~")):
-            name = f"{namespace}{'' if namespace == '~' else '/'}{name}"
+        name = add_namespace(namespace, self._get_literal(*name_offsets) or "")
         self._add(kind, name, *name_offsets, type_name, tuple(details))
         if kind in (NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.ACTION):
             self._add_callback(kind, name, arguments)
@@ -319,9 +329,14 @@ class _Reader:
         return [_COMMENT_OR_TEXT.sub(_blank_comment, text) for text in read_included_headers(Path(self._source.name))]
 
     @cached_property
-    def _namespaces(self) -> Mapping[str, str]:
-        """The namespaces of ROS 1 node handles, by variable. A header may declare the handles of a class."""
-        return _find_namespaces(self._text, self._headers if "::" in self._text else [])
+    def _remappings(self) -> Remappings:
+        """The remappings that the source passes to its node."""
+        return read_remappings(self._text)
+
+    @cached_property
+    def _handles(self) -> Handles:
+        """The node handles and sub-nodes. A header may declare the handles of a class."""
+        return Handles(self._text, self._headers if "::" in self._text else [])
 
     def _find_literal_default(self, function: str, arguments: list[tuple[int, int]]) -> str:
         """Return the literal default of a parameter; empty if there is none.
@@ -418,6 +433,10 @@ class _Reader:
         literal = _TEXT.fullmatch(self._text[begin:end])
         if literal is not None:
             begin, end = begin + literal.start("text"), begin + literal.end("text")
+        if kind is NameKind.NODE:
+            name = self._remappings.node or name
+        elif kind in _GRAPH_KINDS:
+            name = self._remappings.resolve(name)
         if name:
             self._names.add(SourceName(kind, name, type_name, self._make_span(begin, end), details))
 
@@ -442,32 +461,6 @@ def _find_constants(text: str) -> Mapping[str, str]:
         if assignment_count <= 1 and not is_output and name not in constants:
             constants[name] = match["text"] if match["macro"] is None else match["value"]
     return constants
-
-
-def _find_namespaces(text: str, headers: Sequence[str]) -> Mapping[str, str]:
-    """Return the namespaces of ROS 1 node handles, by variable.
-
-    Args:
-        text: the source without comments.
-        headers: the texts of the headers that may declare members of its classes.
-    """
-    own, declared = (
-        {name for source in sources for names in _PLAIN_HANDLES.findall(source) for name in re.findall(r"\w+", names)}
-        for sources in ([text], headers)
-    )
-    namespaces = {
-        match["name"]: match["namespace"]
-        for source in (*headers, text)
-        for match in _INITIALIZED_HANDLE.finditer(source)
-        if source is text or match["name"] not in own
-    }
-    for handles in _HANDLES.finditer(text):
-        namespaces |= {match["name"]: match["namespace"] for match in _HANDLE.finditer(handles["names"])}
-    for source in (*headers, text):
-        members = own | declared if source is text else declared - own
-        matches = (match for match in _HANDLE.finditer(source) if match["name"] in members)
-        namespaces |= {match["name"]: match["namespace"] for match in matches}
-    return {name: namespace.rstrip("/") for name, namespace in namespaces.items()}
 
 
 def _blank_comment(match: re.Match[str]) -> str:

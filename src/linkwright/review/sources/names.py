@@ -91,6 +91,21 @@ class SourceName:
     details: tuple[tuple[Detail, str], ...] = ()
 
 
+@dataclass(frozen=True)
+class DefaultName:
+    """A name that a source has by default, because a parameter gives it.
+
+    Attributes:
+        parameter: the name of the parameter.
+        kind: the kind of the name.
+        name: the default.
+    """
+
+    parameter: str
+    kind: NameKind
+    name: str
+
+
 @dataclass
 class SourceNames:
     """The names in a source.
@@ -99,6 +114,7 @@ class SourceNames:
         names: the distinct literal names.
         expressions: the names that are expressions, whose values are unknown.
         defaults: the names that expressions have by default, by the text of the expression.
+        default_names: the names that parameters give by default.
         rates: the texts of rates and periods, each with its location.
         overrides: the names of functions that override a function of a base class.
         is_program: whether the source is a program and not a library.
@@ -123,6 +139,7 @@ class SourceNames:
     names: list[SourceName] = field(default_factory=list)
     expressions: list[SourceName] = field(default_factory=list)
     defaults: dict[str, str] = field(default_factory=dict)
+    default_names: set[DefaultName] = field(default_factory=set)
     rates: list[tuple[str, Span]] = field(default_factory=list)
     overrides: set[str] = field(default_factory=set)
     is_program: bool = False
@@ -149,6 +166,11 @@ class SourceNames:
                     self.names[index] = name
                 return
         self.names.append(name)
+
+    def add_default(self, kind: NameKind, expression: str, parameter: str, default: str) -> None:
+        """Add the name that an expression has by default, because it reads a parameter."""
+        self.defaults[expression] = default
+        self.default_names.add(DefaultName(parameter, kind, default))
 
     def of_kind(self, kind: NameKind) -> Iterator[SourceName]:
         """Yield the literal names of a kind."""

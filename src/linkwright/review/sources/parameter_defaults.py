@@ -1,17 +1,71 @@
-"""Find the default names of topics and services that Python sources read from parameters."""
+"""Find the default names of topics, services and frames that sources read from parameters."""
 
 from __future__ import annotations
 
 import ast
+import re
+from typing import NamedTuple
 
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 
 _READERS = ("get_parameter", "declare_parameter", "get_parameter_or", "get_param")
 _MAX_DEPTH = 10
+_TEMPLATE = r"(?:<[^<>;()]*>\s*)?"
+_TEXT = r"(?:rclcpp\s*::\s*ParameterValue\s*\(\s*)?(?:(?:std\s*::\s*)?string\s*\(\s*)?\"(?P<default>[^\"\\]*)\""
+_CPP_READ = re.compile(
+    rf"\b(?:declare_parameter|get_parameter|auto_declare|param)\s*{_TEMPLATE}\(\s*\"(?P<name>[^\"\\]+)\"(?:\s*,\s*{_TEXT})?"
+)
+"""A call in C++ that returns a parameter."""
+_CPP_DECLARED = re.compile(
+    rf"\b(?:declare_parameter|auto_declare)\s*{_TEMPLATE}\(\s*\"(?P<name>[^\"\\]+)\"\s*,\s*{_TEXT}"
+)
+_CPP_VARIABLE = re.compile(r"\s*(?:this\s*->\s*)?(?P<name>[A-Za-z_]\w*)\s*(?:\.c_str\(\)\s*)?")
 
 
-def find_parameter_default(python: PythonFile, node: ast.expr) -> str:
-    """Return the default of the parameter that an expression reads, such as ``self.topic``; empty for others.
+class ParameterDefault(NamedTuple):
+    """A parameter that gives a name, with its default.
+
+    Attributes:
+        parameter: the name of the parameter.
+        default: the default of the parameter.
+    """
+
+    parameter: str
+    default: str
+
+
+def find_cpp_parameter_default(text: str, expression: str) -> ParameterDefault | None:
+    """Return the parameter that an expression of a C++ source reads, such as ``topic_``; None for others.
+
+    Args:
+        text: the source without comments.
+        expression: the text of the expression.
+    """
+    call = _CPP_READ.search(expression)
+    variable = _CPP_VARIABLE.fullmatch(expression)
+    reads = [call] if call is not None else []
+    if variable is not None:
+        name = re.escape(variable["name"])
+        assigned = re.compile(rf"\b{name}\s*(?:=|\()\s*(?:this\s*->\s*|\w+\s*(?:->|\.)\s*)?(?={_CPP_READ.pattern})")
+        passed = re.compile(
+            rf"\b(?:get_parameter|get_parameter_or|param)\s*{_TEMPLATE}\(\s*\"(?P<name>[^\"\\]+)\"\s*,\s*{name}\s*(?:,\s*{_TEXT})?"
+        )
+        reads = [match for pattern in (assigned, passed) for match in pattern.finditer(text)]
+    defaults = {(match["name"], match["default"] or _find_declared_default(text, match["name"])) for match in reads}
+    if len(defaults) != 1:
+        return None
+    ((parameter, default),) = defaults
+    return ParameterDefault(parameter.lstrip("~/"), default) if default else None
+
+
+def _find_declared_default(text: str, parameter: str) -> str:
+    """Return the default in the only declaration of a parameter in a C++ source; empty if there is none."""
+    declared = {match["default"] for match in _CPP_DECLARED.finditer(text) if match["name"] == parameter}
+    return declared.pop() if len(declared) == 1 else ""
+
+
+def find_parameter_default(python: PythonFile, node: ast.expr) -> ParameterDefault | None:
+    """Return the parameter that an expression reads, such as ``self.topic``; None for others.
 
     Args:
         python: the parsed file.
@@ -20,19 +74,21 @@ def find_parameter_default(python: PythonFile, node: ast.expr) -> str:
     for _ in range(_MAX_DEPTH):
         value = python.resolved(node)
         if isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in _READERS:
-            return _find_default(python, value)
+            name = python.text(value.args[0]) if value.args else None
+            default = _find_default(python, value)
+            return ParameterDefault((name or "").lstrip("~/"), default) if default else None
         if isinstance(value, ast.Attribute) and isinstance(value.value, ast.Name):
             assigned = _find_assigned_value(python, value)
             if assigned is None:
-                return ""
+                return None
             node = assigned
         elif isinstance(value, ast.Attribute):
             node = value.value
         elif isinstance(value, ast.Call) and isinstance(value.func, ast.Attribute) and not value.args:
             node = value.func.value
         else:
-            return ""
-    return ""
+            return None
+    return None
 
 
 def _find_default(python: PythonFile, call: ast.Call) -> str:
@@ -48,7 +104,15 @@ def _find_default(python: PythonFile, call: ast.Call) -> str:
         for declared in python.calls("declare_parameter")
         if name is not None and declared.args and python.text(declared.args[0]) == name and declared is not call
     ]
-    return _find_default(python, declarations[0]) if len(declarations) == 1 else ""
+    if len(declarations) == 1:
+        return _find_default(python, declarations[0])
+    listed = [
+        item.elts[1]
+        for declared in python.calls("declare_parameters")
+        for item in ast.walk(declared)
+        if isinstance(item, ast.Tuple) and len(item.elts) > 1 and python.text(item.elts[0]) == name
+    ]
+    return (python.text(listed[0]) or "") if len(listed) == 1 and name is not None else ""
 
 
 def _find_assigned_value(python: PythonFile, attribute: ast.Attribute) -> ast.expr | None:

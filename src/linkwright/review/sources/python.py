@@ -461,6 +461,9 @@ class _Reader:
         text = self._python.text(node)
         if text:
             self._names.add(SourceName(kind, text, "", self._python.span(node)))
+        parameter = find_parameter_default(self._python, node) if text is None else None
+        if parameter is not None:
+            self._names.add_default(kind, ast.unparse(node), *parameter)
 
     def _add(
         self,
@@ -485,6 +488,6 @@ class _Reader:
     def _add_expression(self, kind: NameKind, node: ast.expr, type_name: str) -> None:
         text = " ".join(ast.unparse(node).split())
         self._names.expressions.append(SourceName(kind, text, type_name, self._python.span(node)))
-        default = "" if kind is NameKind.PARAMETER else find_parameter_default(self._python, node)
-        if default:
-            self._names.defaults[text] = default
+        parameter = None if kind is NameKind.PARAMETER else find_parameter_default(self._python, node)
+        if parameter is not None:
+            self._names.add_default(kind, text, *parameter)

@@ -1,0 +1,45 @@
+"""Decide whether another default of a parameter is breaking, because it names a topic, service or frame."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.sources.names import DefaultName, SourceNames
+from linkwright.review.versions import Version
+
+_SETTING_SUFFIXES = (".yaml", ".yml", ".launch", ".launch.py", ".xml")
+"""The ends of the names of files that set parameters of nodes."""
+
+
+def find_default_reason(
+    parameter: str, old: SourceNames, new: SourceNames, find_removal_reason: Callable[[DefaultName], Phrase | None]
+) -> Phrase | None:
+    """Return the reason why another default of a parameter is breaking; None if it is not.
+
+    Args:
+        parameter: the name of the parameter.
+        old: the names in the old source.
+        new: the names in the new source.
+        find_removal_reason: returns the reason why removing a name is breaking.
+    """
+    lost = {item for item in old.default_names if item.parameter == parameter.lstrip("~/")} - new.default_names
+    for item in sorted(lost, key=lambda lost_item: (lost_item.kind.name, lost_item.name)):
+        used = {
+            other.name.lstrip("/")
+            for other in new.default_names
+            if (other.parameter, other.kind) == (item.parameter, item.kind)
+        }
+        reason = find_removal_reason(item) if used and item.name.lstrip("/") not in used else None
+        if reason is not None:
+            return phrase("by default, {reason}", reason=reason)
+    return None
+
+
+def is_set_in_package(version: Version, package: str | None, parameter: str) -> bool:
+    """Return whether a launch file or parameter file of a package may set a parameter, which hides its default."""
+    name = re.escape(parameter.lstrip("~/"))
+    setting = re.compile(rf"(?<![\w/.-]){name}[\"']?\s*:|[\"']~?{name}[\"']")
+    paths = version.paths(_SETTING_SUFFIXES, package) if package is not None else ()
+    return any(setting.search(version.text(path)) for path in paths)

@@ -1,0 +1,92 @@
+"""Topics and frames that nodes have by default, because a parameter gives them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import sentences
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+CPP = """#include <rclcpp/rclcpp.hpp>
+Arm::Arm() : Node("arm") {{
+  {}
+  out_ = create_publisher<Bool>("done", 1);
+}}
+"""
+PYTHON = """import rclpy
+from rclpy.node import Node
+
+
+class Arm(Node):
+    def __init__(self):
+        super().__init__("arm")
+        {}
+        self.out = self.create_publisher(Bool, "done", 1)
+"""
+SUBSCRIPTION = 'auto t = declare_parameter<std::string>("input", "scan"); s_ = create_subscription<Bool>(t, 1, f);'
+LAUNCH = '<launch><node pkg="arm" exec="arm"><param name="input" value="scan"/></node></launch>'
+NOT_FOUND = "by default, programs that use the name 'scan' do not find it"
+NO_FRAME = "by default, programs that look for the frame 'scan' in the messages do not find it"
+
+
+def find_changes(repository, compare, text: str, files: dict[str, str] | None = None):
+    path = "arm/arm/arm.py" if text.startswith("import") else "arm/src/arm.cpp"
+    repository.commit({**MANIFEST, path: text, **(files or {})})
+    repository.write({path: text.replace('"scan"', '"points"')})
+    (found,) = compare(repository).subjects
+    return sentences(found), [str(change.reason) for change in found.changes if change.reason]
+
+
+@pytest.mark.parametrize(
+    ("code", "reason"),
+    [
+        (SUBSCRIPTION, NOT_FOUND),
+        ('declare_parameter("input", "scan"); get_parameter("input", t_); s_ = create_subscription<Bool>(t_, 1, f);',
+         NOT_FOUND),
+        (('declare_parameter("input", rclcpp::ParameterValue("scan"));'
+         ' s_ = create_publisher<Bool>(get_parameter("input").as_string(), 1);'), NOT_FOUND),
+        ('nh.param<std::string>("input", t_, "scan"); s_ = nh.subscribe(t_, 1, f);', NOT_FOUND),
+        ('nh.param("input", t_, std::string("scan")); s_ = nh.advertise<Bool>(t_, 1);', NOT_FOUND),
+        ('frame_ = declare_parameter<std::string>("input", "scan"); m.header.frame_id = frame_;', NO_FRAME),
+    ],
+)  # fmt: skip
+def test_other_default_topic_or_frame_in_cpp_is_breaking(repository, compare, code, reason):
+    (sentence,), reasons = find_changes(repository, compare, CPP.format(code))
+    assert sentence.endswith('parameter \'input\': default "scan" -> "points"')
+    assert reasons == [reason]
+
+
+@pytest.mark.parametrize(
+    ("code", "reason"),
+    [
+        (("self.declare_parameter('input', \"scan\")\n"
+         "        self.pub = self.create_publisher(Bool, self.get_parameter('input').value, 1)"), NOT_FOUND),
+        (("self.declare_parameters('', [('input', \"scan\")])\n"
+         "        self.pub = self.create_publisher(Bool, self.get_parameter('input').value, 1)"), NOT_FOUND),
+        (("self.frame = self.declare_parameter('input', \"scan\").value\n"
+         "        self.message.header.frame_id = self.frame"), NO_FRAME),
+    ],
+)  # fmt: skip
+def test_other_default_topic_or_frame_in_python_is_breaking(repository, compare, code, reason):
+    (sentence,), reasons = find_changes(repository, compare, PYTHON.format(code))
+    assert sentence == "parameter 'input': default 'scan' -> 'points'"
+    assert reasons == [reason]
+
+
+@pytest.mark.parametrize(
+    ("code", "files"),
+    [
+        ('declare_parameter("input", "scan");', {}),
+        ('auto t = declare_parameter<std::string>("input", "scan"); c_ = create_client<Bool>(t);', {}),
+        ('auto t = declare_parameter<std::string>("input", "scan"); t += "/raw"; f(t);', {}),
+        (SUBSCRIPTION,
+         {"arm/config/arm.yaml": "arm:\n  ros__parameters:\n    input: scan\n"}),
+        (SUBSCRIPTION,
+         {"arm/launch/arm.launch.xml": LAUNCH}),
+    ],
+)  # fmt: skip
+def test_other_default_is_not_breaking(repository, compare, code, files):
+    (sentence,), reasons = find_changes(repository, compare, CPP.format(code), files)
+    assert sentence == 'parameter \'input\': default "scan" -> "points"'
+    assert reasons == []
