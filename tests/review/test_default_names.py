@@ -90,3 +90,22 @@ def test_other_default_is_not_breaking(repository, compare, code, files):
     (sentence,), reasons = find_changes(repository, compare, CPP.format(code), files)
     assert sentence == 'parameter \'input\': default "scan" -> "points"'
     assert reasons == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('t.child_frame_id = "tool";', 't.child_frame_id = declare_parameter<std::string>("child", "tool");'),
+        ('m.header.frame_id = "tool";',
+         'f_ = declare_parameter<std::string>("child", "tool"); m.header.frame_id = f_;'),
+        ('buffer.lookupTransform("tool", "tip", now);',
+         'f_ = declare_parameter<std::string>("child", "tool"); buffer.lookupTransform(f_, "tip", now);'),
+    ],
+)  # fmt: skip
+def test_frame_that_becomes_the_default_of_a_parameter_is_not_removed(repository, compare, old, new):
+    for first, second, change in ((old, new, "added"), (new, old, "removed")):
+        repository.commit({**MANIFEST, "arm/src/arm.cpp": CPP.format(first)})
+        repository.write({"arm/src/arm.cpp": CPP.format(second)})
+        (found,) = compare(repository).subjects
+        assert sentences(found)[0] == f"parameters {change}: 'child' (\"tool\")"
+        assert not any("frame" in sentence for sentence in sentences(found))

@@ -172,6 +172,8 @@ class _SourcePair:
             lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it
         is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
         added = [item for item in only_new.values() if is_sole_node or lacks(item, old_path)]
+        removed = [item for item in removed if not new_names.has_default(item)]
+        added = [item for item in added if not old_names.has_default(item)]
         removed, added = self._select_reported(kind, removed, added, old_names, new_names)
         # a different source of the package still has these names, or already had them
         remaining_old = [item for item in only_old.values() if self.new.has_in_unchanged(item, path)]

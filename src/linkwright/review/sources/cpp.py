@@ -131,8 +131,7 @@ class _Reader:
                 self._add_argument(kind, match.end() - 1, index)
         for match in _FRAME.finditer(text):
             kind = NameKind.FRAME if match["child"] else NameKind.MESSAGE_FRAME
-            if not self._add_literal(kind, match.start("value"), match.end("value")):
-                self._add_default(kind, match["value"])
+            self._add_frame(kind, match.start("value"), match.end("value"))
         for match in _STAMPED.finditer(text):
             for index in (2, 3):
                 self._add_argument(NameKind.FRAME, match.end() - 1, index)
@@ -227,7 +226,7 @@ class _Reader:
         arguments = list(_find_arguments(text, start))
         if kind is NameKind.FRAME_LOOKUP:
             for begin, end in arguments[:2]:
-                self._add_literal(kind, begin, end)
+                self._add_frame(kind, begin, end)
             return
         name_arguments = arguments[1:2] if function in _NODE_FIRST_CALLS else arguments[:1]
         if (
@@ -261,6 +260,11 @@ class _Reader:
         if parameter is not None:
             self._names.add_default(kind, expression, *parameter)
         return parameter is not None
+
+    def _add_frame(self, kind: NameKind, begin: int, end: int) -> None:
+        """Add a frame that is a literal, or that a parameter gives."""
+        if not self._add_literal(kind, begin, end):
+            self._add_default(kind, self._text[begin:end])
 
     def _add_format_pattern(self, kind: NameKind, type_name: str, begin: int, end: int) -> bool:
         """Add the pattern of a name that ``snprintf`` writes.

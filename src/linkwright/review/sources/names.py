@@ -172,6 +172,11 @@ class SourceNames:
         self.defaults[expression] = default
         self.default_names.add(DefaultName(parameter, kind, default))
 
+    def has_default(self, item: SourceName) -> bool:
+        """Return whether a parameter gives a frame by default."""
+        is_frame = item.kind in (NameKind.FRAME, NameKind.MESSAGE_FRAME, NameKind.FRAME_LOOKUP)
+        return is_frame and any((item.kind, item.name) == (known.kind, known.name) for known in self.default_names)
+
     def of_kind(self, kind: NameKind) -> Iterator[SourceName]:
         """Yield the literal names of a kind."""
         return (name for name in self.names if name.kind is kind)
