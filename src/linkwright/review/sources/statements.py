@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from linkwright.review.list_changes import change_text, differing_excerpts
+from linkwright.review.excerpts import differing_excerpts
+from linkwright.review.list_changes import change_text
 from linkwright.review.sources.tokens import Token, TokenKind, join_tokens, match_brackets
 
 _LITERAL_MARK = "\0"
