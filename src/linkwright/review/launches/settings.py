@@ -25,6 +25,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
 )
 from linkwright.review.launches.renames import rename_in_text
+from linkwright.review.launches.static_transforms import compare_transforms
 from linkwright.review.launches.titles import format_distinct_title, format_title, join_phrases, join_titles
 from linkwright.review.list_changes import change_text
 from linkwright.review.merging import name_edit
@@ -133,6 +134,10 @@ class SettingChanges:
             if new.kind == READING and reason is None:
                 continue
             old_text = None if pair.old is None else rename_in_text(pair.old, self._old_names)
+            transform = compare_transforms(old.name, new.name, old_text, pair.new) if pair.name == "arguments" else None
+            if transform is not None:
+                self._collect(new, transform, reason)
+                continue
             setting = _Setting(pair.name, old_text, pair.new, reason)
             if setting.edit is None:
                 settings.append(setting)
