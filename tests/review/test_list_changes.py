@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.list_changes import change_text, shorten
+from linkwright.review.excerpts import differing_excerpts, shorten, shorten_middle
+from linkwright.review.list_changes import change_text
 
 
 @pytest.mark.parametrize(
@@ -43,3 +44,39 @@ def test_words_of_a_long_command_keep_their_substitutions():
 def test_long_text_of_numbers_is_not_compared_by_words():
     old, new = " ".join(["0.25"] * 80), " ".join(["0.25"] * 60 + ["0.5"] * 20)
     assert " -> " in str(change_text("matrix", old, new))
+
+
+def test_middle_of_a_long_text_is_omitted():
+    text = "[front_left_controller, --controller-manager, /robot/controller_manager, --inactive]"
+    assert shorten_middle(text, 48) == "[front_left_controller, ... /robot/controller_manager, --inactive]"
+    assert shorten_middle(text, 80) == text
+
+
+def test_every_difference_of_a_long_text_is_shown():
+    middle = " ".join(f"word_{number}" for number in range(60))
+    old, new = (
+        f"run {first} {middle} {second} {middle} end" for first, second in (("left", "slow"), ("right", "fast"))
+    )
+    excerpts = differing_excerpts(old, new)
+    assert excerpts == (
+        "run left word_0 word_1 word_2 ... word_57 word_58 word_59 slow word_0 word_1 word_2 ...",
+        "run right word_0 word_1 word_2 ... word_57 word_58 word_59 fast word_0 word_1 word_2 ...",
+    )
+
+
+def test_difference_behind_a_long_one_is_shown():
+    common = " ".join(f"word_{number}" for number in range(40))
+    inserted = "inserted " * 80
+    old, new = f"a {common} b", f"a {inserted}{common} c"
+    before, after = differing_excerpts(old, new)
+    assert before.endswith(" b")
+    assert after.endswith(" c")
+    assert len(after) < 600
+
+
+def test_difference_of_a_text_with_many_tokens_is_shown():
+    old = " ".join(str(number) for number in range(3000))
+    assert differing_excerpts(old, old.replace(" 1500 ", " x ")) == (
+        "... 1496 1497 1498 1499 1500 1501 1502 1503 1504 ...",
+        "... 1496 1497 1498 1499 x 1501 1502 1503 1504 ...",
+    )

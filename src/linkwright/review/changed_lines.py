@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.list_changes import differing_excerpts, shorten
+from linkwright.review.excerpts import differing_excerpts, shorten
 from linkwright.review.versions import Versions
 
 _SUFFIXES = frozenset({".sh", ".bash", ".zsh", ".rules", ".service", ".dockerfile"})

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.excerpts import LONG_VALUE, differing_excerpts
 from linkwright.review.word_changes import compare_words
 
 EMPTY = "''"
 """An empty value as users write it."""
 _LONG_LIST = 4
 """The maximum number of items of lists that are shown in full, unless they are too long."""
-_LONG_VALUE = 200
-"""The maximum number of characters of a value that is shown in full."""
 _LONG_NAME = 120
 """The maximum number of characters of a list item that is shown in full."""
-_CONTEXT = 20
-"""The number of characters that are shown on both sides of a difference."""
 
 
 def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
@@ -25,13 +22,13 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
         old: the old value. A list has the form ``[a, b]``.
         new: the new value.
     """
-    words = compare_words(old, new) if max(len(old), len(new)) > _LONG_VALUE else None
+    words = compare_words(old, new) if max(len(old), len(new)) > LONG_VALUE else None
     if words is not None:
         return phrase("{parameter}: {changes}", parameter=name, changes=words)
     old_items, new_items = _split_nested_list(old), _split_nested_list(new)
     are_lists = all(value.startswith("[") and items != [value] for value, items in ((old, old_items), (new, new_items)))
     are_names = are_lists and all(len(item) <= _LONG_NAME for item in (*old_items, *new_items))
-    is_cut = are_names and max(len(old), len(new)) > _LONG_VALUE
+    is_cut = are_names and max(len(old), len(new)) > LONG_VALUE
     old, new = differing_excerpts(old, new)
     added, removed = set(new_items) - set(old_items), set(old_items) - set(new_items)
     is_set = len(set(old_items)) == len(old_items) and len(set(new_items)) == len(new_items)
@@ -47,40 +44,6 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
     return phrase(
         "{parameter}: {added} added, {removed} removed", parameter=name, added=added_text, removed=removed_text
     )
-
-
-def shorten(text: str, limit: int) -> str:
-    """Return a text, cut after a whole item if it is longer than a number of characters."""
-    if len(text) <= limit:
-        return text
-    item_end, word_end = text.rfind(", ", limit // 2, limit), text.rfind(" ", limit // 2, limit)
-    if item_end > 0:
-        return f"{text[:item_end]}, ..."
-    return f"{text[:word_end]} ..." if word_end > 0 else f"{text[:limit]}..."
-
-
-def differing_excerpts(old: str, new: str) -> tuple[str, str]:
-    """Return two values, or only their differing parts if they are long."""
-    if max(len(old), len(new)) <= _LONG_VALUE:
-        return old, new
-    common = min(len(old), len(new))
-    start = next((index for index in range(common) if old[index] != new[index]), common)
-    max_end = common - start
-    end = next((index for index in range(max_end) if old[-1 - index] != new[-1 - index]), max_end)
-    return _cut_excerpt(old, start, len(old) - end), _cut_excerpt(new, start, len(new) - end)
-
-
-def _cut_excerpt(text: str, start: int, end: int) -> str:
-    """Return a part of a text with some context.
-
-    The result starts at the beginning of a word if possible.
-    """
-    first = max(0, start - _CONTEXT)
-    first = text.rfind(" ", max(0, first - _CONTEXT), first) + 1 or first
-    last = min(len(text), end + _CONTEXT, first + _LONG_VALUE)
-    near = text.find(" ", last, last + _CONTEXT)
-    last = near if near >= 0 else last
-    return f"{'... ' if first else ''}{text[first:last]}{' ...' if last < len(text) else ''}"
 
 
 def list_items(text: str) -> list[str]:

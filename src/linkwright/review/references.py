@@ -13,7 +13,8 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.launches.script_options import find_refused_options
 from linkwright.review.versions import Versions
 
-_LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".launch", ".launch.yaml", ".launch.yml")
+LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".launch", ".launch.yaml", ".launch.yml")
+"""The ends of the names of launch files whose paths are searched."""
 _SHARE_PATH = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\s*\)/([\w./+-]+)")
 
 
@@ -27,7 +28,7 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
     names = {PurePosixPath(path).name for path in lost}
     if not names:
         return
-    for path in versions.new.paths(_LAUNCH_SUFFIXES):
+    for path in versions.new.paths(LAUNCH_SUFFIXES):
         file, text = versions.new.file(path), versions.new.text(path)
         if not any(name in text for name in names):
             continue

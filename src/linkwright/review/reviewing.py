@@ -52,6 +52,7 @@ from linkwright.review.launches.script_callers import find_lost_arguments
 from linkwright.review.lost_controllers import find_lost_controllers
 from linkwright.review.lost_data import find_lost_data
 from linkwright.review.lost_files import find_lost_files
+from linkwright.review.lost_installs import find_lost_installs
 from linkwright.review.lost_programs import find_lost_programs
 from linkwright.review.notes import (
     group_equal_problems,
@@ -252,6 +253,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_methods))
         result = _add_changes(result, self._run_step(find_lost_controllers))
         result = _add_changes(result, self._run_step(find_lost_data))
+        result = _add_changes(result, self._run_step(find_lost_installs))
         result = _add_changes(result, self._run_step(find_lost_programs))
         return sorted(result, key=lambda subject: subject.path)
 

@@ -10,8 +10,9 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES
+from linkwright.review.excerpts import shorten_middle
 from linkwright.review.file_pair import FilePair
-from linkwright.review.list_changes import EMPTY, change_text, shorten
+from linkwright.review.list_changes import EMPTY, change_text
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
@@ -538,10 +539,14 @@ def _compare_other_commands(pair: FilePair, old: BuildFacts, new: BuildFacts) ->
         elif old_texts and new_texts:
             pair.add(_format_word_changes(name, old_text, new_text), None)
         elif new_texts:
-            text = phrase("{parameter} added: {items}", parameter=name, items=shorten(new_text, _MAX_TEXT_CHARACTERS))
+            text = phrase(
+                "{parameter} added: {items}", parameter=name, items=shorten_middle(new_text, _MAX_TEXT_CHARACTERS)
+            )
             pair.add(text if new_text else phrase("{parameter} added", parameter=name), None)
         else:
-            text = phrase("{parameter} removed: {items}", parameter=name, items=shorten(old_text, _MAX_TEXT_CHARACTERS))
+            text = phrase(
+                "{parameter} removed: {items}", parameter=name, items=shorten_middle(old_text, _MAX_TEXT_CHARACTERS)
+            )
             pair.add(text if old_text else phrase("{parameter} removed", parameter=name), None)
 
 

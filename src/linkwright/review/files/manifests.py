@@ -10,9 +10,9 @@ from linkwright.lint.targets import find_targets
 from linkwright.packages.manifest import package_name
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES
+from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.dependencies import compare_dependencies
-from linkwright.review.list_changes import differing_excerpts
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document

@@ -9,6 +9,7 @@ import yaml
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
+from linkwright.review.excerpts import shorten
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.bridges import compare_bridges, read_bridges
 from linkwright.review.files.key_readers import KeyReaders
@@ -26,7 +27,6 @@ from linkwright.review.files.value_changes import ValueChange, merge_values
 from linkwright.review.files.yaml_includes import resolve_includes
 from linkwright.review.files.yaml_lists import find_item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, collect_values, compose_yaml, read_yaml_text
-from linkwright.review.list_changes import shorten
 from linkwright.review.merging import merge_reasons
 from linkwright.review.versions import Version
 

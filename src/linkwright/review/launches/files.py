@@ -10,6 +10,7 @@ from difflib import SequenceMatcher
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.breaking import name_reason
+from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import find_addition_reason, find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader
@@ -23,7 +24,6 @@ from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.titles import format_added_entry, format_removed_entry, format_title, join_titles
 from linkwright.review.launches.transforms import find_other_publisher
 from linkwright.review.launches.unused_arguments import report_unused_arguments
-from linkwright.review.list_changes import differing_excerpts, shorten
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.reading import read_source_names
 
@@ -276,7 +276,7 @@ def _report_failures(
         if tests and not is_known and not is_harmless:
             condition = " and ".join(f"({test.text})" if " or " in test.text else test.text for test in tests)
             reason = phrase("the launch file fails if `{condition}`", condition=condition)
-            text = phrase("added: {code}", code=shorten(part.source, _MAX_STATEMENT_CHARACTERS))
+            text = phrase("added: {code}", code=shorten_middle(part.source, _MAX_STATEMENT_CHARACTERS))
             pair.add(text, pair.location(part.span), reason)
             headers = {f"if {test.text}: ..." for test in tests}
             other_statements = [
@@ -288,7 +288,7 @@ def _report_failures(
 def _format_code_change(removed: Sequence[CodePart], added: Sequence[CodePart]) -> Phrase:
     """Return the sentence about changed statements, which quotes the first one."""
     parts = added or removed
-    code = shorten(parts[0].source, _MAX_STATEMENT_CHARACTERS)
+    code = shorten_middle(parts[0].source, _MAX_STATEMENT_CHARACTERS)
     if removed and added:
         return phrase("other code changed, such as {code}", code=code)
     text = phrase("other code added: {code}", code=code) if added else phrase("other code removed: {code}", code=code)

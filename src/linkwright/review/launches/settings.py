@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES, Location
+from linkwright.review.excerpts import shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditional_settings import find_changed_settings
 from linkwright.review.launches.default_names import find_default_name
@@ -24,8 +25,9 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
 )
 from linkwright.review.launches.renames import rename_in_text
+from linkwright.review.launches.static_transforms import compare_transforms
 from linkwright.review.launches.titles import format_distinct_title, format_title, join_phrases, join_titles
-from linkwright.review.list_changes import change_text, shorten
+from linkwright.review.list_changes import change_text
 from linkwright.review.merging import name_edit
 
 _MIN_GROUP_SIZE = 3
@@ -132,6 +134,10 @@ class SettingChanges:
             if new.kind == READING and reason is None:
                 continue
             old_text = None if pair.old is None else rename_in_text(pair.old, self._old_names)
+            transform = compare_transforms(old.name, new.name, old_text, pair.new) if pair.name == "arguments" else None
+            if transform is not None:
+                self._collect(new, transform, reason)
+                continue
             setting = _Setting(pair.name, old_text, pair.new, reason)
             if setting.edit is None:
                 settings.append(setting)
@@ -276,7 +282,7 @@ def _format_group(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
 
 
 def _format_setting(setting: _Setting) -> str:
-    value = shorten(setting.new or setting.old or "''", _MAX_VALUE_CHARACTERS)
+    value = shorten_middle(setting.new or setting.old or "''", _MAX_VALUE_CHARACTERS)
     if setting.name.startswith(REMAPPING):
         return f"{setting.name.removeprefix(REMAPPING)} -> {value}"
     return f"{setting.name.removeprefix(PARAMETER)} {value}"

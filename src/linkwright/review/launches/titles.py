@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.changes import MAX_NAMES
+from linkwright.review.excerpts import shorten_middle
 from linkwright.review.launches.outlines import (
     CONDITION,
     DELETION,
@@ -18,7 +19,7 @@ from linkwright.review.launches.outlines import (
     SERVER_PARAMETER,
     Entry,
 )
-from linkwright.review.list_changes import EMPTY, list_items, shorten
+from linkwright.review.list_changes import EMPTY, list_items
 
 _SETTING_ORDER = (CONDITION, "name", NAMESPACE, "default", "value", "arguments", REMAPPING, ENVIRONMENT, "parameter")
 """The beginnings of the names of settings in the order in which they are shown."""
@@ -26,7 +27,7 @@ _MAX_SETTINGS = 16
 """The maximum number of settings in the line about an added or removed action."""
 _VALUE_SETTINGS = ("to", "value", "appended value")
 """The settings that are the only value of an action."""
-_MAX_SETTING_CHARACTERS = 120
+_MAX_SETTING_CHARACTERS = 160
 _MAX_NAME_CHARACTERS = 160
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
 _CHILD_FRAME = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
@@ -42,7 +43,7 @@ _SPAWNER = re.compile(r"controller_manager/(spawner|spawner\.py|unspawner|unspaw
 
 def format_title(entry: Entry) -> Phrase:
     """Return the kind and name of an action."""
-    name = shorten(entry.name, _MAX_NAME_CHARACTERS)
+    name = shorten_middle(entry.name, _MAX_NAME_CHARACTERS)
     if entry.kind == "argument":
         return phrase("argument '{name}'", name=name)
     if entry.kind == "variable":
@@ -159,7 +160,7 @@ def _format_value_or_settings(entry: Entry) -> Phrase | None:
         return None
     names = [name for name in entry.settings if name != "description"]
     if len(names) == 1 and names[0] in _VALUE_SETTINGS:
-        return as_phrase(shorten(entry.settings[names[0]], _MAX_NAME_CHARACTERS) or EMPTY)
+        return as_phrase(shorten_middle(entry.settings[names[0]], _MAX_NAME_CHARACTERS) or EMPTY)
     return format_settings(entry)
 
 
@@ -183,6 +184,6 @@ def _find_setting_rank(setting: str) -> int:
 
 def _format_setting(name: str, value: str) -> str:
     if name == CONDITION:
-        return shorten(value, _MAX_SETTING_CHARACTERS)
+        return shorten_middle(value, _MAX_SETTING_CHARACTERS)
     separator = " -> " if name.startswith(REMAPPING) else " "
-    return shorten(f"{name}{separator}{value or EMPTY}", _MAX_SETTING_CHARACTERS)
+    return shorten_middle(f"{name}{separator}{value or EMPTY}", _MAX_SETTING_CHARACTERS)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import takewhile
 
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, counted, phrase
@@ -18,6 +17,7 @@ from linkwright.review.breaking import (
 )
 from linkwright.review.changes import Change, Effect
 from linkwright.review.element_values import format_values
+from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.files.semantics import find_removal_reason
 from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.merging import merge_reasons, name_edit
@@ -29,8 +29,6 @@ from linkwright.xmltree import Element
 
 _MAX_CHARACTERS = 80
 """The maximum number of characters of a value in a line."""
-_SHOWN_COMMON_CHARACTERS = 20
-"""The number of equal characters that are shown before the difference of long values."""
 _MAX_VALUES = 8
 """The maximum number of values of an added or removed element in a line."""
 _MAX_WITH_CONTENTS = 8
@@ -238,13 +236,12 @@ class _ReportedDifference:
         difference = self.difference
         if difference.value == "conditions":
             old, new = (
-                text or phrase("always")
-                for text in _shorten_common_beginning(difference.old or "", difference.new or "")
+                text or phrase("always") for text in _shorten_values(difference.old or "", difference.new or "")
             )
             return phrase("{element}: condition {old} -> {new}", element=self.element, old=old, new=new)
         if difference.new is None or difference.old is None:
             return self._describe_presence()
-        old, new = _shorten_common_beginning(difference.old, difference.new)
+        old, new = _shorten_values(difference.old, difference.new)
         return phrase("{element}: {old} -> {new}", element=self.element, old=old or "-", new=new or "-")
 
     def _describe_presence(self) -> Phrase:
@@ -359,12 +356,6 @@ def _truncate(text: str) -> str:
     return text if len(text) <= _MAX_CHARACTERS else f"{text[:_MAX_CHARACTERS]}..."
 
 
-def _shorten_common_beginning(old: str, new: str) -> tuple[str, str]:
-    """Return two values, with the common beginning of long values shortened."""
-    texts = [" ".join(text.split()) for text in (old, new)]
-    pairs = zip(*texts, strict=False)
-    common = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
-    if max(map(len, texts)) <= _MAX_CHARACTERS or common <= _SHOWN_COMMON_CHARACTERS:
-        return _truncate(texts[0]), _truncate(texts[1])
-    first, second = (_truncate(f"...{text[common - _SHOWN_COMMON_CHARACTERS :]}") for text in texts)
-    return first, second
+def _shorten_values(old: str, new: str) -> tuple[str, str]:
+    """Return two values in one line each, or their differing parts if one is long."""
+    return differing_excerpts(" ".join(old.split()), " ".join(new.split()), _MAX_CHARACTERS)

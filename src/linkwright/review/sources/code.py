@@ -98,7 +98,7 @@ def _read_python(body: Sequence[ast.stmt], scope: str, code: Code) -> None:
 def _make_python_parts(body: Sequence[ast.stmt], indent: str) -> Iterator[Part]:
     """Yield the statements of a block in depth-first order."""
     for node in body:
-        if _is_skipped(node):
+        if is_skipped(node):
             continue
         yield _make_python_part(node, indent)
         for index, block in enumerate(get_blocks(node)):
@@ -144,7 +144,7 @@ def _remove_annotations(node: ast.FunctionDef | ast.AsyncFunctionDef) -> ast.Fun
     return node
 
 
-def _is_skipped(node: ast.stmt) -> bool:
+def is_skipped(node: ast.stmt) -> bool:
     """Return whether a statement does nothing, imports, declares a type, or prints."""
     if isinstance(node, (ast.Import, ast.ImportFrom, ast.Pass)) or (
         isinstance(node, ast.AnnAssign) and node.value is None

@@ -15,6 +15,7 @@ from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Probl
 from linkwright.review.installed_paths import is_exported_header
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
+from linkwright.review.sources.changed_texts import find_text_changes
 from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
@@ -111,6 +112,10 @@ class _SourcePair:
             reported = [str(change.sentence) for change in changes]
             values = find_value_changes(old_path, new_path, reported)
             changes += [self._make_change(text, span, self.new, None) for text, span in values]
+            changes += (
+                Change(text, location=Location(self.file.old_path if is_old else self.file.new_path, line, 1, is_old))
+                for text, line, is_old in find_text_changes(old_path, new_path)
+            )
             changes += self._compare_code(self.file.old_path, self.file.new_path, changes)
         yield from changes
 

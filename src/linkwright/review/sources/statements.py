@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from linkwright.review.list_changes import change_text, differing_excerpts
+from linkwright.review.excerpts import differing_excerpts
+from linkwright.review.list_changes import change_text
 from linkwright.review.sources.tokens import Token, TokenKind, join_tokens, match_brackets
 
 _LITERAL_MARK = "\0"
@@ -28,7 +29,7 @@ _SIGNS = frozenset({"-", "+"})
 _MIN_PROSE_WORDS = 3
 """The minimum number of words of a sentence for human readers."""
 _HASH = re.compile(r'"[0-9a-fA-F]{32,}"')
-_TEXTS_FOR_READERS = frozenset({"help", "description", "epilog", "doc", "metavar", "usage"})
+TEXTS_FOR_READERS = frozenset({"help", "description", "epilog", "doc", "metavar", "usage"})
 """The keyword arguments whose strings are for human readers."""
 _MAX_TEMPLATE_TOKENS = 40
 """The maximum number of tokens in the arguments of a template."""
@@ -231,7 +232,7 @@ def _is_for_readers(tokens: Sequence[Token], first: int, last: int) -> bool:
     """Return whether a literal is a string for human readers."""
     if any(token.kind is not TokenKind.TEXT for token in tokens[first : last + 1]):
         return False
-    is_named = first > 1 and tokens[first - 1].text == "=" and tokens[first - 2].text in _TEXTS_FOR_READERS
+    is_named = first > 1 and tokens[first - 1].text == "=" and tokens[first - 2].text in TEXTS_FOR_READERS
     is_formatted = last + 1 < len(tokens) and tokens[last + 1].text in ("%", ".")
     value = _normalize_literal(tokens[first : last + 1])
     return (
