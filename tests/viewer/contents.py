@@ -49,6 +49,6 @@ def unpack_contents(display: Any) -> list[Content]:
 
 def shown_markers(display: Any) -> dict[str, dict[str, Any]]:
     """Return the markers of a display by their IDs, as a page that opens now receives them."""
-    (store,) = display.data()
+    store, *_ = display.data()
     frame, _ = store.since(0)
     return {} if frame is None else {marker["id"]: marker for marker in unpack(frame).fields["markers"]}

@@ -108,6 +108,7 @@ import type {
   WatchSeries,
   WatchTopics,
 } from "./monitor";
+import type { ChoosePlanner, ChooseQueryState, CommandMotion, MotionPlanningState } from "./motion-planning";
 import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
 import type { CellGrid, CloudPoints, PointFields, RequestPoint } from "./points";
 import type { RequestedPanels } from "./requested-panels";
@@ -244,6 +245,7 @@ export * from "./learning";
 export * from "./markers";
 export * from "./message";
 export * from "./monitor";
+export * from "./motion-planning";
 export * from "./navigation";
 export * from "./points";
 export * from "./requested-panels";
@@ -364,8 +366,11 @@ export type PageMessage =
   | ChangeEntities
   | ChangeSavedView
   | CheckStep
+  | ChoosePlanner
+  | ChooseQueryState
   | CloseSourceFile
   | CloseTerminal
+  | CommandMotion
   | CommandNavigation
   | ControlSimulation
   | CopyEntities
@@ -484,6 +489,7 @@ export type DataContent =
   | InteractiveMarkerMoved
   | InteractiveMarkerShape
   | MarkersChanged
+  | MotionPlanningState
   | OccupancyMap
   | ParticleMarks
   | PointMarks

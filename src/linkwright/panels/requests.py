@@ -4,6 +4,7 @@ from linkwright.page.protocol.time import NOTHING_RECORDED
 from linkwright.panels.page_feature import OnDemand, list_message_paths
 
 _EDITING = "linkwright.page.protocol.editing"
+_MOTIONS = "linkwright.page.protocol.motion_planning"
 _MONITOR = "linkwright.page.protocol.monitor"
 _RECORDING = "linkwright.page.protocol.time"
 _SOURCES = "linkwright.page.protocol.source_editor"
@@ -17,6 +18,7 @@ ON_DEMAND = (
             "linkwright.page.protocol.robot:MeshStatus",
             "linkwright.page.protocol.markers:MarkerFeedback",
             "linkwright.page.protocol.images:ImageSize",
+            *list_message_paths(_MOTIONS, "ChoosePlanner", "ChooseQueryState", "CommandMotion"),
         ),
     ),
     OnDemand("linkwright.panels.displays:PointsFeature", ("linkwright.page.protocol.points:RequestPoint",)),

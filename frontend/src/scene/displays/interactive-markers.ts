@@ -38,6 +38,13 @@ export class InteractiveMarkersDrawing implements Drawing {
     }
   }
 
+  /** Marks the handles with these names as red, because their poses cannot be reached; others lose the mark. */
+  setWrong(names: ReadonlySet<string>): void {
+    for (const [name, marker] of this.markers) {
+      for (const control of marker.controls) control.isWrong = names.has(name);
+    }
+  }
+
   onDataRemoved(key: string | null): void {
     if (key === null) for (const name of [...this.markers.keys()]) this.remove(name);
     else if (key.startsWith(MARKER_KEY_PREFIX)) this.remove(key.slice(MARKER_KEY_PREFIX.length));
@@ -128,7 +135,7 @@ export class InteractiveMarkersDrawing implements Drawing {
       [...this.markers].map(([name, marker]) => {
         const box = new Box3().setFromObject(marker.root);
         const bounds = [box.min.toArray(), box.max.toArray()];
-        return [name, { pose: marker.values, controls: marker.controls.length, aided: marker.isAidShown, bounds }];
+        return [name, { pose: marker.values, controls: marker.controls.length, aided: marker.isAidShown, wrong: marker.controls.some((control) => control.isWrong), bounds }];
       }),
     );
   }

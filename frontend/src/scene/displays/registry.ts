@@ -12,6 +12,7 @@ import { GridDrawing } from "./grid";
 import { GridMapDrawing } from "./grid-map";
 import { InteractiveMarkersDrawing } from "./interactive-markers";
 import { MarkersDrawing } from "./markers";
+import { MotionPlanningDrawing } from "./motion-planning";
 import { ParticleCloudDrawing } from "./particle-cloud";
 import { PathDrawing } from "./path";
 import { PointStampedDrawing } from "./point-stamped";
@@ -63,6 +64,7 @@ export const DRAWINGS: ReadonlyMap<string, DrawingClass> = new Map<string, Drawi
   ["vision_msgs_rviz_plugins/BoundingBox3DArray", BoxesDrawing],
   ["vision_msgs_rviz_plugins/Detection3D", BoxesDrawing],
   ["vision_msgs_rviz_plugins/Detection3DArray", BoxesDrawing],
+  ["moveit_rviz_plugin/MotionPlanning", MotionPlanningDrawing],
   ["linkwright/Detections", DetectionImageDrawing],
   ["linkwright/World", WorldDrawing],
 ]);

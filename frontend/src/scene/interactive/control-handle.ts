@@ -20,6 +20,8 @@ import { setPoseMatrix } from "../pose";
 /** The factor and offset by which the colors of a control under the pointer are brightened. */
 const BRIGHTNESS_FACTOR = 1.4;
 const BRIGHTNESS_OFFSET = 0.15;
+/** The color of a control of a marker at a pose that cannot be reached. */
+const WRONG_COLOR: readonly number[] = [0.9, 0.05, 0.05];
 
 /** A control of an interactive marker: its markers and its orientation. */
 export class ControlHandle {
@@ -32,6 +34,7 @@ export class ControlHandle {
   private readonly ownOrientation: Quaternion;
   private readonly controlOrientation = new Quaternion();
   private isBright = false;
+  private isRed = false;
 
   constructor(
     readonly control: InteractiveControl,
@@ -63,6 +66,17 @@ export class ControlHandle {
   /** The orientation in the reference frame, with the control's axis as x. */
   get orientation(): Quaternion {
     return this.controlOrientation.clone().multiply(this.ownOrientation);
+  }
+
+  /** Whether the solid markers are red. */
+  get isWrong(): boolean {
+    return this.isRed;
+  }
+
+  set isWrong(isWrong: boolean) {
+    if (isWrong === this.isRed) return;
+    this.isRed = isWrong;
+    this.arrangeSolids();
   }
 
   set isHighlighted(isBright: boolean) {
@@ -107,8 +121,10 @@ export class ControlHandle {
     this.solids.begin();
     for (const marker of this.control.markers) {
       if (!isSolid(marker.shape)) continue;
-      const color = marker.color.map((channel, i) => (i < 3 ? Math.min(1, channel * BRIGHTNESS_FACTOR + BRIGHTNESS_OFFSET) : channel));
-      this.solids.add({ ...marker, color: this.isBright ? color : marker.color }, poseOf(marker));
+      const [r = 0, g = 0, b = 0] = this.isRed ? WRONG_COLOR : marker.color;
+      const alpha = marker.color[3] ?? 1;
+      const channels = this.isBright ? [r, g, b].map((channel) => Math.min(1, channel * BRIGHTNESS_FACTOR + BRIGHTNESS_OFFSET)) : [r, g, b];
+      this.solids.add({ ...marker, color: [...channels, alpha] }, poseOf(marker));
     }
     this.solids.end();
   }

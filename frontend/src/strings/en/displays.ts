@@ -18,7 +18,7 @@ const about: Readonly<Record<DisplayIcon, string>> = {
   Map: "An occupancy grid: a map or a costmap.",
   Marker: "Shapes that a node draws: arrows, boxes, lines, texts, meshes.",
   MarkerArray: "Several shapes that a node draws with one message.",
-  MotionPlanning: "MoveIt: the scene, planned motions, and their start and goal states.",
+  MotionPlanning: "MoveIt: the scene, motions, and start and goal states to drag.",
   OccupancyGrid: "An octomap, as boxes.",
   Odometry: "The poses of a robot over time, as arrows or axes, with their covariance.",
   ParticleCloud: "The poses that amcl considers possible; more likely ones are larger.",

@@ -19,7 +19,7 @@ export const displays: typeof english = {
     Map: "占据栅格：地图或代价地图。",
     Marker: "节点绘制的形状：箭头、方块、线、文字、网格模型。",
     MarkerArray: "节点一次绘制的许多形状。",
-    MotionPlanning: "MoveIt：规划场景、规划出的运动，以及运动的起点和终点。",
+    MotionPlanning: "MoveIt：规划场景、规划出的运动，以及可以拖动的起始和目标状态。",
     OccupancyGrid: "八叉树地图，画成方块。",
     Odometry: "用箭头或坐标轴显示机器人到过的位置及其协方差。",
     ParticleCloud: "amcl 给出的机器人可能的位姿，可能性越大画得越大。",

@@ -83,18 +83,22 @@ class PosableRobot:
         index: finds the files that the description refers to.
 
     Attributes:
+        description: the robot's description.
         root: the name of the root link, which is also the name of its frame.
+        joint_names: the joints with a position of their own, parents before children.
         shaped_links: the names of the links with shapes, in alphabetical order.
         problems: the problems with mesh and texture files, by link name.
     """
 
     def __init__(self, robot: Robot, index: MeshIndex) -> None:
         builder = SceneBuilder(index)
+        self.description = robot
         self._links: dict[str, LinkScene] = {link.name: link for link in builder.links(robot, "")}
         self.problems = builder.problems
         self.shaped_links = sorted(link.name for link in self._links.values() if link.visuals or link.collisions)
         self._tree = KinematicTree(robot)
-        self._independent_joints = frozenset(self._tree.joint_names)
+        self.joint_names = tuple(self._tree.joint_names)
+        self._independent_joints = frozenset(self.joint_names)
         self._joint_names = frozenset(robot.joints)
         self._children_by_parent: dict[str, list[str]] = {}
         for joint in robot.joints.values():

@@ -1,0 +1,60 @@
+"""The state of planning, as the panel shows it."""
+
+from __future__ import annotations
+
+from linkwright.page.protocol.motion_planning import (
+    MissingPart,
+    MotionPlanningState,
+    PlannedJoint,
+    PlanningSettings,
+)
+from linkwright.planning.page.session import PlanningSession
+
+
+def make_panel_state(
+    session: PlanningSession, groups: tuple[str, ...], settings: PlanningSettings, *, has_state: bool
+) -> MotionPlanningState:
+    """Return the content for the panel.
+
+    Args:
+        session: the planning session.
+        groups: the names of the planning groups.
+        settings: the settings of requests.
+        has_state: whether the state of the robot is known.
+    """
+    group, goal = session.group, session.state("goal")
+    return MotionPlanningState(
+        missing=_find_missing_part(session, has_state=has_state),
+        groups=list(groups),
+        group=group.name if group else "",
+        states=list(group.states) if group else [],
+        start=session.queries["start"].choice,
+        goal=session.queries["goal"].choice,
+        pipelines=session.pipelines,
+        pipeline=session.pipeline,
+        planner=session.planner,
+        settings=settings,
+        joints=[
+            PlannedJoint(joint.name, joint.kind, joint.lower, joint.upper, goal.values.get(joint.name, 0.0))
+            for joint in (group.joints if group else ())
+        ],
+        unreachable=sorted(session.unreachable),
+        colliding=sorted(session.queries["goal"].colliding),
+        activity=session.activity,
+        outcome=session.outcome,
+        error=session.error,
+        planning_time=session.planning_time_s,
+        duration=session.duration_s,
+        fraction=session.fraction,
+        executable=session.result is not None,
+    )
+
+
+def _find_missing_part(session: PlanningSession, *, has_state: bool) -> MissingPart:
+    if session.robot is None:
+        return "description"
+    if session.group is None:
+        return "semantics"
+    if session.client is None or not session.client.is_ready:
+        return "move_group"
+    return "none" if has_state else "state"

@@ -1,0 +1,274 @@
+"""The MotionPlanning display: start and goal states, handles, and motions, with move_group on the same graph."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph import DESCRIPTION_QOS
+from linkwright.messages import String, get_message, get_service
+from tests.planning.arms import SRDF
+from tests.planning.page.bench import HANDLE, open_bench
+
+pytestmark = pytest.mark.extra("arm")
+
+GREEN, ORANGE, RED = [0.0, 1.0, 0.0, 1.0], [250 / 255, 128 / 255, 0.0, 1.0], [1.0, 0.0, 0.0, 1.0]
+GHOSTS = ", Planning Request: {Query Start State: true}"
+FAR_POSE = [3.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0]
+
+
+@pytest.fixture(autouse=True)
+def _shapes_are_drawn(monkeypatch):
+    """Draw the collision shapes of the test arm, which has no other shapes."""
+    from linkwright.planning.page import display
+
+    appearance = display.Appearance
+    monkeypatch.setattr(display, "Appearance", lambda *args, **options: appearance(*args, **options, collision=True))
+
+
+def moved(pose: list[float], z: float) -> list[float]:
+    return [*pose[:2], pose[2] + z, *pose[3:]]
+
+
+async def test_groups_and_states_come_from_parameter_of_move_group():
+    async with open_bench() as bench:
+        panel = bench.panel()
+        assert (panel["groups"], panel["group"], panel["states"]) == (["arm", "gripper", "all"], "arm", ["ready"])
+        assert (panel["start"], panel["goal"]) == ("<current>", "<current>")
+        request = next(row for row in bench.display.row().properties if row.name == "Planning Request")
+        group = next(row for row in request.children if row.name == "Planning Group")
+        assert group.options == ["arm", "gripper", "all"]
+
+
+async def test_groups_come_from_topic_without_move_group():
+    async with open_bench(with_move_group=False) as bench:
+        await bench.until(lambda: bench.panel().get("missing") == "semantics")
+        node = bench.world.graph.create_node("descriptions")
+        publisher = node.create_publisher(String, "/robot_description_semantic", DESCRIPTION_QOS)
+        publisher.publish(String(data=SRDF))
+        await bench.until(lambda: bench.panel()["missing"] == "move_group")
+        assert bench.panel()["groups"] == ["arm", "gripper", "all"]
+        assert bench.world.status("MotionPlanning")["move_group"] == (
+            "warn",
+            "move_group does not respond; start it to plan",
+        )
+        publisher.publish(String(data="<robot name='elbow_arm'><group name='arm'><joint name='nose'/></group></robot>"))
+        await bench.until(lambda: bench.panel()["missing"] == "semantics")
+        assert "'nose'" in bench.world.status("MotionPlanning")["SRDF"][1]
+
+
+async def test_request_properties_match_rviz():
+    async with open_bench() as bench:
+        rows = {row.name: row for row in bench.display.row().properties}
+        assert {row.name: row.value for row in rows["Planning Request"].children} == {
+            "Planning Group": "",
+            "Show Workspace": False,
+            "Query Start State": False,
+            "Query Goal State": True,
+            "Interactive Marker Size": 0.0,
+            "Start State Color": "#00ff00",
+            "Start State Alpha": 1.0,
+            "Goal State Color": "#fa8000",
+            "Goal State Alpha": 1.0,
+            "Colliding Link Color": "#ff0000",
+            "Joint Violation Color": "#ff00ff",
+        }
+        assert not [name for name in rows if name.startswith("MoveIt")]
+
+
+async def test_settings_of_file_are_read_and_written():
+    async with open_bench(", MoveIt_Planning_Time: 2, MoveIt_Use_Cartesian_Path: true") as bench:
+        settings = bench.panel()["settings"]
+        assert settings == {
+            "planning_time": 2.0,
+            "attempts": 10,
+            "velocity_scaling": 0.1,
+            "acceleration_scaling": 0.1,
+            "cartesian": True,
+            "collision_aware": True,
+            "approximate": False,
+        }
+        bench.display.set_property(("Velocity_Scaling_Factor",), 0.5)
+        await bench.until(lambda: bench.panel()["settings"]["velocity_scaling"] == 0.5)
+        assert bench.display.config.section.scalar("Velocity_Scaling_Factor").text == "0.5"
+
+
+async def test_ghosts_follow_current_state_until_they_are_set():
+    async with open_bench(GHOSTS) as bench:
+        await bench.until(lambda: "Goal State/palm" in bench.markers())
+        first = bench.markers()
+        assert first["Goal State/palm"]["color"] == pytest.approx(ORANGE)
+        assert first["Start State/palm"]["color"] == pytest.approx(GREEN)
+        assert "Goal State/base" not in first
+        bench.choose("goal", "ready")
+        await bench.until(lambda: bench.joints()["elbow"] == 1.2 and bench.joints()["lift"] == 0.4)
+        set_goal = bench.markers()
+        bench.publish_joints(pan=1.0)
+        await bench.until(lambda: bench.markers()["Start State/palm"]["pose"] != first["Start State/palm"]["pose"])
+        assert bench.markers()["Goal State/palm"]["pose"] == set_goal["Goal State/palm"]["pose"]
+        assert bench.panel()["goal"] == "ready"
+        bench.display.set_property(("Planning Request", "Query Goal State"), False)
+        await bench.until(lambda: "Goal State/palm" not in bench.markers())
+        assert f"marker {HANDLE}" not in bench.contents()
+
+
+async def test_states_are_copied_and_chosen_at_random():
+    async with open_bench() as bench:
+        bench.choose("start", "ready")
+        bench.choose("goal", "<same as start>")
+        await bench.until(lambda: bench.panel()["goal"] == "<same as start>")
+        assert bench.joints()["lift"] == 0.4
+        bench.choose("goal", "<random>")
+        await bench.until(lambda: bench.panel()["goal"] == "<random>")
+        assert all(joint["lower"] <= joint["position"] <= joint["upper"] for joint in bench.panel()["joints"])
+        bench.choose("goal", "<random valid>")
+        await bench.until(lambda: bench.panel()["goal"] == "<random valid>" and not bench.panel()["colliding"])
+        bench.choose("goal", "no such state")
+        bench.choose("goal", "<current>")
+        await bench.until(lambda: bench.panel()["goal"] == "<current>")
+        assert bench.joints()["lift"] == 0.6
+
+
+async def test_colliding_links_are_red():
+    async with open_bench() as bench:
+        bench.choose("goal", "ready")
+        node = bench.world.graph.create_node("shelves")
+        client = node.create_client(get_service("moveit_msgs/srv/ApplyPlanningScene"), "/apply_planning_scene")
+        scene = get_message("moveit_msgs/msg/PlanningScene")(is_diff=True)
+        scene.robot_state.is_diff = True
+        shelf = get_message("moveit_msgs/msg/CollisionObject")(id="shelf", operation=b"\x00")
+        shelf.header.frame_id = "tool"
+        shelf.primitives = [get_message("shape_msgs/msg/SolidPrimitive")(type=1, dimensions=[0.05, 0.05, 0.05])]
+        shelf.pose.position.z = -0.05
+        scene.world.collision_objects = [shelf]
+        await bench.until(client.service_is_ready)
+        bench.choose("goal", "<current>")
+        client.call_async(client.srv_type.Request(scene=scene))
+        await bench.until(lambda: "flange" in bench.panel()["colliding"])
+        await bench.until(lambda: bench.markers()["Goal State/flange"]["color"] == pytest.approx(RED))
+        assert bench.markers()["Goal State/forearm"]["color"] == pytest.approx(ORANGE)
+
+
+async def test_dragged_handle_moves_goal_with_inverse_kinematics():
+    async with open_bench() as bench:
+        await bench.until(lambda: f"marker {HANDLE}" in bench.contents())
+        assert [control["mode"] for control in bench.contents()[f"marker {HANDLE}"]["controls"]] == [
+            *["rotate_axis", "move_axis"] * 3,
+            "move_rotate_3d",
+        ]
+        pose, joints = bench.handle_pose(), bench.joints()
+        for step in range(1, 6):  # of these, only the last must be handled
+            bench.drag(moved(pose, -0.02 * step))
+        await bench.until(lambda: bench.handle_pose() == pytest.approx(moved(pose, -0.1), abs=1e-3))
+        assert bench.joints() != joints
+        assert (bench.panel()["goal"], bench.panel()["unreachable"]) == ("", [])
+
+
+async def test_unreachable_pose_keeps_goal_and_is_reported():
+    async with open_bench() as bench:
+        await bench.until(lambda: f"marker {HANDLE}" in bench.contents())
+        pose, joints = bench.handle_pose(), bench.joints()
+        bench.drag(FAR_POSE)
+        await bench.until(lambda: bench.panel()["unreachable"] == [HANDLE])
+        assert bench.joints() == joints
+        assert bench.world.status("MotionPlanning")["Inverse Kinematics"] == (
+            "warn",
+            "'tool' cannot reach the pose of its handle",
+        )
+        bench.drag(FAR_POSE, "mouse_up")
+        await bench.until(lambda: bench.panel()["unreachable"] == [])
+        assert bench.contents()[f"pose {HANDLE}"]["pose"] == pytest.approx(pose)
+
+
+async def test_approximate_inverse_kinematics_stops_near_unreachable_pose():
+    async with open_bench(", MoveIt_Allow_Approximate_IK: true") as bench:
+        await bench.until(lambda: f"marker {HANDLE}" in bench.contents())
+        pose = bench.handle_pose()
+        target = [pose[0] + 2.0, *pose[1:]]
+        bench.drag(target)
+        await bench.until(lambda: bench.panel()["unreachable"] == [HANDLE])
+        assert pose[0] + 0.02 < bench.handle_pose()[0] < target[0]
+
+
+async def test_motion_is_planned_and_executed():
+    async with open_bench() as bench:
+        bench.choose("goal", "ready")
+        bench.command("plan")
+        await bench.until(lambda: bench.panel()["outcome"] == "planned")
+        panel = bench.panel()
+        assert panel["executable"]
+        assert panel["planning_time"] > 0.0
+        assert panel["duration"] > 0.0
+        assert bench.followed == []
+        bench.command("execute")
+        await bench.until(lambda: bench.panel()["outcome"] == "executed")
+        (trajectory,) = bench.followed
+        positions = dict(zip(trajectory.joint_names, trajectory.points[-1].positions, strict=True))
+        assert positions["lift"] == pytest.approx(0.4, abs=1e-3)
+        assert not bench.panel()["executable"]
+        bench.choose("goal", "<random valid>")
+        await bench.until(lambda: bench.panel()["goal"] == "<random valid>")
+        await bench.until(lambda: bench.session.current.values.get("lift") == pytest.approx(0.4, abs=1e-3))
+        bench.command("plan_and_execute")
+        await bench.until(lambda: bench.panel()["outcome"] == "executed" and len(bench.followed) == 2)
+
+
+async def test_cartesian_path_is_straight_and_scaled():
+    async with open_bench(", MoveIt_Use_Cartesian_Path: true, Velocity_Scaling_Factor: 0.5") as bench:
+        await bench.until(lambda: f"marker {HANDLE}" in bench.contents())
+        pose = bench.handle_pose()
+        bench.drag(moved(pose, -0.1))
+        await bench.until(lambda: bench.panel()["goal"] == "")
+        bench.command("plan")
+        await bench.until(lambda: bench.panel()["outcome"] == "planned")
+        slow = bench.panel()["duration"]
+        bench.display.set_property(("Velocity_Scaling_Factor",), 1.0)
+        bench.display.set_property(("Acceleration_Scaling_Factor",), 1.0)
+        bench.command("plan")
+        await bench.until(lambda: bench.panel()["duration"] != slow)
+        assert slow > 2.0 * bench.panel()["duration"]
+
+
+async def test_failed_plans_name_error_code():
+    async with open_bench() as bench:
+        bench.choose("goal", "ready")
+        bench.session.queries["goal"].values["lift"] = 9.0
+        bench.command("plan")
+        await bench.until(lambda: bench.panel()["outcome"] == "planning_failed")
+        assert bench.panel()["error"] in ("INVALID_GOAL_CONSTRAINTS", "GOAL_IN_COLLISION", "GOAL_CONSTRAINTS_VIOLATED")
+        assert not bench.panel()["executable"]
+
+
+async def test_pipelines_are_offered_and_chosen():
+    async with open_bench() as bench:
+        await bench.until(lambda: bench.panel()["pipelines"])
+        assert [(pipeline["id"], pipeline["planners"]) for pipeline in bench.panel()["pipelines"]] == [
+            ("ompl", ["RRTConnectkConfigDefault", "Unknown"]),
+            ("pilz_industrial_motion_planner", ["PTP", "LIN", "CIRC"]),
+        ]
+
+
+async def test_group_is_chosen_and_workspace_is_drawn():
+    async with open_bench(", Planning Request: {Planning Group: gripper, Show Workspace: true}") as bench:
+        panel = bench.panel()
+        assert (panel["group"], panel["states"], [joint["name"] for joint in panel["joints"]]) == (
+            "gripper",
+            ["open"],
+            ["left"],
+        )
+        assert [key for key in bench.contents() if key.startswith("marker")] == []
+        assert bench.markers()["Workspace/box"]["scale"] == [2.0, 2.0, 2.0]
+        bench.display.set_property(("Planning Request", "Planning Group"), "all")
+        await bench.until(lambda: f"marker {HANDLE}" in bench.contents())
+        bench.drag(moved(bench.handle_pose(), -0.05))
+        await bench.until(lambda: bench.panel()["goal"] == "" and not bench.panel()["unreachable"])
+
+
+async def test_disabled_display_disconnects():
+    async with open_bench() as bench:
+        bench.display.set_checked(False)
+        bench.display.on_enabled_changed()
+        assert bench.session.client is None
+        bench.command("plan")
+        bench.display.set_checked(True)
+        bench.display.on_enabled_changed()
+        await bench.until(lambda: bench.panel()["missing"] == "none" and bench.session.client is not None)
