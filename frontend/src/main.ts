@@ -57,6 +57,7 @@ import { Controls } from "./scene/controls";
 import type { PanelHost } from "./scene/displays/display-panel";
 import type { PartHandles } from "./scene/editing/part-handles";
 import { JointDrag } from "./scene/joint-drag";
+import type { TipHandles } from "./scene/tip-handles";
 import { Keyboard, LETTER_INPUT_SELECTOR } from "./scene/keyboard";
 import { SERVER_FILES } from "./scene/meshes/mesh-files";
 import { LodMeshes } from "./scene/meshes/lod-meshes";
@@ -111,6 +112,7 @@ function start(app: HTMLElement): void {
   const keySheet = new KeySheet(session.tools);
   let modeler: Modeler | null = null;
   let handles: PartHandles | null = null;
+  let tipHandles: TipHandles | null = null;
   const worldCommands = new WorldCommands(session.modeling, () => modeler?.escape());
   const scenePanel = new ScenePanel(
     session,
@@ -189,12 +191,13 @@ function start(app: HTMLElement): void {
   if (stage) scenePanel.connectScene(stage.uncoveredArea);
   worldCommands.bindKeys();
   const toolbox = stage && connectTools(stage, session, (event) => {
-    if (handles?.onPointer(event)) return null;
+    if (tipHandles?.onPointer(event) || handles?.onPointer(event)) return null;
     return modeler ? modeler.onPointer(event) : event;
   });
   if (stage) {
     loadModeler(stage, session, (newModeler) => (modeler = newModeler));
     loadPartHandles(stage, session, (newHandles) => (handles = newHandles));
+    loadTipHandles(stage, session, (newHandles) => (tipHandles = newHandles));
   }
   const fileCommands = new FileCommands(session.configuration);
   const titleBar = new TitleBar(session, dock, fileCommands, new RecordingDrop(session, tokens), theme, new ShareMenu(session, stage, tokens));
@@ -221,6 +224,7 @@ function start(app: HTMLElement): void {
     monitor: () => session.monitor.inspect(),
     voice: () => session.voice.inspect(),
     editing: () => handles?.inspect() ?? {},
+    tip: () => tipHandles?.inspect() ?? {},
     terminal: () => terminalPanel.inspect(),
     lesson: () => lessonPanel.inspect(),
   });
@@ -316,6 +320,16 @@ function loadPartHandles(stage: Stage, session: Session, onLoaded: (handles: Par
     if (!session.editing.isActive) return;
     unsubscribe();
     void import("./scene/editing/part-handles").then(({ PartHandles }) => onLoaded(new PartHandles(stage, session)));
+  });
+}
+
+/** Loads the handles on the tip of a chain when a tip is first dragged. */
+function loadTipHandles(stage: Stage, { tipSwitch, frames }: Session, onLoaded: (handles: TipHandles) => void): void {
+  const unsubscribe = tipSwitch.changed.on(() => {
+    const { drag } = tipSwitch;
+    if (!drag) return;
+    unsubscribe();
+    void import("./scene/tip-handles").then(({ TipHandles }) => onLoaded(new TipHandles(stage, drag, frames)));
   });
 }
 

@@ -28,6 +28,7 @@ import { SlowConnection } from "./slow-connection";
 import { Slowness } from "./slowness";
 import { TextEditorLink } from "./text-editor";
 import { TerminalsState } from "./terminals";
+import { TipSwitch } from "./tip/tip-switch";
 import { TimeControlState } from "./time";
 import { TimelineState } from "./timeline";
 import { ToolsState } from "./tools";
@@ -45,6 +46,7 @@ export class Session {
   readonly joints: JointsState;
   readonly description: DescriptionState;
   readonly selection = new SelectionState(this.robots);
+  readonly tipSwitch: TipSwitch;
   readonly view: ViewState;
   readonly tools: ToolsState;
   readonly time: TimeControlState;
@@ -96,6 +98,7 @@ export class Session {
     this.editing = new EditingState(connection, openBrowserStorage());
     this.joints = new JointsState(connection);
     this.description = new DescriptionState(connection);
+    this.tipSwitch = new TipSwitch(this.joints, this.description, this.selection, this.frames);
     this.monitor = new MonitorState(connection, openBrowserStorage());
     this.voice = new VoiceState(connection, openBrowserStorage());
     this.enrolledWords = new WordsState(connection, this.voice);

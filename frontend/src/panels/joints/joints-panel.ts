@@ -6,6 +6,7 @@ import { createJointBar } from "./joint-bar";
 import { JointRow } from "./joint-row";
 import { PoseBar } from "./pose-bar";
 import { SweepBar } from "./sweep-bar";
+import { createTipBar } from "./tip-bar";
 
 /** The minimum number of joints for which the filter is shown. */
 const MIN_JOINTS_FOR_FILTER = 10;
@@ -27,7 +28,7 @@ export class JointsPanel implements Panel {
     this.filter.setAttribute("aria-label", texts.filter);
     this.filter.addEventListener("input", () => this.applyFilter());
     const bar = createJointBar(session);
-    this.bars = h("div", { class: "joint-bars" }, new PoseBar(session).element, new SweepBar(joints).element);
+    this.bars = h("div", { class: "joint-bars" }, new PoseBar(session).element, new SweepBar(joints).element, createTipBar(session));
     this.element = h("div", { class: "panel joints-panel" }, bar, this.bars, this.filter, this.list);
     joints.controlsChanged.on(() => this.build());
     joints.positionsChanged.on(() => this.update());

@@ -16,9 +16,13 @@ export class Gizmo {
   private readonly controls: TransformControls;
   private readonly helper: Object3D;
 
-  constructor(private readonly stage: Stage) {
+  /** `scale` is the size relative to the handles of other tools. */
+  constructor(
+    private readonly stage: Stage,
+    scale = 1,
+  ) {
     this.controls = new TransformControls(stage.viewport.camera);
-    this.controls.size = matchMedia("(pointer: coarse)").matches ? TOUCH_SIZE : MOUSE_SIZE;
+    this.controls.size = scale * (matchMedia("(pointer: coarse)").matches ? TOUCH_SIZE : MOUSE_SIZE);
     this.helper = this.controls.getHelper();
     stage.overlays.add(this.frame, this.helper);
     this.controls.addEventListener("change", () => stage.loop.invalidate());

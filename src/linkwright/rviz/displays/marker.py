@@ -7,6 +7,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import Any, ClassVar
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from linkwright.diagnostics import foreign, phrase
 from linkwright.geometry.single import Transform
 from linkwright.graph import TransformException
@@ -27,6 +30,7 @@ _EXPIRY_PERIOD_S = 0.1
 """Seconds between checks for expired markers while any marker has a lifetime."""
 
 _DUPLICATES_ROW = "Duplicate Marker Check"
+_MESSAGE_ROW = "Message"
 
 
 class _Marker:
@@ -308,6 +312,15 @@ class MessageMarkersDisplay(MarkerArrayDisplay, ABC):
         for marker in markers_to_show:
             self._apply_marker(marker)
         self._show()
+
+    def is_finite(self, *numbers: ArrayLike) -> bool:
+        """Return whether all numbers of a message are finite, and show an error in the status if not."""
+        if all(np.isfinite(number).all() for number in numbers):
+            self.delete_status_row(_MESSAGE_ROW)
+            return True
+        text = phrase("Message contained invalid floating point values (nans or infs)")
+        self.set_status_row(_MESSAGE_ROW, "error", text)
+        return False
 
     def on_property_changed(self, path: Path) -> None:
         """Apply a changed property, and draw the last message again."""

@@ -1,0 +1,1 @@
+"""The displays of Autoware's packages, drawn as markers."""
