@@ -24,7 +24,7 @@ PARAMETERS: dict[str, Any] = {
     "robot_description": urdf(),
     "robot_description_semantic": SRDF,
     "robot_description_planning": {"joint_limits": LIMITS, "default_velocity_scaling_factor": 0.5},
-    "planning_pipelines": ["ompl", "pilz_industrial_motion_planner"],
+    "planning_pipelines": ["ompl", "pilz_industrial_motion_planner", "chomp"],
     "default_planning_pipeline": "ompl",
     "ompl": {
         "planner_configs": {
@@ -33,6 +33,7 @@ PARAMETERS: dict[str, Any] = {
         },
         "arm": {"planner_configs": ["RRTConnectkConfigDefault"]},
     },
+    "chomp": {"planning_plugins": ["chomp_interface/CHOMPPlanner"]},
     "moveit_simple_controller_manager": {
         "controller_names": ["arm_controller", "gripper_controller"],
         "arm_controller": {
@@ -368,7 +369,37 @@ class TestPlans:
         request = motion_request(joint_constraints(**START), planner_id="Unknown")
         response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
         assert response.motion_plan_response.error_code.val == 1
-        assert "Planner 'Unknown' is not available; RRTConnect takes its place" in logged("WARN")
+        await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        assert logged("WARN").count("The planner 'Unknown' is not available; RRTConnect takes its place") == 1
+
+    async def test_unavailable_pipeline_is_replaced_with_one_warning(self, bench, logged) -> None:
+        for _ in range(2):
+            request = motion_request(joint_constraints(**START), pipeline_id="chomp", planner_id="CHOMP")
+            response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+            assert response.motion_plan_response.error_code.val == 1
+        warning = "The planner 'chomp_interface/CHOMPPlanner' of the pipeline 'chomp' is not available"
+        assert logged("WARN").count(f"{warning}; RRTConnect takes its place") == 1
+
+    @pytest.mark.parametrize(
+        ("pipeline", "planner", "code", "reason"),
+        [
+            ("stomp", "", "FAILURE", "Couldn't find requested planning pipeline 'stomp'"),
+            (
+                "pilz_industrial_motion_planner",
+                "ARC",
+                "PLANNING_FAILED",
+                "No ContextLoader for planner_id 'ARC' found. Planning not possible.",
+            ),
+        ],
+    )
+    async def test_unknown_pipelines_and_commands_are_refused(
+        self, bench, logged, pipeline: str, planner: str, code: str, reason: str
+    ) -> None:
+        request = motion_request(joint_constraints(**START), pipeline_id=pipeline, planner_id=planner)
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        error_code = response.motion_plan_response.error_code
+        assert error_code.val == getattr(error_code, code)
+        assert reason in logged("ERROR")
 
     async def test_pilz_line(self, bench) -> None:
         fk = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"])
@@ -528,4 +559,5 @@ class TestStart:
         assert {item.pipeline_id: item.planner_ids for item in interfaces} == {
             "ompl": ["RRTConnectkConfigDefault", "Unknown"],
             "pilz_industrial_motion_planner": ["PTP", "LIN", "CIRC"],
+            "chomp": ["RRTConnect"],
         }

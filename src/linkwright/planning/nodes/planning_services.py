@@ -111,13 +111,11 @@ class PlanningServices:
         """Return the request of a moveit_msgs/msg/MotionPlanRequest.
 
         Raises:
-            RequestError: a name, a frame or a shape is not valid.
+            RequestError: a pipeline, a name, a frame or a shape is not valid.
         """
         choice = self._pipelines.choose(request.pipeline_id, request.planner_id, group.name)
-        if choice.replaced:
-            self._node.get_logger().warning(
-                f"Planner '{choice.replaced}' is not available; {choice.planner} takes its place"
-            )
+        if choice.notice:
+            self._node.get_logger().warning(choice.notice)
         goals = [self._monitor.read_goal(item, start, group.tip) for item in request.goal_constraints]
         path_constraint, arc = self._monitor.read_path_constraints(
             choice.method, request.path_constraints, start, group.tip
