@@ -18,9 +18,9 @@ from linkwright.planning.collision_scene import CollisionScene, Contact
 from linkwright.planning.goals import Goal, goal_configurations
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
-from linkwright.planning.jerk import parameterize_smoothly
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.sampling import DEFAULT_PLANNER, SamplingProblem, subdivide
+from linkwright.planning.smoothing import parameterize_smoothly
 from linkwright.planning.timing import Trajectory
 
 _GOAL_SHARE = 0.3

@@ -70,29 +70,39 @@ class Trajectory:
             rest = np.zeros((len(times), self.positions.shape[1]))
             return rest + self.positions, rest, rest
         indexes = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 2)
-        widths = np.diff(self.times)[indexes][:, None]
+        widths, (first, slope, c2, c3, c4, c5) = self.coefficients(indexes)
         x = (np.clip(times, 0.0, self.duration) - self.times[indexes])[:, None] / widths
-        first, slope, bend = _scaled(self, indexes, widths)
-        last, end_slope, end_bend = _scaled(self, indexes + 1, widths)
-        change = last - first
-        c2 = bend / 2.0
-        c3 = 10.0 * change - 6.0 * slope - 4.0 * end_slope - 1.5 * bend + 0.5 * end_bend
-        c4 = -15.0 * change + 8.0 * slope + 7.0 * end_slope + 1.5 * bend - end_bend
-        c5 = 6.0 * change - 3.0 * (slope + end_slope) + 0.5 * (end_bend - bend)
         return (
             first + x * (slope + x * (c2 + x * (c3 + x * (c4 + x * c5)))),
             (slope + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)))) / widths,
             (2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * 20.0 * c5))) / widths**2,
         )
 
+    def coefficients(self, indexes: Any = slice(None, -1)) -> tuple[Array, Array]:
+        """Return the durations of intervals in s, shape (n, 1), and the coefficients of their quintic splines.
 
-def _scaled(trajectory: Trajectory, indexes: Any, widths: Array) -> tuple[Array, Array, Array]:
-    """Return points of a trajectory whose derivatives are by the share of an interval instead of by the time."""
-    return (
-        trajectory.positions[indexes],
-        trajectory.velocities[indexes] * widths,
-        trajectory.accelerations[indexes] * widths**2,
-    )
+        The coefficients have the shape (6, n, joints) and are by the share of the interval, from 0 to 1.
+
+        Args:
+            indexes: the indexes of the intervals; by default all of them.
+        """
+        numbers = np.arange(len(self.times))[indexes]
+        widths = (self.times[numbers + 1] - self.times[numbers])[:, None]
+        (first, slope, bend), (last, end_slope, end_bend) = (
+            (self.positions[at], self.velocities[at] * widths, self.accelerations[at] * widths**2)
+            for at in (numbers, numbers + 1)
+        )
+        change = last - first
+        c3 = 10.0 * change - 6.0 * slope - 4.0 * end_slope - 1.5 * bend + 0.5 * end_bend
+        c4 = -15.0 * change + 8.0 * slope + 7.0 * end_slope + 1.5 * bend - end_bend
+        c5 = 6.0 * change - 3.0 * (slope + end_slope) + 0.5 * (end_bend - bend)
+        return widths, np.array((first, slope, bend / 2.0, c3, c4, c5))
+
+    def slowed(self, factor: float) -> Trajectory:
+        """Return the same motion in a time that is longer by a factor."""
+        if factor == 1.0:
+            return self
+        return Trajectory(self.times * factor, self.positions, self.velocities / factor, self.accelerations / factor**2)
 
 
 def parameterize(
