@@ -9,6 +9,7 @@ are rounded a little more. MoveIt obeys ``max_jerk`` by Ruckig.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -48,23 +49,31 @@ def parameterize_smoothly(
 
     Args:
         corners: the corners of the path, shape (n, joints).
-        max_velocities: in rad/s or m/s, shape (joints,).
-        max_accelerations: in rad/s2 or m/s2, shape (joints,).
+        max_velocities: in rad/s or m/s, shape (joints,), or (n - 1, joints) for limits that differ between corners.
+        max_accelerations: in rad/s2 or m/s2, of the same shape.
         max_jerks: in rad/s3 or m/s3, shape (joints,); infinite for joints without a limit.
         max_deviation: the maximum distance from a corner before the average, in rad or m over all joints; 0 to stop
             at each corner, which then stays exact.
         interval_s: the maximum time in s between two points of the trajectory.
     """
-    if max_deviation <= 0.0 and len(lines := _split_at_turns(corners)) > 1:
+    shape = (len(corners) - 1, corners.shape[1])
+    max_velocities, max_accelerations = (np.broadcast_to(rows, shape) for rows in (max_velocities, max_accelerations))
+    if max_deviation <= 0.0 and len(ranges := _straight_ranges(corners)) > 1:
         pieces = [
-            parameterize_smoothly(line, max_velocities, max_accelerations, max_jerks, interval_s=interval_s)
-            for line in lines
+            parameterize_smoothly(
+                corners[first : last + 1],
+                max_velocities[first:last],
+                max_accelerations[first:last],
+                max_jerks,
+                interval_s=interval_s,
+            )
+            for first, last in ranges
         ]
-        return _join(pieces)
+        return join(pieces)
     trials = []
     for share in _ACCELERATION_SHARES if np.any(np.isfinite(max_jerks)) else (1.0,):
         accelerations = share * max_accelerations
-        jerk_window_s = float(np.max(2.0 * accelerations / (_MARGIN * max_jerks)))
+        jerk_window_s = float(np.max(2.0 * accelerations / (_MARGIN * max_jerks), initial=0.0))
         fine = parameterize(
             corners,
             max_velocities,
@@ -77,18 +86,18 @@ def parameterize_smoothly(
     _, window_s, fine = min(trials, key=lambda trial: trial[0])
     if not fine.duration:
         return fine
-    return slow_to_limits(_average(fine, window_s, interval_s), max_velocities, max_accelerations)
+    largest = (limits.max(axis=0) for limits in (max_velocities, max_accelerations))
+    return slow_to_limits(_average(fine, window_s, interval_s), *largest)
 
 
-def _split_at_turns(corners: Array) -> list[Array]:
-    """Return the straight lines of a path, each of shape (n, joints)."""
+def _straight_ranges(corners: Array) -> list[tuple[int, int]]:
+    """Return the first and the last corner of each straight line of a path."""
     moves = np.diff(corners, axis=0)
     lengths = np.linalg.norm(moves, axis=1)
-    corners = corners[np.concatenate(([True], lengths > 0.0))]
-    directions = moves[lengths > 0.0] / lengths[lengths > 0.0, None]
-    turns = np.flatnonzero(np.linalg.norm(np.diff(directions, axis=0), axis=1) > _MIN_TURN) + 1
-    ends = [0, *turns.tolist(), len(corners) - 1]
-    return [corners[first : last + 1] for first, last in pairwise(ends)]
+    moving = np.flatnonzero(lengths)
+    directions = moves[moving] / lengths[moving, None]
+    turns = np.flatnonzero(np.linalg.norm(np.diff(directions, axis=0), axis=1) > _MIN_TURN)
+    return list(pairwise((0, *moving[turns + 1].tolist(), len(corners) - 1)))
 
 
 def _average(trajectory: Trajectory, window_s: float, interval_s: float) -> Trajectory:
@@ -121,7 +130,7 @@ def _evaluate(integral: Trajectory, times: Array) -> tuple[Array, Array, Array]:
     return sums + outside[:, None] * positions, positions, velocities
 
 
-def _join(pieces: list[Trajectory]) -> Trajectory:
+def join(pieces: Sequence[Trajectory]) -> Trajectory:
     """Return a trajectory that executes others one after the other."""
     starts = np.cumsum([0.0, *(piece.duration for piece in pieces[:-1])])
     times = [pieces[0].times, *(start + piece.times[1:] for start, piece in zip(starts[1:], pieces[1:], strict=True))]

@@ -133,6 +133,13 @@ class SceneMonitor:
             changed.apply_attached(attached, self.frame_lookup(positions))
         return changed
 
+    def scene_with_difference(self, message: Any) -> SceneState:
+        """Return a copy of the scene that a moveit_msgs/msg/PlanningScene changes as a difference."""
+        message.is_diff = True
+        changed = self.scene.copy()
+        changed.apply(message, self.frame_lookup(self._robot.positions))
+        return changed
+
     def collisions(self, scene: SceneState) -> CollisionScene:
         """Return the compiled scene; that of the current scene is cached."""
         if scene is not self.scene:
