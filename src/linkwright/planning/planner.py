@@ -18,6 +18,7 @@ from linkwright.planning.collision_scene import CollisionScene, Contact
 from linkwright.planning.goals import Goal, goal_configurations
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
+from linkwright.planning.link_speed import LinkSpeedLimits
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.sampling import DEFAULT_PLANNER, SamplingProblem, subdivide
 from linkwright.planning.smoothing import parameterize_smoothly
@@ -94,6 +95,7 @@ class PlanRequest:
         acceleration_scale: the share of the maximum accelerations, from 0 to 1.
         interval_s: the time in s between two points of the trajectory.
         arc: the center or a point of the arc for `Method.CARTESIAN_ARC`.
+        max_link_speeds: the maximum speeds of links' origins in m/s, by link.
     """
 
     group: JointGroup
@@ -108,6 +110,7 @@ class PlanRequest:
     acceleration_scale: float = 1.0
     interval_s: float = 0.1
     arc: ArcPoint | None = None
+    max_link_speeds: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -211,6 +214,7 @@ class MotionPlanner:
             else (shares[:, None] for shares in scales)
         )
         indexes = np.array([self._model.index(name) for name in group.joint_names])
+        speed_limits = LinkSpeedLimits(self._model, group, start, request.max_link_speeds)
         for deviation in _DEVIATIONS:
             trajectory = parameterize_smoothly(
                 path,
@@ -219,7 +223,10 @@ class MotionPlanner:
                 group.max_jerks,
                 max_deviation=deviation,
                 interval_s=request.interval_s if deviation > 0.0 else min(request.interval_s, _STOP_INTERVAL_S),
+                max_path_speeds=speed_limits.max_path_speeds if request.max_link_speeds else None,
             )
+            if request.max_link_speeds:
+                trajectory = speed_limits.slow(trajectory)
             positions = start.copy()
             for configuration in self._motion(trajectory):
                 positions[indexes] = configuration

@@ -9,8 +9,9 @@ meets both paths also for redundant arms.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import inf
 
 import numpy as np
 
@@ -133,7 +134,12 @@ def _time_blended(planner: MotionPlanner, model: RobotModel, commands: Sequence[
         slower = tuple(np.minimum(_scales(before), _scales(after)))
         scales = [*scales[:kept], *[slower] * (len(blend) - 1), *[_scales(after)] * (len(outgoing.outside) - 1)]
     velocity_scales, acceleration_scales = np.array(scales).T
-    return planner.time_path(first.request, first.plan.start, path, (velocity_scales, acceleration_scales))
+    speeds: dict[str, float] = {}
+    for command in commands:
+        for link, speed in command.request.max_link_speeds.items():
+            speeds[link] = min(speed, speeds.get(link, inf))
+    request = replace(first.request, max_link_speeds=speeds)
+    return planner.time_path(request, first.plan.start, path, (velocity_scales, acceleration_scales))
 
 
 def _scales(command: Command) -> tuple[float, float]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array
 from linkwright.planning.splines import slow_to_limits
-from linkwright.planning.timing import Trajectory, parameterize
+from linkwright.planning.timing import MaxPathSpeeds, Trajectory, parameterize
 
 _ACCELERATION_SHARES = (1.0, 0.5, 0.25, 0.125)
 """The shares of the maximum acceleration that are tried, because a smaller one allows a shorter average."""
@@ -44,6 +44,7 @@ def parameterize_smoothly(
     *,
     max_deviation: float = 0.1,
     interval_s: float = 0.1,
+    max_path_speeds: MaxPathSpeeds | None = None,
 ) -> Trajectory:
     """Return a fast trajectory along a path that starts and ends at rest, and whose splines keep all limits.
 
@@ -55,6 +56,7 @@ def parameterize_smoothly(
         max_deviation: the maximum distance from a corner before the average, in rad or m over all joints; 0 to stop
             at each corner, which then stays exact.
         interval_s: the maximum time in s between two points of the trajectory.
+        max_path_speeds: an additional limit of the speed along the path, which the average may exceed a little.
     """
     shape = (len(corners) - 1, corners.shape[1])
     max_velocities, max_accelerations = (np.broadcast_to(rows, shape) for rows in (max_velocities, max_accelerations))
@@ -66,6 +68,7 @@ def parameterize_smoothly(
                 max_accelerations[first:last],
                 max_jerks,
                 interval_s=interval_s,
+                max_path_speeds=max_path_speeds,
             )
             for first, last in ranges
         ]
@@ -80,6 +83,7 @@ def parameterize_smoothly(
             accelerations,
             max_deviation=max_deviation,
             interval_s=min(jerk_window_s / _FINE_STEPS or np.inf, _MAX_FINE_INTERVAL_S),
+            max_path_speeds=max_path_speeds,
         )
         window_s = max(jerk_window_s, float(np.clip(_WINDOW_SHARE * fine.duration, *_WINDOW_RANGE_S)))
         trials.append((fine.duration + window_s, window_s, fine))

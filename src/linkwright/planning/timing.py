@@ -11,7 +11,7 @@ The variables at a point of the path are the square x of the speed along the pat
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,6 +35,10 @@ _ARC_SPACING = 0.05
 """The maximum angle in rad between the directions at two points of an arc."""
 _MIN_POINTS = 8
 """The minimum number of points of a line or arc."""
+
+
+MaxPathSpeeds = Callable[[Array, Array], Array]
+"""Returns the maximum speeds along a path, shape (n,), at positions and their derivatives by the length (n, joints)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,6 +116,7 @@ def parameterize(
     *,
     max_deviation: float = 0.1,
     interval_s: float = 0.1,
+    max_path_speeds: MaxPathSpeeds | None = None,
 ) -> Trajectory:
     """Return the fastest trajectory along a path that starts and ends at rest.
 
@@ -122,6 +127,7 @@ def parameterize(
         max_deviation: the maximum distance of the trajectory from a corner, in rad or m over all joints; 0 to stop at
             each corner.
         interval_s: the time in s between two points of the trajectory.
+        max_path_speeds: an additional limit of the speed along the path.
     """
     shape = (len(corners) - 1, corners.shape[1])
     limits = np.array([np.broadcast_to(rows, shape) for rows in (max_velocities, max_accelerations)])
@@ -131,7 +137,7 @@ def parameterize(
         zeros = np.zeros_like(corners[:1])
         return Trajectory(np.zeros(1), corners[:1], zeros, zeros)
     path = _round_corners(corners, limits * _MARGIN, max_deviation)
-    return _sample(path, _compute_speeds(path), interval_s)
+    return _sample(path, _compute_speeds(path, max_path_speeds), interval_s)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,6 +186,7 @@ class _Path:
 
     Attributes:
         lengths: the length of the path up to each point, shape (n,).
+        positions: the positions of the joints, shape (n, joints).
         slopes: the derivatives of the positions by the length, shape (n, joints).
         curvatures: their second derivatives, shape (n, joints).
         max_velocities: the limits at each point, shape (n, joints).
@@ -193,7 +200,9 @@ class _Path:
             [start + piece.points for start, piece in zip(self._starts, pieces, strict=False)]
         )
         evaluated = [piece.evaluate(piece.points) for piece in pieces]
-        self.slopes, self.curvatures = (np.concatenate([parts[index] for parts in evaluated]) for index in (1, 2))
+        self.positions, self.slopes, self.curvatures = (
+            np.concatenate([parts[index] for parts in evaluated]) for index in range(3)
+        )
         counts = [len(piece.points) for piece in pieces]
         self.max_velocities, self.max_accelerations = (
             np.repeat([piece.limits[index] for piece in pieces], counts, axis=0) for index in (0, 1)
@@ -254,10 +263,12 @@ def _make_arc(previous: Array, corner: Array, following: Array, limits: Array, m
     return _Piece(radius * angle, center, incoming, limits, radial / np.linalg.norm(radial), radius)
 
 
-def _compute_speeds(path: _Path) -> Array:
+def _compute_speeds(path: _Path, max_path_speeds: MaxPathSpeeds | None) -> Array:
     """Return the square of the speed along the path at each of its points, shape (n,)."""
     steps = np.diff(path.lengths)
     limits, offsets, ratios = _speed_limits(path, steps)
+    if max_path_speeds is not None:
+        limits = np.minimum(limits, max_path_speeds(path.positions, path.slopes) ** 2)
     is_corner = np.linalg.norm(np.diff(path.slopes, axis=0), axis=1) > _MAX_TURN
     is_corner &= steps == 0.0
     limits[:-1][is_corner] = limits[1:][is_corner] = 0.0

@@ -227,6 +227,29 @@ class TestPlans:
         assert response.motion_plan_response.error_code.val == code.INVALID_ROBOT_STATE
         assert "the position of joint 'lift' at the start is not finite" in logged("ERROR")
 
+    async def test_speed_of_a_link_is_limited(self, bench) -> None:
+        async def duration(**fields: Any) -> float:
+            request = motion_request(joint_constraints(**START | {"pan": 1.0}), **fields)
+            request.max_velocity_scaling_factor = request.max_acceleration_scaling_factor = 1.0
+            response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+            time = response.motion_plan_response.trajectory.joint_trajectory.points[-1].time_from_start
+            return float(time.sec + time.nanosec * 1e-9)
+
+        assert await duration(max_cartesian_speed=0.05) > 3.0 * await duration()
+
+    @pytest.mark.parametrize(
+        ("fields", "code"),
+        [
+            ({"max_cartesian_speed": float("nan")}, "INVALID_MOTION_PLAN"),
+            ({"max_cartesian_speed": 0.1, "cartesian_speed_end_effector_link": "nose"}, "INVALID_LINK_NAME"),
+        ],
+    )
+    async def test_invalid_limit_of_a_speed(self, bench, fields: dict[str, Any], code: str) -> None:
+        request = motion_request(joint_constraints(**START), **fields)
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        error_code = response.motion_plan_response.error_code
+        assert error_code.val == getattr(error_code, code)
+
     async def test_unavailable_planner_is_replaced_with_a_warning(self, bench, logged) -> None:
         request = motion_request(joint_constraints(**START), planner_id="Unknown")
         response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)

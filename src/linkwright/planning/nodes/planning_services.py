@@ -156,6 +156,7 @@ class PlanningServices:
             request.max_velocity_scaling_factor or self._default_scale("velocity"),
             request.max_acceleration_scaling_factor or self._default_scale("acceleration"),
             arc=arc,
+            max_link_speeds=self._robot.read_link_speeds(request, group.tip),
         )
 
     @staticmethod

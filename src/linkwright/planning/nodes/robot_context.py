@@ -21,7 +21,12 @@ from linkwright.messages import get_message
 from linkwright.packages import current_finder
 from linkwright.planning.collision_scene import AllowedCollisions
 from linkwright.planning.groups import resolve_groups
-from linkwright.planning.nodes.conversions import UnknownFrameError, joint_state_message, update_positions
+from linkwright.planning.nodes.conversions import (
+    RequestError,
+    UnknownFrameError,
+    joint_state_message,
+    update_positions,
+)
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.semantics import read_semantics
 from linkwright.planning.shapes import robot_shapes
@@ -101,6 +106,27 @@ class RobotContext:
         Joints that it lacks keep their current positions.
         """
         return update_positions(self.model.joint_names, self.positions, state.joint_state)
+
+    def read_link_speeds(self, request: Any, default_link: str | None) -> dict[str, float]:
+        """Return the maximum speeds of links in m/s, by link.
+
+        Args:
+            request: a MotionPlanRequest, or a request of GetCartesianPath since Jazzy.
+            default_link: the link of requests that name none.
+
+        Raises:
+            RequestError: the speed is not finite, or there is no such link.
+        """
+        speed = float(getattr(request, "max_cartesian_speed", 0.0))
+        if not np.isfinite(speed):
+            raise RequestError("INVALID_MOTION_PLAN", "max_cartesian_speed is not finite")
+        if speed <= 0.0:
+            return {}
+        names = ("cartesian_speed_limited_link", "cartesian_speed_end_effector_link")  # since Jazzy, and in Humble
+        link = next((name for field in names if (name := getattr(request, field, ""))), default_link)
+        if link not in self.robot.links:
+            raise RequestError("INVALID_LINK_NAME", f"there is no link '{link or ''}' whose speed could be limited")
+        return {str(link): speed}
 
     def state_message(self, positions: Array) -> Any:
         """Return a moveit_msgs/msg/RobotState without attached objects."""
