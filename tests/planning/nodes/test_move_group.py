@@ -15,6 +15,7 @@ from linkwright.planning.nodes.move_group import MoveGroup
 from tests.planning.nodes.bench import (
     PARAMETERS,
     START,
+    Bench,
     box,
     joint_constraints,
     message,
@@ -430,6 +431,69 @@ class TestExecution:
         trajectory.joint_trajectory.points = [message("trajectory_msgs/msg/JointTrajectoryPoint", positions=[0.0])]
         status, result = await bench.send("ExecuteTrajectory", "execute_trajectory", trajectory=trajectory)
         assert (status, result.error_code.val) == (GoalStatus.ABORTED, result.error_code.CONTROL_FAILED)
+
+
+class TestMargins:
+    async def is_free_beside_a_post(self, bench: Bench) -> bool:
+        """Return whether the straight arm is free, 3 cm away from a post."""
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        scene.world.collision_objects = [box("post", 0.12, 0.0, 0.35, size=(0.1, 0.1, 0.1))]
+        await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)
+        straight = state(lift=0.0, elbow=0.0, bend=0.0)
+        fields = {"group_name": "arm", "robot_state": straight}
+        return bool((await bench.call("GetStateValidity", "check_state_validity", **fields)).valid)
+
+    @pytest.mark.parametrize(
+        ("planning", "is_free"),
+        [
+            ({}, True),
+            ({"default_robot_padding": 0.04}, False),
+            ({"default_robot_padding": 0.02}, True),
+            ({"default_robot_link_padding": {"upper_arm": 0.04}}, False),
+            ({"default_robot_scale": 2.0}, False),
+            ({"default_robot_padding": 0.04, "default_robot_link_padding": {"upper_arm": 0.0, "shoulder": 0}}, True),
+        ],
+    )
+    async def test_padding_in_parameters(self, graph, planning: dict[str, Any], is_free: bool) -> None:
+        bench = Bench(graph, robot_description_planning=planning)
+        assert await self.is_free_beside_a_post(bench) is is_free
+        bench.move_group.close()
+
+    async def test_padding_in_the_scene(self, bench) -> None:
+        assert await self.is_free_beside_a_post(bench)
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        scene.link_padding = [message("moveit_msgs/msg/LinkPadding", link_name="upper_arm", padding=0.04)]
+        assert (await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)).success
+        assert not await self.is_free_beside_a_post(bench)
+        components = message("moveit_msgs/msg/PlanningSceneComponents", components=256)
+        told = (await bench.call("GetPlanningScene", "get_planning_scene", components=components)).scene
+        assert {item.link_name: item.padding for item in told.link_padding if item.padding} == {"upper_arm": 0.04}
+        assert {item.scale for item in told.link_scale} == {1.0}
+
+    @pytest.mark.parametrize(
+        ("field", "entry", "reason"),
+        [
+            ("link_padding", {"link_name": "palm", "padding": -0.1}, "Padding must be finite and cannot be negative"),
+            ("link_scale", {"link_name": "palm", "scale": float("nan")}, "Scale must be positive and finite"),
+            ("link_padding", {"link_name": "nose", "padding": 0.1}, "the robot has no such link"),
+        ],
+    )
+    async def test_invalid_padding_in_the_scene(self, bench, logged, field: str, entry: Any, reason: str) -> None:
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        kind = "LinkPadding" if field == "link_padding" else "LinkScale"
+        setattr(scene, field, [message(f"moveit_msgs/msg/{kind}", **entry)])
+        assert not (await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)).success
+        assert logged("WARN")[-1].endswith(reason)
+
+    async def test_invalid_padding_in_parameters(self, graph, logged) -> None:
+        planning = {"default_robot_padding": "wide", "default_robot_link_scale": {"nose": 1.0, "palm": 0.0}}
+        bench = Bench(graph, robot_description_planning=planning)
+        assert logged("ERROR") == [
+            "robot_description_planning.default_robot_padding: 'wide' is not a number",
+            "robot_description_planning.default_robot_link_scale.nose: the robot has no link 'nose'",
+            "robot_description_planning.default_robot_link_scale.palm: Scale must be positive and finite",
+        ]
+        bench.move_group.close()
 
 
 class TestStart:

@@ -23,7 +23,7 @@ from linkwright.planning.nodes.execution import TrajectoryExecution, check_start
 from linkwright.planning.nodes.kinematics_services import KinematicsServices
 from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.planning_services import PlanningServices
-from linkwright.planning.nodes.robot_context import RobotContext, read_description, read_joint_limits
+from linkwright.planning.nodes.robot_context import RobotContext, read_description
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.sequence_services import SequenceServices
 
@@ -60,7 +60,7 @@ class MoveGroup(SingleNode):
             read_description(parameters, name, self.DEFAULT_NAME)
             for name in ("robot_description", "robot_description_semantic")
         )
-        self._robot = RobotContext(node, urdf, srdf, read_joint_limits(parameters))
+        self._robot = RobotContext(node, urdf, srdf, parameters)
         controllers, problems = read_controllers(parameters)
         for problem in problems:
             node.get_logger().error(problem)
