@@ -26,7 +26,7 @@ from sensor_msgs.msg import JointState
 from shape_msgs.msg import SolidPrimitive
 
 from tests.planning.arms import SRDF, urdf
-from tests.planning.nodes.test_move_group import PARAMETERS
+from tests.planning.nodes.bench import PARAMETERS
 
 pytestmark = pytest.mark.extra("arm")
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from linkwright.geometry.shapes import Box, Sphere
-from linkwright.planning.collision_scene import AllowedCollisions, CollisionScene, SceneObject
+from linkwright.planning.collision_scene import AllowedCollisions, CollisionScene, LinkMargin, SceneObject
 from linkwright.planning.robot_model import PlacedShape
-from linkwright.planning.shapes import hull_corners
+from linkwright.planning.shapes import hull_corners, scale_shape
 from tests.planning.arms import arm
 
 pytestmark = pytest.mark.extra("arm")
@@ -68,3 +68,47 @@ class TestCollisionScene:
         assert hull is not None
         assert sorted(map(tuple, hull.tolist())) == sorted(map(tuple, corners.tolist()))
         assert hull_corners(corners[:4]) is None
+
+
+class TestMargins:
+    @pytest.mark.parametrize(
+        ("margin", "reach"),
+        [
+            (LinkMargin(), 0.04),
+            (LinkMargin(padding=0.02), 0.06),
+            (LinkMargin(scale=1.5), 0.06),
+            (LinkMargin(0.01, 1.5), 0.07),
+        ],
+    )
+    @pytest.mark.parametrize("gap", [-1e-4, 1e-4])
+    def test_objects_keep_away_from_a_link(self, margin: LinkMargin, reach: float, gap: float) -> None:
+        near = ball("ball", 0.1, at=pose(0.1 + reach + gap, 0.0, 0.35))
+        checked = CollisionScene(arm().robot, arm().shapes, [near], arm().allowed(), {"upper_arm": margin})
+        assert checked.is_free(arm().positions()) is (gap > 0.0)
+        assert [contact.depth for contact in checked.contacts(arm().positions())] == pytest.approx(
+            [-gap] if gap < 0.0 else [], abs=2e-5
+        )
+
+    def test_attached_objects_have_the_margin_of_their_link(self) -> None:
+        held = ball("held", 0.05, at=pose(0.0, 0.0, 0.1), link="flange", touch_links=frozenset(("flange", "palm")))
+        arm().model.move(arm().positions())
+        z = float(arm().model.link_pose("flange")[2]) + 0.1 + 0.05
+        ceiling = SceneObject("ceiling", (PlacedShape(Box((1.0, 1.0, 0.1)), IDENTITY),), pose(0.0, 0.0, z + 0.06))
+        for padding, is_free in ((0.0, True), (0.02, False)):
+            checked = CollisionScene(arm().robot, {}, [held, ceiling], arm().allowed(), {"flange": LinkMargin(padding)})
+            assert checked.is_free(arm().positions()) is is_free
+
+    def test_links_keep_their_size_toward_each_other(self) -> None:
+        margins = {link: LinkMargin(0.05, 1.2) for link in arm().robot.links}
+        checked = CollisionScene(arm().robot, arm().shapes, [], arm().allowed(), margins)
+        random = np.random.default_rng(1)
+        for _ in range(200):
+            positions = arm().positions()
+            positions[arm().indexes] = arm().group.sample(random)
+            assert checked.is_free(positions) is scene().is_free(positions)
+
+    def test_hull_is_scaled_around_its_middle(self) -> None:
+        corners = np.array([(x, y, z) for x in (1.0, 3.0) for y in (0.0, 2.0) for z in (-1.0, 1.0)])
+        scaled = scale_shape(PlacedShape(corners, IDENTITY), 2.0).shape
+        assert isinstance(scaled, np.ndarray)
+        np.testing.assert_allclose((scaled.min(axis=0), scaled.max(axis=0)), ((0.0, -1.0, -2.0), (4.0, 3.0, 2.0)))

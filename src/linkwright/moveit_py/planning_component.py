@@ -197,11 +197,11 @@ class PlanningComponent:
         session, group = self._session, self._group
         start = self.get_start_state()
         started = perf_counter()
-        choice = session.pipelines.choose(parameters.planning_pipeline, parameters.planner_id, group.name)
-        if choice.replaced:
-            session.log_warning(f"Planner '{choice.replaced}' is not available; {choice.planner} takes its place")
         trajectory, code = None, "SUCCESS"
         try:
+            choice = session.pipelines.choose(parameters.planning_pipeline, parameters.planner_id, group.name)
+            if choice.notice:
+                session.log_warning(choice.notice)
             path_constraint, arc = session.monitor.read_path_constraints(
                 choice.method, self._path_constraints, start.positions, group.tip
             )

@@ -17,7 +17,7 @@ from linkwright.moveit_py.robot_model import RobotModel
 from linkwright.moveit_py.robot_state import RobotState
 from linkwright.moveit_py.robot_trajectory import RobotTrajectory
 from linkwright.planning.nodes.pipelines import Pipelines
-from linkwright.planning.nodes.robot_context import RobotContext, read_description, read_joint_limits
+from linkwright.planning.nodes.robot_context import RobotContext, read_description
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
 from linkwright.standins.rclpy_api.node import Node
@@ -63,7 +63,7 @@ class Session:
             read_description(self.parameters, name, node.get_name())
             for name in ("robot_description", "robot_description_semantic")
         )
-        self._robot = robot = RobotContext(node, urdf, srdf, read_joint_limits(self.parameters))
+        self._robot = robot = RobotContext(node, urdf, srdf, self.parameters)
         self.model = RobotModel.from_parts(robot.robot, robot.semantics, robot.groups)
         topic = str(self.parameters.get(f"{_MONITOR}publish_planning_scene_topic") or "monitored_planning_scene")
         self.monitor = SceneMonitor(node, robot, publishes_states=True, topic=topic)

@@ -2,16 +2,21 @@
 
 The model is compiled when the objects change. Links that never move do not collide with objects, because neither can
 be moved out of the way.
+
+As in MoveIt, a link may have a margin to objects of the world, and not to other links. Such a link has each of its
+shapes twice: one for other links, and one for the world.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any, NamedTuple
 
 from linkwright.geometry.arrays import Array
 from linkwright.planning.robot_model import PlacedShape, RobotModel, Shapes, add_shape, body_name, set_pose
+from linkwright.planning.shapes import scale_shape
 from linkwright.simulation.library import load_mujoco
 from linkwright.urdf import Robot
 
@@ -54,11 +59,35 @@ class AllowedCollisions:
         return self.defaults.get(first, False) or self.defaults.get(second, False)
 
 
+@dataclass(frozen=True, slots=True)
+class LinkMargin:
+    """How much a link is larger than its shapes, with what is attached to it, toward objects of the world.
+
+    Attributes:
+        padding: the distance in m within which an object collides with the link.
+        scale: the factor of the sizes of the shapes.
+    """
+
+    padding: float = 0.0
+    scale: float = 1.0
+
+    def find_error(self) -> str:
+        """Return why the margin cannot be used, or an empty string."""
+        if not 0.0 <= self.padding < inf:
+            return "Padding must be finite and cannot be negative"
+        return "" if 0.0 < self.scale < inf else "Scale must be positive and finite"
+
+
+_NO_MARGIN = LinkMargin()
+_WORLD = 2
+"""The bit of MuJoCo's contype and conaffinity for contacts with objects of the world; 1 is for those of the robot."""
+
+
 class Contact(NamedTuple):
     """Two links or objects that collide, at a position in the frame of the root link.
 
     Attributes:
-        depth: the penetration in m.
+        depth: the penetration in m, of the padded shapes.
         normal: the direction from the first to the second.
     """
 
@@ -77,10 +106,16 @@ class CollisionScene:
         shapes: the collision shapes of its links.
         objects: the objects in the world and those that are attached to links.
         allowed: the pairs that may collide.
+        margins: the margins of links, by link name.
     """
 
     def __init__(
-        self, robot: Robot, shapes: Shapes, objects: Iterable[SceneObject], allowed: AllowedCollisions
+        self,
+        robot: Robot,
+        shapes: Shapes,
+        objects: Iterable[SceneObject],
+        allowed: AllowedCollisions,
+        margins: Mapping[str, LinkMargin] | None = None,
     ) -> None:
         objects = tuple(objects)
         parts = [
@@ -90,8 +125,10 @@ class CollisionScene:
 
         def complete(spec: Any) -> None:
             spec.option.disableflags |= int(load_mujoco().mjtDisableBit.mjDSBL_FILTERPARENT)
+            for name, placed_shapes in shapes.items():
+                _add_margin(spec, spec.body(body_name(name)), placed_shapes, (margins or {}).get(name, _NO_MARGIN))
             for scene_object in objects:
-                _add_object(spec, scene_object)
+                _add_object(spec, scene_object, (margins or {}).get(scene_object.link, _NO_MARGIN))
             for first, second in _allowed_pairs(parts, objects, allowed):
                 spec.add_exclude(bodyname1=first, bodyname2=second)
 
@@ -111,7 +148,8 @@ class CollisionScene:
         contacts = []
         for contact in self._model.data.contact:
             first, second = (self._names_by_geom[geom] for geom in contact.geom)
-            contacts.append(Contact(first, second, contact.pos.copy(), contact.frame[:3].copy(), -float(contact.dist)))
+            depth = float(contact.includemargin - contact.dist)
+            contacts.append(Contact(first, second, contact.pos.copy(), contact.frame[:3].copy(), depth))
         return contacts
 
     def _move(self, positions: Array) -> None:
@@ -123,12 +161,28 @@ def _object_body(scene_object: SceneObject) -> str:
     return f"object {scene_object.name}"
 
 
-def _add_object(spec: Any, scene_object: SceneObject) -> None:
+def _add_object(spec: Any, scene_object: SceneObject, margin: LinkMargin) -> None:
     parent = spec.body(body_name(scene_object.link)) if scene_object.link else spec.worldbody
     body = parent.add_body(name=_object_body(scene_object))
     set_pose(body, scene_object.pose)
     for placed_shape in scene_object.shapes:
         add_shape(spec, body, placed_shape)
+    if scene_object.link:
+        _add_margin(spec, body, scene_object.shapes, margin)
+    else:
+        for geom in body.geoms:
+            geom.contype, geom.conaffinity = _WORLD, 0
+
+
+def _add_margin(spec: Any, body: Any, placed_shapes: Sequence[PlacedShape], margin: LinkMargin) -> None:
+    """Make the shapes of a body collide with the world, or larger copies of them."""
+    geoms = list(body.geoms)
+    if margin != _NO_MARGIN:
+        geoms = [add_shape(spec, body, scale_shape(placed_shape, margin.scale)) for placed_shape in placed_shapes]
+        for geom in geoms:
+            geom.margin, geom.contype, geom.conaffinity = margin.padding, 0, 0
+    for geom in geoms:
+        geom.conaffinity |= _WORLD
 
 
 def _allowed_pairs(

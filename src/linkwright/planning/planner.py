@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
-from itertools import pairwise
+from itertools import islice, pairwise
 from time import perf_counter
 from typing import Any
 
@@ -18,9 +18,10 @@ from linkwright.planning.collision_scene import CollisionScene, Contact
 from linkwright.planning.goals import Goal, goal_configurations
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
-from linkwright.planning.jerk import parameterize_smoothly
+from linkwright.planning.link_speed import LinkSpeedLimits
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.sampling import DEFAULT_PLANNER, SamplingProblem, subdivide
+from linkwright.planning.smoothing import parameterize_smoothly
 from linkwright.planning.timing import Trajectory
 
 _GOAL_SHARE = 0.3
@@ -45,6 +46,10 @@ class Method(Enum):
     CARTESIAN_ARC = "CIRC"
 
 
+_CARTESIAN = (Method.CARTESIAN_LINE, Method.CARTESIAN_ARC)
+"""The methods that need to know only whether the goal can be reached, and not in which configurations."""
+
+
 class Failure(Enum):
     """Why there is no plan; the names are those of moveit_msgs/msg/MoveItErrorCodes."""
 
@@ -56,6 +61,7 @@ class Failure(Enum):
     INVALID_GOAL_CONSTRAINTS = "a joint of the goal is outside of its bounds"
     INVALID_MOTION_PLAN = "there is no arc through the points"
     INVALID_ROBOT_STATE = "a joint of the start is outside of its bounds"
+    FAILURE = "two motions of a sequence cannot be blended"
 
 
 class PlanError(Exception):
@@ -89,6 +95,7 @@ class PlanRequest:
         acceleration_scale: the share of the maximum accelerations, from 0 to 1.
         interval_s: the time in s between two points of the trajectory.
         arc: the center or a point of the arc for `Method.CARTESIAN_ARC`.
+        max_link_speeds: the maximum speeds of links' origins in m/s, by link.
     """
 
     group: JointGroup
@@ -103,6 +110,22 @@ class PlanRequest:
     acceleration_scale: float = 1.0
     interval_s: float = 0.1
     arc: ArcPoint | None = None
+    max_link_speeds: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """A planned motion of a group.
+
+    Attributes:
+        start: the positions of all joints at the start.
+        path: the corners of the path of the group's joints, shape (n, joints).
+        trajectory: the motion along the path.
+    """
+
+    start: Array
+    path: Array
+    trajectory: Trajectory
 
 
 class MotionPlanner:
@@ -123,6 +146,14 @@ class MotionPlanner:
         Raises:
             PlanError: there is no plan.
         """
+        return self.plan_path(request).trajectory
+
+    def plan_path(self, request: PlanRequest) -> Plan:
+        """Return a trajectory of the group's joints, with the path that it follows.
+
+        Raises:
+            PlanError: there is no plan.
+        """
         deadline = perf_counter() + request.timeout_s
         indexes = np.array([self._model.index(name) for name in request.group.joint_names])
         start = self._checked_start(request, indexes)
@@ -131,40 +162,71 @@ class MotionPlanner:
         while (path := self._find_path(request, start, goals, indexes, is_valid, deadline)) is not None:
             trajectory = self._find_free_trajectory(request, start, path)
             if trajectory is not None:
-                return trajectory
+                return Plan(start, path, trajectory)
             if request.method is not Method.SAMPLING or perf_counter() >= deadline:
                 break
         raise PlanError(Failure.PLANNING_FAILED)
 
-    def time_path(self, request: PlanRequest, start: Array, path: Array) -> Trajectory:
+    def time_path(
+        self, request: PlanRequest, start: Array, path: Array, scales: tuple[Array, Array] | None = None
+    ) -> Trajectory:
         """Return the fastest trajectory along a path that is free of collisions.
 
         Args:
             request: the request, with the scales of the limits.
             start: the positions of all joints.
             path: the positions of the group's joints, shape (n, joints).
+            scales: the shares of the maximum velocities and accelerations between two corners, each of shape (n - 1,),
+                instead of those of the request.
 
         Raises:
             PlanError: even the trajectory that stops at each corner collides.
         """
-        trajectory = self._find_free_trajectory(request, start, path)
+        trajectory = self._find_free_trajectory(request, start, path, scales)
         if trajectory is None:
             raise PlanError(Failure.PLANNING_FAILED)
         return trajectory
 
-    def _find_free_trajectory(self, request: PlanRequest, start: Array, path: Array) -> Trajectory | None:
+    def is_path_free(self, request: PlanRequest, start: Array, path: Array) -> bool:
+        """Return whether the straight lines of a path are free of collisions and fulfill the path constraint.
+
+        Args:
+            request: the request, with the group and the constraint.
+            start: the positions of all joints.
+            path: the positions of the group's joints, shape (n, joints).
+        """
+        indexes = np.array([self._model.index(name) for name in request.group.joint_names])
+        positions = start.copy()
+        for configuration in subdivide(path, _CHECK_STEP):
+            positions[indexes] = configuration
+            if not self._is_valid(request, positions):
+                return False
+        return True
+
+    def _find_free_trajectory(
+        self, request: PlanRequest, start: Array, path: Array, scales: tuple[Array, Array] | None = None
+    ) -> Trajectory | None:
         """Return the fastest trajectory along a path that is free of collisions, or None."""
         group = request.group
+        velocity_scale, acceleration_scale = (
+            (request.velocity_scale, request.acceleration_scale)
+            if scales is None
+            else (shares[:, None] for shares in scales)
+        )
         indexes = np.array([self._model.index(name) for name in group.joint_names])
+        speed_limits = LinkSpeedLimits(self._model, group, start, request.max_link_speeds)
         for deviation in _DEVIATIONS:
             trajectory = parameterize_smoothly(
                 path,
-                group.max_velocities * request.velocity_scale,
-                group.max_accelerations * request.acceleration_scale,
+                group.max_velocities * velocity_scale,
+                group.max_accelerations * acceleration_scale,
                 group.max_jerks,
                 max_deviation=deviation,
                 interval_s=request.interval_s if deviation > 0.0 else min(request.interval_s, _STOP_INTERVAL_S),
+                max_path_speeds=speed_limits.max_path_speeds if request.max_link_speeds else None,
             )
+            if request.max_link_speeds:
+                trajectory = speed_limits.slow(trajectory)
             positions = start.copy()
             for configuration in self._motion(trajectory):
                 positions[indexes] = configuration
@@ -213,9 +275,8 @@ class MotionPlanner:
                     target.above, target.below
                 ):
                     raise PlanError(Failure.INVALID_GOAL_CONSTRAINTS)
-            found = list(
-                goal_configurations(goal, self._model, group, start, is_valid, request.timeout_s * _GOAL_SHARE)
-            )
+            possible = goal_configurations(goal, self._model, group, start, is_valid, request.timeout_s * _GOAL_SHARE)
+            found = list(islice(possible, 1 if request.method in _CARTESIAN else None))
             if not found and not goal.links:
                 positions = start.copy()
                 for name, target in goal.joints.items():
@@ -230,7 +291,7 @@ class MotionPlanner:
         self, request: PlanRequest, start: Array, goals: Sequence[Array], indexes: Any, is_valid: Any, deadline: float
     ) -> Array | None:
         """Return the corners of a path of the group's joints, shape (n, joints), or None."""
-        if request.method in (Method.CARTESIAN_LINE, Method.CARTESIAN_ARC):
+        if request.method in _CARTESIAN:
             return self._follow_curve(request, start, indexes, is_valid)
 
         def is_free(configuration: Array) -> bool:

@@ -148,8 +148,8 @@ def body_name(link: str) -> str:
     return f"link {link}"
 
 
-def add_shape(spec: Any, body: Any, placed_shape: PlacedShape) -> None:
-    """Add a collision shape to a body."""
+def add_shape(spec: Any, body: Any, placed_shape: PlacedShape) -> Any:
+    """Add a collision shape to a body, and return its geom."""
     kinds, shape = load_mujoco().mjtGeom, placed_shape.shape
     geom = body.add_geom(mass=0.0)
     set_pose(geom, placed_shape.pose)
@@ -165,6 +165,7 @@ def add_shape(spec: Any, body: Any, placed_shape: PlacedShape) -> None:
         assert isinstance(shape, (Cylinder, Capsule))
         geom.type = kinds.mjGEOM_CYLINDER if isinstance(shape, Cylinder) else kinds.mjGEOM_CAPSULE
         geom.size = [shape.radius, shape.length / 2, 0.0]
+    return geom
 
 
 def set_pose(part: Any, pose: Array) -> None:

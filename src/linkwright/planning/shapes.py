@@ -74,3 +74,17 @@ def hull_corners(points: Array) -> Array | None:
         return None
     faces = convex_hull(points)
     return None if faces is None else points[np.unique(faces)]
+
+
+def scale_shape(placed_shape: PlacedShape, factor: float) -> PlacedShape:
+    """Return a shape that is larger by a factor; a hull grows around the mean of its corners."""
+    shape, pose = placed_shape
+    if isinstance(shape, np.ndarray):
+        center = shape.mean(axis=0)
+        return PlacedShape(center + factor * (shape - center), pose)
+    if isinstance(shape, Box):
+        x, y, z = shape.size
+        return PlacedShape(Box((factor * x, factor * y, factor * z)), pose)
+    if isinstance(shape, Sphere):
+        return PlacedShape(Sphere(factor * shape.radius), pose)
+    return PlacedShape(type(shape)(factor * shape.radius, factor * shape.length), pose)

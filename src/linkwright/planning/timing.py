@@ -11,7 +11,7 @@ The variables at a point of the path are the square x of the speed along the pat
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,6 +35,10 @@ _ARC_SPACING = 0.05
 """The maximum angle in rad between the directions at two points of an arc."""
 _MIN_POINTS = 8
 """The minimum number of points of a line or arc."""
+
+
+MaxPathSpeeds = Callable[[Array, Array], Array]
+"""Returns the maximum speeds along a path, shape (n,), at positions and their derivatives by the length (n, joints)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,29 +74,39 @@ class Trajectory:
             rest = np.zeros((len(times), self.positions.shape[1]))
             return rest + self.positions, rest, rest
         indexes = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 2)
-        widths = np.diff(self.times)[indexes][:, None]
+        widths, (first, slope, c2, c3, c4, c5) = self.coefficients(indexes)
         x = (np.clip(times, 0.0, self.duration) - self.times[indexes])[:, None] / widths
-        first, slope, bend = _scaled(self, indexes, widths)
-        last, end_slope, end_bend = _scaled(self, indexes + 1, widths)
-        change = last - first
-        c2 = bend / 2.0
-        c3 = 10.0 * change - 6.0 * slope - 4.0 * end_slope - 1.5 * bend + 0.5 * end_bend
-        c4 = -15.0 * change + 8.0 * slope + 7.0 * end_slope + 1.5 * bend - end_bend
-        c5 = 6.0 * change - 3.0 * (slope + end_slope) + 0.5 * (end_bend - bend)
         return (
             first + x * (slope + x * (c2 + x * (c3 + x * (c4 + x * c5)))),
             (slope + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)))) / widths,
             (2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * 20.0 * c5))) / widths**2,
         )
 
+    def coefficients(self, indexes: Any = slice(None, -1)) -> tuple[Array, Array]:
+        """Return the durations of intervals in s, shape (n, 1), and the coefficients of their quintic splines.
 
-def _scaled(trajectory: Trajectory, indexes: Any, widths: Array) -> tuple[Array, Array, Array]:
-    """Return points of a trajectory whose derivatives are by the share of an interval instead of by the time."""
-    return (
-        trajectory.positions[indexes],
-        trajectory.velocities[indexes] * widths,
-        trajectory.accelerations[indexes] * widths**2,
-    )
+        The coefficients have the shape (6, n, joints) and are by the share of the interval, from 0 to 1.
+
+        Args:
+            indexes: the indexes of the intervals; by default all of them.
+        """
+        numbers = np.arange(len(self.times))[indexes]
+        widths = (self.times[numbers + 1] - self.times[numbers])[:, None]
+        (first, slope, bend), (last, end_slope, end_bend) = (
+            (self.positions[at], self.velocities[at] * widths, self.accelerations[at] * widths**2)
+            for at in (numbers, numbers + 1)
+        )
+        change = last - first
+        c3 = 10.0 * change - 6.0 * slope - 4.0 * end_slope - 1.5 * bend + 0.5 * end_bend
+        c4 = -15.0 * change + 8.0 * slope + 7.0 * end_slope + 1.5 * bend - end_bend
+        c5 = 6.0 * change - 3.0 * (slope + end_slope) + 0.5 * (end_bend - bend)
+        return widths, np.array((first, slope, bend / 2.0, c3, c4, c5))
+
+    def slowed(self, factor: float) -> Trajectory:
+        """Return the same motion in a time that is longer by a factor."""
+        if factor == 1.0:
+            return self
+        return Trajectory(self.times * factor, self.positions, self.velocities / factor, self.accelerations / factor**2)
 
 
 def parameterize(
@@ -102,25 +116,28 @@ def parameterize(
     *,
     max_deviation: float = 0.1,
     interval_s: float = 0.1,
+    max_path_speeds: MaxPathSpeeds | None = None,
 ) -> Trajectory:
     """Return the fastest trajectory along a path that starts and ends at rest.
 
     Args:
         corners: the corners of the path, shape (n, joints).
-        max_velocities: in rad/s or m/s, shape (joints,).
-        max_accelerations: in rad/s2 or m/s2, shape (joints,).
+        max_velocities: in rad/s or m/s, shape (joints,), or (n - 1, joints) for limits that differ between corners.
+        max_accelerations: in rad/s2 or m/s2, of the same shape.
         max_deviation: the maximum distance of the trajectory from a corner, in rad or m over all joints; 0 to stop at
             each corner.
         interval_s: the time in s between two points of the trajectory.
+        max_path_speeds: an additional limit of the speed along the path.
     """
-    is_distinct = np.concatenate(([True], np.linalg.norm(np.diff(corners, axis=0), axis=1) > _MIN_LENGTH))
-    corners = corners[is_distinct]
+    shape = (len(corners) - 1, corners.shape[1])
+    limits = np.array([np.broadcast_to(rows, shape) for rows in (max_velocities, max_accelerations)])
+    is_distinct = np.linalg.norm(np.diff(corners, axis=0), axis=1) > _MIN_LENGTH
+    corners, limits = corners[np.concatenate(([True], is_distinct))], limits[:, is_distinct]
     if len(corners) < 2:
         zeros = np.zeros_like(corners[:1])
         return Trajectory(np.zeros(1), corners[:1], zeros, zeros)
-    path = _round_corners(corners, max_deviation)
-    squared_speeds = _compute_speeds(path, max_velocities * _MARGIN, max_accelerations * _MARGIN)
-    return _sample(path, squared_speeds, interval_s)
+    path = _round_corners(corners, limits * _MARGIN, max_deviation)
+    return _sample(path, _compute_speeds(path, max_path_speeds), interval_s)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,6 +148,7 @@ class _Piece:
         length: the length in rad or m over all joints.
         origin: the first point of a line, or the center of an arc, shape (joints,).
         direction: the direction at the start, shape (joints,).
+        limits: the maximum velocities and accelerations, shape (2, joints).
         radial: the direction from the center to the first point of an arc, shape (joints,); zeros for a line.
         radius: the radius of an arc; infinite for a line.
     """
@@ -138,6 +156,7 @@ class _Piece:
     length: float
     origin: Array
     direction: Array
+    limits: Array
     radial: Array
     radius: float = np.inf
 
@@ -167,8 +186,11 @@ class _Path:
 
     Attributes:
         lengths: the length of the path up to each point, shape (n,).
+        positions: the positions of the joints, shape (n, joints).
         slopes: the derivatives of the positions by the length, shape (n, joints).
         curvatures: their second derivatives, shape (n, joints).
+        max_velocities: the limits at each point, shape (n, joints).
+        max_accelerations: the limits at each point, shape (n, joints).
     """
 
     def __init__(self, pieces: Sequence[_Piece]) -> None:
@@ -178,7 +200,13 @@ class _Path:
             [start + piece.points for start, piece in zip(self._starts, pieces, strict=False)]
         )
         evaluated = [piece.evaluate(piece.points) for piece in pieces]
-        self.slopes, self.curvatures = (np.concatenate([parts[index] for parts in evaluated]) for index in (1, 2))
+        self.positions, self.slopes, self.curvatures = (
+            np.concatenate([parts[index] for parts in evaluated]) for index in range(3)
+        )
+        counts = [len(piece.points) for piece in pieces]
+        self.max_velocities, self.max_accelerations = (
+            np.repeat([piece.limits[index] for piece in pieces], counts, axis=0) for index in (0, 1)
+        )
 
     def evaluate(self, lengths: Array) -> tuple[Array, Array, Array]:
         """Return positions and their first two derivatives by the length.
@@ -197,19 +225,20 @@ class _Path:
         return positions, slopes, curvatures
 
 
-def _round_corners(corners: Array, max_deviation: float) -> _Path:
-    """Return a path with an arc at each corner."""
+def _round_corners(corners: Array, limits: Array, max_deviation: float) -> _Path:
+    """Return a path with an arc at each corner, on which the smaller limits of both lines hold."""
     pieces: list[_Piece] = []
     start = corners[0]
     for index in range(1, len(corners)):
         end, arc = corners[index], None
         if index < len(corners) - 1:
-            arc = _make_arc(corners[index - 1], end, corners[index + 1], max_deviation)
+            arc_limits = limits[:, index - 1 : index + 1].min(axis=1)
+            arc = _make_arc(corners[index - 1], end, corners[index + 1], arc_limits, max_deviation)
         if arc is not None:
             end = arc.evaluate(np.zeros(1))[0][0]
         length = float(np.linalg.norm(end - start))
         if length > _MIN_LENGTH:
-            pieces.append(_Piece(length, start, (end - start) / length, np.zeros_like(start)))
+            pieces.append(_Piece(length, start, (end - start) / length, limits[:, index - 1], np.zeros_like(start)))
         start = end
         if arc is not None:
             pieces.append(arc)
@@ -217,7 +246,7 @@ def _round_corners(corners: Array, max_deviation: float) -> _Path:
     return _Path(pieces)
 
 
-def _make_arc(previous: Array, corner: Array, following: Array, max_deviation: float) -> _Piece | None:
+def _make_arc(previous: Array, corner: Array, following: Array, limits: Array, max_deviation: float) -> _Piece | None:
     """Return the arc that rounds a corner, or None if the path is straight or turns back there."""
     incoming, outgoing = corner - previous, following - corner
     incoming_length, outgoing_length = float(np.linalg.norm(incoming)), float(np.linalg.norm(outgoing))
@@ -231,13 +260,15 @@ def _make_arc(previous: Array, corner: Array, following: Array, max_deviation: f
     to_center = outgoing - incoming
     center = corner + to_center / np.linalg.norm(to_center) * radius / np.cos(half)
     radial = corner - reach * incoming - center
-    return _Piece(radius * angle, center, incoming, radial / np.linalg.norm(radial), radius)
+    return _Piece(radius * angle, center, incoming, limits, radial / np.linalg.norm(radial), radius)
 
 
-def _compute_speeds(path: _Path, max_velocities: Array, max_accelerations: Array) -> Array:
+def _compute_speeds(path: _Path, max_path_speeds: MaxPathSpeeds | None) -> Array:
     """Return the square of the speed along the path at each of its points, shape (n,)."""
     steps = np.diff(path.lengths)
-    limits, offsets, ratios = _speed_limits(path, steps, max_velocities, max_accelerations)
+    limits, offsets, ratios = _speed_limits(path, steps)
+    if max_path_speeds is not None:
+        limits = np.minimum(limits, max_path_speeds(path.positions, path.slopes) ** 2)
     is_corner = np.linalg.norm(np.diff(path.slopes, axis=0), axis=1) > _MAX_TURN
     is_corner &= steps == 0.0
     limits[:-1][is_corner] = limits[1:][is_corner] = 0.0
@@ -259,9 +290,7 @@ def _compute_speeds(path: _Path, max_velocities: Array, max_accelerations: Array
     return speeds
 
 
-def _speed_limits(
-    path: _Path, steps: Array, max_velocities: Array, max_accelerations: Array
-) -> tuple[Array, Array, Array]:
+def _speed_limits(path: _Path, steps: Array) -> tuple[Array, Array, Array]:
     """Return the limits of x and u at each point of a path.
 
     Returns:
@@ -270,7 +299,7 @@ def _speed_limits(
     """
     slopes, curvatures = path.slopes, path.curvatures
     limits = np.divide(
-        max_velocities, np.abs(slopes), out=np.full_like(slopes, np.inf), where=np.abs(slopes) > _MIN_SLOPE
+        path.max_velocities, np.abs(slopes), out=np.full_like(slopes, np.inf), where=np.abs(slopes) > _MIN_SLOPE
     )
     limits = (limits**2).min(axis=1)
     # u must also be possible at the next point, where x is larger by 2 * step * u.
@@ -279,7 +308,8 @@ def _speed_limits(
     end_curvatures = np.concatenate((curvatures[1:], curvatures[-1:]))
     all_slopes = np.concatenate((slopes, end_slopes), axis=1)
     all_curvatures = np.concatenate((curvatures, end_curvatures), axis=1)
-    bounds = np.broadcast_to(np.tile(max_accelerations, 2), all_slopes.shape)
+    accelerations = path.max_accelerations
+    bounds = np.concatenate((accelerations, np.concatenate((accelerations[1:], accelerations[-1:]))), axis=1)
     is_moving = np.abs(all_slopes) > _MIN_SLOPE
     offsets = np.divide(bounds, np.abs(all_slopes), out=np.full_like(all_slopes, np.inf), where=is_moving)
     ratios = np.divide(all_curvatures, all_slopes, out=np.zeros_like(all_slopes), where=is_moving)

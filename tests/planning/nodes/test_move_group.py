@@ -2,166 +2,30 @@
 
 from __future__ import annotations
 
-import asyncio
-from copy import copy
 from typing import Any
 
 import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.graph import ActionClient, ActionServer
 from linkwright.graph.actions.goal import GoalStatus
-from linkwright.messages import get_action, get_message, get_service
+from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.planning.nodes.move_group import MoveGroup
-from tests.planning.arms import LIMITS, SRDF, urdf
-from tests.waiting import TIMEOUT_S
+from tests.planning.nodes.bench import (
+    PARAMETERS,
+    START,
+    Bench,
+    box,
+    joint_constraints,
+    message,
+    motion_request,
+    position_constraint,
+    stamped,
+    state,
+)
 
 pytestmark = pytest.mark.extra("arm")
-
-PARAMETERS: dict[str, Any] = {
-    "robot_description": urdf(),
-    "robot_description_semantic": SRDF,
-    "robot_description_planning": {"joint_limits": LIMITS, "default_velocity_scaling_factor": 0.5},
-    "planning_pipelines": ["ompl", "pilz_industrial_motion_planner"],
-    "default_planning_pipeline": "ompl",
-    "ompl": {
-        "planner_configs": {
-            "RRTConnectkConfigDefault": {"type": "geometric::RRTConnect", "range": 0.0},
-            "Unknown": {"type": "geometric::LazyPRMstar"},
-        },
-        "arm": {"planner_configs": ["RRTConnectkConfigDefault"]},
-    },
-    "moveit_simple_controller_manager": {
-        "controller_names": ["arm_controller", "gripper_controller"],
-        "arm_controller": {
-            "type": "FollowJointTrajectory",
-            "action_ns": "follow_joint_trajectory",
-            "joints": ["pan", "lift", "elbow", "roll", "bend", "twist"],
-            "default": True,
-        },
-        "gripper_controller": {"type": "GripperCommand", "action_ns": "gripper_cmd", "joints": ["left"]},
-    },
-}
-START = {"lift": 0.6, "elbow": 1.2, "bend": 1.0}
-
-
-class Bench:
-    """move_group, its clients, and a controller that records its goals."""
-
-    def __init__(self, graph: Any, **parameters: Any) -> None:
-        self.graph = graph
-        self.node = graph.create_node("client")
-        self.received: list[Any] = []
-        self.fails = False
-        self.server = ActionServer(
-            self.node,
-            "control_msgs/action/FollowJointTrajectory",
-            "arm_controller/follow_joint_trajectory",
-            self._follow,
-        )
-        self.gripper = ActionServer(
-            self.node, "control_msgs/action/GripperCommand", "gripper_controller/gripper_cmd", self._grip
-        )
-        self.move_group = MoveGroup(graph, NodeOptions(parameters={**PARAMETERS, **parameters}))
-        self.state_publisher = self.node.create_publisher("sensor_msgs/msg/JointState", "joint_states", 10)
-
-    async def set_state(self, **joints: float) -> None:
-        message = get_message("sensor_msgs/msg/JointState")()
-        message.name, message.position = list(joints), list(joints.values())
-        self.state_publisher.publish(message)
-        await self.graph.settle()
-
-    async def wait(self, future: Any) -> Any:
-        for _ in range(round(TIMEOUT_S / 0.01)):
-            await self.graph.settle()
-            if future.done():
-                return future.result()
-            await asyncio.sleep(0.01)
-        raise AssertionError("there was no response in time")
-
-    async def call(self, kind: str, name: str, **fields: Any) -> Any:
-        service = get_service(f"moveit_msgs/srv/{kind}")
-        client = self.node.create_client(service, name)
-        return await self.wait(client.call_async(service.Request(**fields)))
-
-    async def send(self, kind: str, name: str, **fields: Any) -> tuple[int, Any]:
-        action = get_action(f"moveit_msgs/action/{kind}")
-        self.client = ActionClient(self.node, action, name)
-        handle = await self.wait(self.client.send_goal_async(action.Goal(**fields)))
-        response = await self.wait(handle.get_result_async())
-        return response.status, response.result
-
-    def _follow(self, goal: Any) -> Any:
-        self.received.append(goal.request.trajectory)
-        if self.fails:
-            goal.abort()
-        else:
-            goal.succeed()
-        return get_action("control_msgs/action/FollowJointTrajectory").Result()
-
-    def _grip(self, goal: Any) -> Any:
-        self.received.append(goal.request.command)
-        goal.succeed()
-        return get_action("control_msgs/action/GripperCommand").Result()
-
-
-@pytest.fixture
-async def bench(graph):
-    bench = Bench(graph)
-    await bench.set_state(**START)
-    yield bench
-    bench.move_group.close()
-
-
-def message(type_name: str, **fields: Any) -> Any:
-    return get_message(type_name)(**fields)
-
-
-def stamped(x: float, y: float, z: float, frame: str = "base") -> Any:
-    result = message("geometry_msgs/msg/PoseStamped")
-    result.header.frame_id = frame
-    result.pose.position.x, result.pose.position.y, result.pose.position.z = x, y, z
-    result.pose.orientation.y, result.pose.orientation.w = 1.0, 0.0
-    return result
-
-
-def box(name: str, x: float, y: float, z: float, *, size: tuple[float, float, float], frame: str = "base") -> Any:
-    result = message("moveit_msgs/msg/CollisionObject", id=name)
-    result.header.frame_id = frame
-    result.pose.position.x, result.pose.position.y, result.pose.position.z = x, y, z
-    result.primitives = [message("shape_msgs/msg/SolidPrimitive", type=1, dimensions=list(size))]
-    return result
-
-
-def joint_constraints(**joints: float) -> Any:
-    names = ("pan", "lift", "elbow", "roll", "bend", "twist")
-    constraints = [
-        message("moveit_msgs/msg/JointConstraint", joint_name=name, position=joints.get(name, 0.0)) for name in names
-    ]
-    return message("moveit_msgs/msg/Constraints", joint_constraints=constraints)
-
-
-def motion_request(*goals: Any, **fields: Any) -> Any:
-    return message("moveit_msgs/msg/MotionPlanRequest", group_name="arm", goal_constraints=list(goals), **fields)
-
-
-def position_constraint(pose: Any, y: float, z: float) -> Any:
-    """Return a constraint without a shape for the tool, at an offset in y and z from a pose."""
-    region = message("moveit_msgs/msg/BoundingVolume")
-    region.primitive_poses = [message("geometry_msgs/msg/Pose", position=copy(pose.position))]
-    region.primitive_poses[0].position.y += y
-    region.primitive_poses[0].position.z += z
-    constraint = message("moveit_msgs/msg/PositionConstraint", link_name="tool", constraint_region=region)
-    constraint.header.frame_id = "base"
-    return constraint
-
-
-def state(**joints: float) -> Any:
-    result = message("moveit_msgs/msg/RobotState", is_diff=True)
-    result.joint_state.name, result.joint_state.position = list(joints), list(joints.values())
-    return result
 
 
 class TestKinematics:
@@ -364,11 +228,64 @@ class TestPlans:
         assert response.motion_plan_response.error_code.val == code.INVALID_ROBOT_STATE
         assert "the position of joint 'lift' at the start is not finite" in logged("ERROR")
 
+    async def test_speed_of_a_link_is_limited(self, bench) -> None:
+        async def duration(**fields: Any) -> float:
+            request = motion_request(joint_constraints(**START | {"pan": 1.0}), **fields)
+            request.max_velocity_scaling_factor = request.max_acceleration_scaling_factor = 1.0
+            response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+            time = response.motion_plan_response.trajectory.joint_trajectory.points[-1].time_from_start
+            return float(time.sec + time.nanosec * 1e-9)
+
+        assert await duration(max_cartesian_speed=0.05) > 3.0 * await duration()
+
+    @pytest.mark.parametrize(
+        ("fields", "code"),
+        [
+            ({"max_cartesian_speed": float("nan")}, "INVALID_MOTION_PLAN"),
+            ({"max_cartesian_speed": 0.1, "cartesian_speed_end_effector_link": "nose"}, "INVALID_LINK_NAME"),
+        ],
+    )
+    async def test_invalid_limit_of_a_speed(self, bench, fields: dict[str, Any], code: str) -> None:
+        request = motion_request(joint_constraints(**START), **fields)
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        error_code = response.motion_plan_response.error_code
+        assert error_code.val == getattr(error_code, code)
+
     async def test_unavailable_planner_is_replaced_with_a_warning(self, bench, logged) -> None:
         request = motion_request(joint_constraints(**START), planner_id="Unknown")
         response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
         assert response.motion_plan_response.error_code.val == 1
-        assert "Planner 'Unknown' is not available; RRTConnect takes its place" in logged("WARN")
+        await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        assert logged("WARN").count("The planner 'Unknown' is not available; RRTConnect takes its place") == 1
+
+    async def test_unavailable_pipeline_is_replaced_with_one_warning(self, bench, logged) -> None:
+        for _ in range(2):
+            request = motion_request(joint_constraints(**START), pipeline_id="chomp", planner_id="CHOMP")
+            response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+            assert response.motion_plan_response.error_code.val == 1
+        warning = "The planner 'chomp_interface/CHOMPPlanner' of the pipeline 'chomp' is not available"
+        assert logged("WARN").count(f"{warning}; RRTConnect takes its place") == 1
+
+    @pytest.mark.parametrize(
+        ("pipeline", "planner", "code", "reason"),
+        [
+            ("stomp", "", "FAILURE", "Couldn't find requested planning pipeline 'stomp'"),
+            (
+                "pilz_industrial_motion_planner",
+                "ARC",
+                "PLANNING_FAILED",
+                "No ContextLoader for planner_id 'ARC' found. Planning not possible.",
+            ),
+        ],
+    )
+    async def test_unknown_pipelines_and_commands_are_refused(
+        self, bench, logged, pipeline: str, planner: str, code: str, reason: str
+    ) -> None:
+        request = motion_request(joint_constraints(**START), pipeline_id=pipeline, planner_id=planner)
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        error_code = response.motion_plan_response.error_code
+        assert error_code.val == getattr(error_code, code)
+        assert reason in logged("ERROR")
 
     async def test_pilz_line(self, bench) -> None:
         fk = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"])
@@ -516,6 +433,69 @@ class TestExecution:
         assert (status, result.error_code.val) == (GoalStatus.ABORTED, result.error_code.CONTROL_FAILED)
 
 
+class TestMargins:
+    async def is_free_beside_a_post(self, bench: Bench) -> bool:
+        """Return whether the straight arm is free, 3 cm away from a post."""
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        scene.world.collision_objects = [box("post", 0.12, 0.0, 0.35, size=(0.1, 0.1, 0.1))]
+        await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)
+        straight = state(lift=0.0, elbow=0.0, bend=0.0)
+        fields = {"group_name": "arm", "robot_state": straight}
+        return bool((await bench.call("GetStateValidity", "check_state_validity", **fields)).valid)
+
+    @pytest.mark.parametrize(
+        ("planning", "is_free"),
+        [
+            ({}, True),
+            ({"default_robot_padding": 0.04}, False),
+            ({"default_robot_padding": 0.02}, True),
+            ({"default_robot_link_padding": {"upper_arm": 0.04}}, False),
+            ({"default_robot_scale": 2.0}, False),
+            ({"default_robot_padding": 0.04, "default_robot_link_padding": {"upper_arm": 0.0, "shoulder": 0}}, True),
+        ],
+    )
+    async def test_padding_in_parameters(self, graph, planning: dict[str, Any], is_free: bool) -> None:
+        bench = Bench(graph, robot_description_planning=planning)
+        assert await self.is_free_beside_a_post(bench) is is_free
+        bench.move_group.close()
+
+    async def test_padding_in_the_scene(self, bench) -> None:
+        assert await self.is_free_beside_a_post(bench)
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        scene.link_padding = [message("moveit_msgs/msg/LinkPadding", link_name="upper_arm", padding=0.04)]
+        assert (await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)).success
+        assert not await self.is_free_beside_a_post(bench)
+        components = message("moveit_msgs/msg/PlanningSceneComponents", components=256)
+        told = (await bench.call("GetPlanningScene", "get_planning_scene", components=components)).scene
+        assert {item.link_name: item.padding for item in told.link_padding if item.padding} == {"upper_arm": 0.04}
+        assert {item.scale for item in told.link_scale} == {1.0}
+
+    @pytest.mark.parametrize(
+        ("field", "entry", "reason"),
+        [
+            ("link_padding", {"link_name": "palm", "padding": -0.1}, "Padding must be finite and cannot be negative"),
+            ("link_scale", {"link_name": "palm", "scale": float("nan")}, "Scale must be positive and finite"),
+            ("link_padding", {"link_name": "nose", "padding": 0.1}, "the robot has no such link"),
+        ],
+    )
+    async def test_invalid_padding_in_the_scene(self, bench, logged, field: str, entry: Any, reason: str) -> None:
+        scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+        kind = "LinkPadding" if field == "link_padding" else "LinkScale"
+        setattr(scene, field, [message(f"moveit_msgs/msg/{kind}", **entry)])
+        assert not (await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=scene)).success
+        assert logged("WARN")[-1].endswith(reason)
+
+    async def test_invalid_padding_in_parameters(self, graph, logged) -> None:
+        planning = {"default_robot_padding": "wide", "default_robot_link_scale": {"nose": 1.0, "palm": 0.0}}
+        bench = Bench(graph, robot_description_planning=planning)
+        assert logged("ERROR") == [
+            "robot_description_planning.default_robot_padding: 'wide' is not a number",
+            "robot_description_planning.default_robot_link_scale.nose: the robot has no link 'nose'",
+            "robot_description_planning.default_robot_link_scale.palm: Scale must be positive and finite",
+        ]
+        bench.move_group.close()
+
+
 class TestStart:
     @pytest.mark.parametrize("name", ["robot_description", "robot_description_semantic"])
     def test_missing_description_is_an_error(self, graph, name: str) -> None:
@@ -528,4 +508,5 @@ class TestStart:
         assert {item.pipeline_id: item.planner_ids for item in interfaces} == {
             "ompl": ["RRTConnectkConfigDefault", "Unknown"],
             "pilz_industrial_motion_planner": ["PTP", "LIN", "CIRC"],
+            "chomp": ["RRTConnect"],
         }

@@ -197,6 +197,7 @@ class KinematicsServices:
             velocity_scale=getattr(request, "max_velocity_scaling_factor", 0.0) or 1.0,
             acceleration_scale=getattr(request, "max_acceleration_scaling_factor", 0.0) or 1.0,
             interval_s=_CARTESIAN_INTERVAL_S,
+            max_link_speeds=self._robot.read_link_speeds(request, tip),
         )
         planner = MotionPlanner(model, scene or self._monitor.compile(None))
         try:

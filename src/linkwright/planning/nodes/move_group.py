@@ -23,8 +23,9 @@ from linkwright.planning.nodes.execution import TrajectoryExecution, check_start
 from linkwright.planning.nodes.kinematics_services import KinematicsServices
 from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.planning_services import PlanningServices
-from linkwright.planning.nodes.robot_context import RobotContext, read_description, read_joint_limits
+from linkwright.planning.nodes.robot_context import RobotContext, read_description
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
+from linkwright.planning.nodes.sequence_services import SequenceServices
 
 _DEFAULT_IK_TIMEOUT_S = 0.05
 _MIN_IK_TIMEOUT_S = 0.005
@@ -59,7 +60,7 @@ class MoveGroup(SingleNode):
             read_description(parameters, name, self.DEFAULT_NAME)
             for name in ("robot_description", "robot_description_semantic")
         )
-        self._robot = RobotContext(node, urdf, srdf, read_joint_limits(parameters))
+        self._robot = RobotContext(node, urdf, srdf, parameters)
         controllers, problems = read_controllers(parameters)
         for problem in problems:
             node.get_logger().error(problem)
@@ -82,6 +83,14 @@ class MoveGroup(SingleNode):
                 callback_group=group,
                 cancel_callback=lambda _goal: CancelResponse.ACCEPT,
             )
+        SequenceServices(
+            node,
+            self._robot,
+            self._monitor,
+            self._planning,
+            self._execute,
+            bool(parameters.get("allow_trajectory_execution", True)),
+        )
         node.create_subscription("std_msgs/msg/String", "trajectory_execution_event", self._on_event, 10)
         if parameters.get("publish_robot_description_semantic", False):
             self._publish_semantics(srdf)
@@ -120,10 +129,7 @@ class MoveGroup(SingleNode):
 
         publish_state("PLANNING")
         try:
-            scene = self._monitor.scene.copy()
-            scene.apply(
-                _as_difference(planning_options.planning_scene_diff), self._monitor.frame_lookup(self._robot.positions)
-            )
+            scene = self._monitor.scene_with_difference(planning_options.planning_scene_diff)
             start, trajectory, names = await self._planning.plan(request, scene)
             result.trajectory_start = self._robot.state_message(start)
             result.planned_trajectory = trajectory_message(names, trajectory, self._robot.frame)
@@ -171,9 +177,3 @@ class MoveGroup(SingleNode):
     def _on_event(self, message: Any) -> None:
         if message.data == "stop":
             self._execution.stop()
-
-
-def _as_difference(scene: Any) -> Any:
-    """Return the scene difference of a request; a scene that sets nothing is none."""
-    scene.is_diff = True
-    return scene

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from time import perf_counter
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from linkwright.graph import Node, Publisher
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_message, get_service
 from linkwright.planning.groups import JointGroup
-from linkwright.planning.nodes.conversions import RequestError, trajectory_message
+from linkwright.planning.nodes.conversions import RequestError, trajectory_message, update_positions
 from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
@@ -23,6 +23,8 @@ from linkwright.planning.nodes.scene_state import SceneState
 from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.timing import Trajectory
+
+Result = TypeVar("Result")
 
 _DEFAULT_PLANNING_TIME_S = 5.0
 
@@ -85,39 +87,59 @@ class PlanningServices:
         Raises:
             RequestError: there is no plan.
         """
+        plan_request, scene = self.prepare(request, scene, self._robot.positions)
+        trajectory = await self.run(scene, lambda planner: planner.plan(plan_request))
+        self.publish_path(plan_request.start, [(plan_request.group, trajectory)])
+        return plan_request.start, trajectory, plan_request.group.joint_names
+
+    def prepare(self, request: Any, scene: SceneState, positions: Array) -> tuple[PlanRequest, SceneState]:
+        """Return the request of a moveit_msgs/msg/MotionPlanRequest, and the scene with the objects of its start.
+
+        Args:
+            request: the message.
+            scene: the scene.
+            positions: the positions of all joints that the start state leaves out.
+
+        Raises:
+            RequestError: the message is not valid.
+        """
         group = self._robot.groups.get(request.group_name)
         if group is None:
             raise RequestError("INVALID_GROUP_NAME", f"there is no group '{request.group_name}'")
         if not request.goal_constraints:
             raise RequestError("INVALID_GOAL_CONSTRAINTS", "no goal constraints are specified")
-        start = self._robot.positions_of(request.start_state)
+        names = self._robot.model.joint_names
+        start = update_positions(names, positions, request.start_state.joint_state)
         if not np.all(np.isfinite(start)):
-            joint = self._robot.model.joint_names[int(np.argmin(np.isfinite(start)))]
+            joint = names[int(np.argmin(np.isfinite(start)))]
             raise RequestError("INVALID_ROBOT_STATE", f"the position of joint '{joint}' at the start is not finite")
         scene = self._monitor.scene_with(request.start_state, start, scene)
-        plan_request = self._make_request(request, group, start)
+        return self._make_request(request, group, start), scene
+
+    async def run(self, scene: SceneState, work: Callable[[MotionPlanner], Result]) -> Result:
+        """Return what a function computes with a planner in another thread, after other plans.
+
+        Raises:
+            RequestError: there is no plan.
+        """
         async with self._planning:
             planner = MotionPlanner(RobotModel(self._robot.robot), self._monitor.compile(scene))
             try:
-                trajectory = await asyncio.to_thread(planner.plan, plan_request)
+                return await asyncio.to_thread(work, planner)
             except PlanError as error:
                 raise RequestError(error.failure.name, self._explain(error)) from None
             except LinkwrightError as error:  # OMPL is not installed.
                 raise RequestError("FAILURE", render(error.diagnostics[0])) from None
-        self._publish_path(start, trajectory, group.joint_names)
-        return start, trajectory, group.joint_names
 
     def _make_request(self, request: Any, group: JointGroup, start: Array) -> PlanRequest:
         """Return the request of a moveit_msgs/msg/MotionPlanRequest.
 
         Raises:
-            RequestError: a name, a frame or a shape is not valid.
+            RequestError: a pipeline, a name, a frame or a shape is not valid.
         """
         choice = self._pipelines.choose(request.pipeline_id, request.planner_id, group.name)
-        if choice.replaced:
-            self._node.get_logger().warning(
-                f"Planner '{choice.replaced}' is not available; {choice.planner} takes its place"
-            )
+        if choice.notice:
+            self._node.get_logger().warning(choice.notice)
         goals = [self._monitor.read_goal(item, start, group.tip) for item in request.goal_constraints]
         path_constraint, arc = self._monitor.read_path_constraints(
             choice.method, request.path_constraints, start, group.tip
@@ -134,6 +156,7 @@ class PlanningServices:
             request.max_velocity_scaling_factor or self._default_scale("velocity"),
             request.max_acceleration_scaling_factor or self._default_scale("acceleration"),
             arc=arc,
+            max_link_speeds=self._robot.read_link_speeds(request, group.tip),
         )
 
     @staticmethod
@@ -150,9 +173,17 @@ class PlanningServices:
             response.planner_interfaces.append(description)
         return response
 
-    def _publish_path(self, start: Array, trajectory: Trajectory, names: tuple[str, ...]) -> None:
+    def publish_path(self, start: Array, motions: Iterable[tuple[JointGroup, Trajectory]]) -> None:
+        """Publish planned motions for the display.
+
+        Args:
+            start: the positions of all joints at the start.
+            motions: the groups with their trajectories, one after the other.
+        """
         message = get_message("moveit_msgs/msg/DisplayTrajectory")()
         message.model_id = self._robot.robot.name
         message.trajectory_start = self._robot.state_message(start)
-        message.trajectory = [trajectory_message(names, trajectory, self._robot.frame)]
+        message.trajectory = [
+            trajectory_message(group.joint_names, trajectory, self._robot.frame) for group, trajectory in motions
+        ]
         self._path_publisher.publish(message)

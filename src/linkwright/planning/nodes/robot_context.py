@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +20,19 @@ from linkwright.graph.transforms.listener import TransformListener
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.messages import get_message
 from linkwright.packages import current_finder
-from linkwright.planning.collision_scene import AllowedCollisions
+from linkwright.planning.collision_scene import AllowedCollisions, LinkMargin
 from linkwright.planning.groups import resolve_groups
-from linkwright.planning.nodes.conversions import UnknownFrameError, joint_state_message, update_positions
+from linkwright.planning.nodes.conversions import (
+    RequestError,
+    UnknownFrameError,
+    joint_state_message,
+    update_positions,
+)
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.semantics import read_semantics
 from linkwright.planning.shapes import robot_shapes
+
+_PLANNING = "robot_description_planning."
 
 
 class RobotContext:
@@ -34,12 +42,13 @@ class RobotContext:
         node: the node that receives the state of the robot.
         urdf: the text of the robot description.
         srdf: the text of the semantic description.
-        limits: the entries of ``joint_limits`` in MoveIt's ``joint_limits.yaml``, by joint name.
+        parameters: the parameters of the node by name, among them those of MoveIt's ``joint_limits.yaml``.
 
     Attributes:
         model: the robot, moved by whoever uses it on the event loop.
         shapes: the collision shapes of its links.
         groups: the groups of the SRDF by name.
+        margins: the margins of links to objects of the world, by link name.
         frame: the planning frame.
         positions: the current positions of all joints, shape (joints,).
         has_state: whether a joint state was received.
@@ -48,11 +57,15 @@ class RobotContext:
         LinkwrightError: the URDF or the SRDF has errors.
     """
 
-    def __init__(self, node: Node, urdf: str, srdf: str, limits: Mapping[str, Mapping[str, object]]) -> None:
+    def __init__(self, node: Node, urdf: str, srdf: str, parameters: Mapping[str, Any]) -> None:
         self.robot = load(urdf)
         self.semantics = read_semantics(srdf)
         self.model = RobotModel(self.robot)
+        limits = _read_joint_limits(parameters)
         self.groups = resolve_groups(self.robot, self.semantics, self.model.joint_names, limits)
+        self.margins, problems = read_margins(parameters, self.robot.links)
+        for problem in problems:
+            node.get_logger().error(problem)
         self.shapes, mesh_errors = robot_shapes(self.robot, MeshLibrary(current_finder(), Path.cwd()))
         for error in mesh_errors:
             node.get_logger().warning(error.diagnostics[0].message)
@@ -102,6 +115,27 @@ class RobotContext:
         """
         return update_positions(self.model.joint_names, self.positions, state.joint_state)
 
+    def read_link_speeds(self, request: Any, default_link: str | None) -> dict[str, float]:
+        """Return the maximum speeds of links in m/s, by link.
+
+        Args:
+            request: a MotionPlanRequest, or a request of GetCartesianPath since Jazzy.
+            default_link: the link of requests that name none.
+
+        Raises:
+            RequestError: the speed is not finite, or there is no such link.
+        """
+        speed = float(getattr(request, "max_cartesian_speed", 0.0))
+        if not np.isfinite(speed):
+            raise RequestError("INVALID_MOTION_PLAN", "max_cartesian_speed is not finite")
+        if speed <= 0.0:
+            return {}
+        names = ("cartesian_speed_limited_link", "cartesian_speed_end_effector_link")  # since Jazzy, and in Humble
+        link = next((name for field in names if (name := getattr(request, field, ""))), default_link)
+        if link not in self.robot.links:
+            raise RequestError("INVALID_LINK_NAME", f"there is no link '{link or ''}' whose speed could be limited")
+        return {str(link): speed}
+
     def state_message(self, positions: Array) -> Any:
         """Return a moveit_msgs/msg/RobotState without attached objects."""
         message = get_message("moveit_msgs/msg/RobotState")()
@@ -115,13 +149,35 @@ class RobotContext:
         self.has_state = True
 
 
-def read_joint_limits(parameters: Mapping[str, Any]) -> dict[str, dict[str, object]]:
-    """Return the entries of MoveIt's ``joint_limits.yaml``, by joint name.
+def read_margins(parameters: Mapping[str, Any], links: Iterable[str]) -> tuple[dict[str, LinkMargin], list[str]]:
+    """Return the margins of links in the parameters, and the errors of other ones.
 
     Args:
-        parameters: the parameters of a node by name.
+        parameters: the parameters of a node by name, such as ``robot_description_planning.default_robot_padding``.
+        links: the links of the robot.
     """
-    prefix = "robot_description_planning.joint_limits."
+    margins = {link: LinkMargin() for link in links}
+    problems: list[str] = []
+    for kind in ("padding", "scale"):
+        of_all, of_links = f"{_PLANNING}default_robot_{kind}", f"{_PLANNING}default_robot_link_{kind}."
+        settings = [(of_all, list(margins))] if of_all in parameters else []
+        settings += [(key, [key[len(of_links) :]]) for key in parameters if key.startswith(of_links)]
+        for key, names in settings:
+            value = parameters[key]
+            if unknown := [name for name in names if name not in margins]:
+                problems.append(f"{key}: the robot has no link '{unknown[0]}'")
+            elif not isinstance(value, (int, float)):
+                problems.append(f"{key}: {value!r} is not a number")
+            elif error := replace(LinkMargin(), **{kind: float(value)}).find_error():
+                problems.append(f"{key}: {error}")
+            else:
+                margins.update((name, replace(margins[name], **{kind: float(value)})) for name in names)
+    return margins, problems
+
+
+def _read_joint_limits(parameters: Mapping[str, Any]) -> dict[str, dict[str, object]]:
+    """Return the entries of MoveIt's ``joint_limits.yaml``, by joint name."""
+    prefix = f"{_PLANNING}joint_limits."
     limits: dict[str, dict[str, object]] = {}
     for name, value in parameters.items():
         if name.startswith(prefix):

@@ -47,7 +47,8 @@ class SceneMonitor:
         publishes_states: bool,
         topic: str = "monitored_planning_scene",
     ) -> None:
-        self.scene = SceneState(robot.frame, robot.allowed_collisions(), robot.robot.links, node.get_logger().warning)
+        warn = node.get_logger().warning
+        self.scene = SceneState(robot.frame, robot.allowed_collisions(), robot.robot.links, warn, robot.margins)
         self._robot = robot
         self._collision_scene: CollisionScene | None = None
         self._publisher: Publisher[Any] = node.create_publisher("moveit_msgs/msg/PlanningScene", topic, 10)
@@ -133,6 +134,13 @@ class SceneMonitor:
             changed.apply_attached(attached, self.frame_lookup(positions))
         return changed
 
+    def scene_with_difference(self, message: Any) -> SceneState:
+        """Return a copy of the scene that a moveit_msgs/msg/PlanningScene changes as a difference."""
+        message.is_diff = True
+        changed = self.scene.copy()
+        changed.apply(message, self.frame_lookup(self._robot.positions))
+        return changed
+
     def collisions(self, scene: SceneState) -> CollisionScene:
         """Return the compiled scene; that of the current scene is cached."""
         if scene is not self.scene:
@@ -146,7 +154,7 @@ class SceneMonitor:
         robot = self._robot
         if scene is None:
             return CollisionScene(robot.robot, {}, (), robot.allowed_collisions())
-        return CollisionScene(robot.robot, robot.shapes, scene.scene_objects(), scene.allowed)
+        return CollisionScene(robot.robot, robot.shapes, scene.scene_objects(), scene.allowed, scene.margins)
 
     def announce_change(self) -> None:
         """Publish the scene after a change of `scene`."""

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from copy import deepcopy
+from dataclasses import replace
 from typing import Any
 
 from linkwright.geometry.arrays import Array, compose, invert
 from linkwright.messages import get_message
-from linkwright.planning.collision_scene import AllowedCollisions, SceneObject
+from linkwright.planning.collision_scene import AllowedCollisions, LinkMargin, SceneObject
 from linkwright.planning.nodes.conversions import (
     FrameLookup,
     InvalidShapeError,
@@ -36,21 +37,29 @@ class SceneState:
         allowed: the pairs of links that may collide by the SRDF.
         links: the names of the robot's links.
         warn: receives the reasons why a part of a message was ignored.
+        margins: the margins of links to objects of the world.
 
     Attributes:
         objects: the objects in the world by ID, with poses in the planning frame.
         attached: the attached objects by ID, with poses in the frame of their link.
         allowed: the pairs that may collide.
+        margins: the margins of links to objects of the world, by link name.
     """
 
     def __init__(
-        self, frame: str, allowed: AllowedCollisions, links: Collection[str], warn: Callable[[str], object]
+        self,
+        frame: str,
+        allowed: AllowedCollisions,
+        links: Collection[str],
+        warn: Callable[[str], object],
+        margins: Mapping[str, LinkMargin],
     ) -> None:
         self.frame = frame
         self.name = "(noname)"
         self.objects: dict[str, Any] = {}
         self.attached: dict[str, Any] = {}
         self.allowed = allowed
+        self.margins = dict(margins)
         self._initial_allowed = deepcopy(allowed)
         self._colors: dict[str, Any] = {}
         self._links = links
@@ -58,7 +67,7 @@ class SceneState:
 
     def copy(self) -> SceneState:
         """Return a copy that can be changed."""
-        other = SceneState(self.frame, deepcopy(self.allowed), self._links, self._warn)
+        other = SceneState(self.frame, deepcopy(self.allowed), self._links, self._warn, self.margins)
         other.name, other._initial_allowed = self.name, self._initial_allowed
         other.objects, other.attached, other._colors = dict(self.objects), dict(self.attached), dict(self._colors)
         return other
@@ -82,11 +91,25 @@ class SceneState:
         for color in message.object_colors:
             self.set_color(color)
         is_applied = True
+        for margin in (*message.link_padding, *message.link_scale):
+            is_applied &= self._apply_margin(margin)
         for collision_object in message.world.collision_objects:
             is_applied &= self.apply_object(collision_object, lookup)
         for attached in message.robot_state.attached_collision_objects:
             is_applied &= self.apply_attached(attached, lookup)
         return is_applied
+
+    def _apply_margin(self, message: Any) -> bool:
+        """Apply a moveit_msgs/msg/LinkPadding or LinkScale, and return whether that was possible."""
+        link = message.link_name
+        change = {"padding": message.padding} if hasattr(message, "padding") else {"scale": message.scale}
+        margin = replace(self.margins.get(link, LinkMargin()), **change)
+        reason = margin.find_error() or ("" if link in self._links else "the robot has no such link")
+        if reason:
+            self._warn(f"The padding and the scale of link '{link}' were not changed: {reason}")
+            return False
+        self.margins[link] = margin
+        return True
 
     def set_color(self, message: Any) -> None:
         """Set the color of an object (moveit_msgs/msg/ObjectColor)."""
@@ -215,6 +238,11 @@ class SceneState:
             message.world.collision_objects = [_without_shapes(item) for item in self.objects.values()]
         if components & _ALLOWED:
             message.allowed_collision_matrix = self._allowed_message()
+        if components & _PADDING:
+            margins = {link: self.margins.get(link, LinkMargin()) for link in self._links}
+            padding_class, scale_class = map(get_message, ("moveit_msgs/msg/LinkPadding", "moveit_msgs/msg/LinkScale"))
+            message.link_padding = [padding_class(link_name=link, padding=it.padding) for link, it in margins.items()]
+            message.link_scale = [scale_class(link_name=link, scale=it.scale) for link, it in margins.items()]
         if components & _COLORS:
             message.object_colors = list(self._colors.values())
         return message

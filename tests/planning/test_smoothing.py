@@ -1,4 +1,4 @@
-"""Trajectories within limits of jerk: a duration by formula, and all limits on random paths."""
+"""Smooth trajectories: durations by formula, and all limits on the splines of random paths."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linkwright.planning.jerk import parameterize_smoothly
-from linkwright.planning.timing import parameterize
+from linkwright.planning.smoothing import parameterize_smoothly
+from linkwright.planning.splines import largest_accelerations, largest_velocities
+from linkwright.planning.timing import Trajectory, parameterize
 from tests.planning.arms import arm
 from tests.planning.test_planner import RIGHT, joint_goal, plan, request
 
@@ -65,10 +66,43 @@ def test_stops_at_corners_keep_the_path() -> None:
     assert np.minimum(np.abs(smooth.positions[:, 1]), np.abs(smooth.positions[:, 0] - 1.0)).max() < 1e-6
 
 
-def test_without_limits_of_jerk_the_trajectory_is_the_fastest() -> None:
+def test_without_limits_of_jerk_little_time_is_lost() -> None:
     corners = np.array([[0.0, 0.0], [1.0, 0.5]])
     smooth = parameterize_smoothly(corners, np.ones(2), np.ones(2), np.full(2, np.inf))
-    assert smooth.duration == parameterize(corners, np.ones(2), np.ones(2)).duration
+    fastest = parameterize(corners, np.ones(2), np.ones(2))
+    assert fastest.duration < smooth.duration < 1.06 * fastest.duration
+
+
+def test_path_without_length_is_a_point() -> None:
+    smooth = parameterize_smoothly(np.zeros((3, 2)), np.ones(2), np.ones(2), np.full(2, np.inf), max_deviation=0.0)
+    assert smooth.positions.tolist() == [[0.0, 0.0]]
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(min_value=0, max_value=2**32 - 1), st.sampled_from((0.1, 0.0)), st.booleans())
+def test_splines_between_points_keep_the_limits(seed: int, max_deviation: float, limits_jerk: bool) -> None:
+    random = np.random.default_rng(seed)
+    joints = int(random.integers(1, 8))
+    corners = random.uniform(-2.0, 2.0, (int(random.integers(2, 7)), joints))
+    velocities, accelerations = random.uniform(0.5, 3.0, joints), random.uniform(0.5, 6.0, joints)
+    jerks = random.uniform(1.0, 60.0, joints) if limits_jerk else np.full(joints, np.inf)
+    trajectory = parameterize_smoothly(corners, velocities, accelerations, jerks, max_deviation=max_deviation)
+    _, executed_velocities, executed_accelerations = trajectory.interpolate(
+        np.linspace(0.0, trajectory.duration, 20 * len(trajectory.times))
+    )
+    assert np.all(np.abs(executed_velocities) <= velocities * (1.0 + 1e-9))
+    assert np.all(np.abs(executed_accelerations) <= accelerations * (1.0 + 1e-9))
+
+
+@given(st.integers(min_value=0, max_value=2**32 - 1))
+def test_largest_values_of_splines_are_those_between_the_points(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    rows = random.uniform(-1.0, 1.0, (3, 4, 2))
+    trajectory = Trajectory(np.cumsum(random.uniform(0.1, 1.0, 4)) - 0.1, *rows)
+    trajectory = replace(trajectory, times=trajectory.times - trajectory.times[0])
+    _, velocities, accelerations = trajectory.interpolate(np.linspace(0.0, trajectory.duration, 20_000))
+    assert np.all(np.abs(velocities).max(axis=0) <= largest_velocities(trajectory) + 1e-9)
+    np.testing.assert_allclose(np.abs(accelerations).max(axis=0), largest_accelerations(trajectory), rtol=0.01)
 
 
 def test_plan_obeys_the_jerk_of_its_group() -> None:
