@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from linkwright.cli.maintainer import find_maintainer
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase, print_diagnostics
 
 if TYPE_CHECKING:
-    from linkwright.packages.creation.request import Maintainer
-
     _Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
 
@@ -108,7 +106,7 @@ def _create_package(arguments: argparse.Namespace) -> int:
 
     request = PackageRequest(
         name=arguments.name,
-        maintainer=_find_maintainer(arguments.maintainer_name, arguments.maintainer_email),
+        maintainer=find_maintainer(arguments.maintainer_name, arguments.maintainer_email),
         year=datetime.now().astimezone().year,
         destination=Path(arguments.destination_directory),
         package_format=arguments.package_format,
@@ -122,55 +120,6 @@ def _create_package(arguments: argparse.Namespace) -> int:
     warnings = create_package(request, print)
     print_diagnostics(warnings, sys.stderr)
     return 0
-
-
-def _find_maintainer(name: str | None, email: str | None) -> Maintainer:
-    """Return the maintainer of the new package.
-
-    A missing name or address is taken from git's configuration, or else derived from the login name.
-    """
-    from linkwright.packages.creation.request import Maintainer
-    from linkwright.packages.naming import is_email
-
-    login = _find_login_name()
-    if not name:
-        name = _read_git_setting("user.name") or login
-    if not email:
-        # reject an address without a domain, which git may generate and colcon does not accept
-        configured = _read_git_setting("user.email")
-        email = configured if is_email(configured) else f"{_to_address_part(login)}@todo.todo"
-    return Maintainer(name, email)
-
-
-def _read_git_setting(key: str) -> str:
-    """Return a value of git's configuration, or an empty string if the value or git is missing."""
-    try:
-        result = subprocess.run(  # noqa: S603 - fixed words, no shell
-            ["git", "config", key],  # noqa: S607 - the user's own git, found as the shell finds it
-            capture_output=True,
-            encoding="utf-8",
-            errors="replace",
-            timeout=5,
-            check=False,
-        )
-    except (OSError, subprocess.TimeoutExpired):
-        return ""
-    return result.stdout.strip()
-
-
-def _find_login_name() -> str:
-    import getpass
-
-    try:
-        return getpass.getuser()
-    except (OSError, KeyError, ImportError):  # in a container, a user ID need not have a name
-        return "user"
-
-
-def _to_address_part(login: str) -> str:
-    import re
-
-    return re.sub(r"[^A-Za-z0-9_%+-]+", "-", login).strip("-") or "user"
 
 
 def _configure_queries(verbs: _Subparsers) -> None:

@@ -16,6 +16,7 @@ GROUPS = {
         "run": "run an executable of a package, built or from its sources",
         "test": "run the launch_testing tests of a file",
         "pkg": "create ROS packages, find them, and list their contents",
+        "arm": "set up an arm for planning: write a MoveIt configuration package",
     },
     "simulation": {
         "drive": "drive a robot in a simulated world; missing masses, collisions and wheels are inferred",

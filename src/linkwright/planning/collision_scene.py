@@ -142,6 +142,13 @@ class CollisionScene:
         self._move(positions)
         return not self._model.data.ncon
 
+    def colliding_pairs(self, positions: Array) -> set[frozenset[str]]:
+        """Return the pairs of links or objects that collide at the positions of all joints."""
+        self._move(positions)
+        geoms = self._model.data.contact.geom
+        names = self._names_by_geom
+        return {frozenset((names[first], names[second])) for first, second in geoms.tolist()}
+
     def contacts(self, positions: Array) -> list[Contact]:
         """Return what collides at the positions of all joints."""
         self._move(positions)
