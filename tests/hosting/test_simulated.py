@@ -123,17 +123,22 @@ def test_scan_topics_are_read_from_description():
     assert find_scan_topics("") == []
 
 
-async def test_scans_and_first_camera_are_shown():
+async def test_scans_particles_and_first_camera_are_shown():
     camera = "<sensor name='{}' type='camera'><topic>{}</topic></sensor>"
     scan = "<sensor name='a' type='ray'><plugin><ros><remapping>~/out:=scan</remapping></ros></plugin></sensor>"
     text = f"{scan}{camera.format('b', 'left')}{camera.format('c', 'right')}"
-    world = replace(simulate_mbot(), text=text)
+    world = replace(simulate_mbot(), text=text, particles_topic="/world_particles")
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), io.StringIO()))
     topics = [
         (display.name, display.section.text("Topic", "Value"), display.checked)
         for display in view._create_viewer_config().displays
     ]
-    assert topics[4:] == [("LaserScan", "/scan", True), ("Image", "/left", True), ("Image", "/right", False)]
+    assert topics[4:] == [
+        ("LaserScan", "/scan", True),
+        ("Particles", "/world_particles", True),
+        ("Image", "/left", True),
+        ("Image", "/right", False),
+    ]
     await view.host.close()
 
 

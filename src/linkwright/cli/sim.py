@@ -58,11 +58,12 @@ def run(arguments: argparse.Namespace, viewer_started: Callable[[Viewer], object
     from linkwright.hosting.simulated import SimulatedWorld, run_simulated
     from linkwright.packages import PackageFinder
     from linkwright.simulation.library import load_mujoco
+    from linkwright.simulation.plugins.particles import PARTICLES_TOPIC, has_particles
     from linkwright.simulation.server.worlds import load_world
 
     refuse_terminal_without_page(arguments)
     load_mujoco()
-    load_world(arguments.world)  # report a missing world before the simulation starts to log
+    loaded_world = load_world(arguments.world)  # report a missing world before the simulation starts to log
     path = Path(arguments.robot or arguments.world).absolute()
     finder = PackageFinder(start=[path.parent, Path.cwd()])
     world = SimulatedWorld(
@@ -85,6 +86,8 @@ def run(arguments: argparse.Namespace, viewer_started: Callable[[Viewer], object
         world = replace(
             world, description=model.description, text=model.text, name=model.name, arguments=tuple(values.items())
         )
+    if has_particles(loaded_world.world, world.text):
+        world = replace(world, particles_topic=PARTICLES_TOPIC)
     options = HostOptions(
         arguments.host,
         arguments.port,

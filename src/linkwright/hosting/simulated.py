@@ -29,6 +29,7 @@ _SIMULATOR_NODE = ("gazebo_ros", "gzserver")
 _CLOCK_RATE_HZ = 100.0
 """The rate, in Hz, at which simulated time is published. It limits the age of transforms."""
 _SCAN_DISPLAY, _IMAGE_DISPLAY = "rviz_default_plugins/LaserScan", "rviz_default_plugins/Image"
+_PARTICLES_DISPLAY = "rviz_default_plugins/MarkerArray"
 _ODOMETRY_DISPLAY, _ODOMETRY_TOPIC = "rviz_default_plugins/Odometry", "/odom"
 _DRIVE_PLUGIN = re.compile(
     r"diff.drive|DiffDrive|skid_steer|planar_move|ackermann|mecanum|velocity.control", re.IGNORECASE
@@ -63,6 +64,7 @@ class SimulatedWorld:
         paused: whether the simulation starts paused.
         headless: whether no page is served.
         gazebo_mistakes: whether plugins reproduce known bugs of Gazebo.
+        particles_topic: the topic of the particles of emitters; empty for none.
         arguments: the names and values of the robot's xacro arguments.
         complete: returns the text to simulate, for a description that was read again after the robot's file was saved.
     """
@@ -80,6 +82,7 @@ class SimulatedWorld:
     paused: bool = False
     headless: bool = False
     gazebo_mistakes: bool = False
+    particles_topic: str = ""
     arguments: tuple[tuple[str, str], ...] = ()
     complete: Callable[[Description], str] = _to_text
 
@@ -204,8 +207,8 @@ class SimulatedView(ModelView):
 
         config = create_world_config(str(self._world.path), *self._world.pose[:2])
 
-        def add_display(display_class: str, topic: str, *, checked: bool = True) -> None:
-            display = config.make_display(display_class, display_class.rpartition("/")[2])
+        def add_display(display_class: str, topic: str, *, name: str = "", checked: bool = True) -> None:
+            display = config.make_display(display_class, name or display_class.rpartition("/")[2])
             display.section.put(("Topic", "Value"), topic, string=True)
             display.section.put(("Topic", "Reliability Policy"), "Best Effort", string=True)
             config.insert(display)
@@ -214,6 +217,8 @@ class SimulatedView(ModelView):
         text = self._world.text
         for topic in find_scan_topics(text):
             add_display(_SCAN_DISPLAY, topic)
+        if self._world.particles_topic:
+            add_display(_PARTICLES_DISPLAY, self._world.particles_topic, name="Particles")
         for index, topic in enumerate(find_image_topics(text)):
             add_display(_IMAGE_DISPLAY, topic, checked=index == 0)
         if _DRIVE_PLUGIN.search(text):

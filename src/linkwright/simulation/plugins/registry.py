@@ -51,6 +51,11 @@ _BUILT_IN = frozenset(
 """Plugins of other simulators whose work the simulation does itself, so they are not reported as unsupported."""
 
 
+_OTHER_GZ_LIBRARIES = frozenset(
+    ("PolyhedraBuoyancyDrag", "PublisherPlugin", "SimpleHydrodynamics", "Surface", "USVWind"),
+)
+"""Libraries for gz that are not part of gz, by name."""
+
 DEFAULT_GZ_SYSTEMS = tuple(
     Plugin(f"gz-sim-{name}-system") for name in ("physics", "user-commands", "scene-broadcaster")
 )
@@ -58,8 +63,9 @@ DEFAULT_GZ_SYSTEMS = tuple(
 
 
 def is_gz_library(filename: str) -> bool:
-    """Return whether a library belongs to gz, whose plugins do not have separate nodes."""
-    return library_name(filename).startswith("gz-sim-")
+    """Return whether a library is for gz, whose plugins do not have separate nodes."""
+    name = library_name(filename)
+    return name.startswith("gz-sim-") or name in _OTHER_GZ_LIBRARIES
 
 
 def is_built_in(filename: str) -> bool:

@@ -172,7 +172,7 @@ class SimulationServer:
         lift_onto_ground(self.simulation, name)
         self.report(find_overlaps(self.simulation, (name,)))
         self.report(find_collision_warnings(self.simulation, name), name)
-        self._warn_unsimulated(find_unsimulated_model_elements(model))
+        self._warn_unsimulated(find_unsimulated_model_elements(model, self.simulation.world))
 
     def replace_model(self, model: Model, name: str) -> None:
         """Replace a model with a changed model, and keep the pose, velocity and joint positions.

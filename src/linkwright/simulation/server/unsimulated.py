@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from linkwright.sdf.models import Model
+from linkwright.sdf.plugins import library_name
 from linkwright.sdf.reader import OPEN_TAGS
 from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.registry import is_built_in
@@ -13,6 +14,8 @@ from linkwright.xmltree import Element
 _UNSIMULATED = frozenset(
     {"audio_source", "fluid_added_mass", "gripper", "particle_emitter", "projector", "soft_contact"}
 )
+_SIMULATED_BY = {"gz-sim-particle-emitter-system": ("<particle_emitter>",)}
+"""The elements that are simulated in worlds with a plugin."""
 _UNSIMULATED_IN = frozenset({("actor", "animation"), ("geometry", "image")})
 """Pairs of a parent and a child: the child is simulated in other elements, but not in this parent."""
 _PLUGINS_NOT_SIMULATED = frozenset({"actor", "visual"})
@@ -23,16 +26,17 @@ def find_unsimulated_elements(world: World) -> list[str]:
 
     Examples are ``<projector>`` and ``libwalk.so in <actor>``.
     """
-    return _collect_unsimulated_names(_find_roots(world))
+    return _collect_unsimulated_names(_find_roots(world), world)
 
 
-def find_unsimulated_model_elements(model: Model) -> list[str]:
-    """Return the names of the elements in a model that are not simulated, sorted."""
+def find_unsimulated_model_elements(model: Model, world: World) -> list[str]:
+    """Return the names of the elements in a model of a world that are not simulated, sorted."""
     elements = (part.element for part in (model, *_find_nested_models(model)))
-    return _collect_unsimulated_names(element for element in elements if element is not None)
+    return _collect_unsimulated_names((element for element in elements if element is not None), world)
 
 
-def _collect_unsimulated_names(roots: Iterable[Element]) -> list[str]:
+def _collect_unsimulated_names(roots: Iterable[Element], world: World) -> list[str]:
+    libraries = {library_name(plugin.filename) for plugin in world.plugins}
     names: set[str] = set()
     for root in roots:
         pending = [root]
@@ -44,7 +48,7 @@ def _collect_unsimulated_names(roots: Iterable[Element]) -> list[str]:
                     names.add(name)
                 elif child.tag not in OPEN_TAGS and child.tag != "state":
                     pending.append(child)
-    return sorted(names)
+    return sorted(names.difference(*(_SIMULATED_BY.get(library, ()) for library in libraries)))
 
 
 def _describe_unsimulated(parent: Element, child: Element) -> str:

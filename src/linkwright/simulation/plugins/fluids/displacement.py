@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from linkwright.geometry import surfaces
 from linkwright.geometry.arrays import Array, rotation_matrix
 from linkwright.geometry.mesh_parts import Triangles
+from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
+from linkwright.sdf.shapes import Ellipsoid, Shape
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
 from linkwright.simulation.simulation import Simulation
@@ -68,6 +70,11 @@ class Solid:
         geoms = range(body.geomadr[0], body.geomadr[0] + body.geomnum[0])
         parts = [_create_geom_triangles(model, geom) for geom in geoms if model.geom_group[geom] == COLLISION_GROUP]
         corners = np.concatenate([np.empty((0, 3, 3)), *(part for part in parts if part is not None)])
+        return cls.from_triangles(corners)
+
+    @classmethod
+    def from_triangles(cls, corners: Array) -> Solid | None:
+        """Return the solid that triangles enclose, of shape (n, 3, 3), or None if they have no volume."""
         whole = _compute_volume(corners, np.zeros(3))
         if whole.size == 0.0:
             return None
@@ -93,33 +100,53 @@ class Solid:
 
 
 def _create_geom_triangles(model: Any, geom: int) -> Array | None:
-    """Return the triangles of a geom in the frame of its body; None for a geom without volume.
-
-    The triangles of round shapes enclose the volume of the exact shape.
-    """
+    """Return the triangles of a geom in the frame of its body; None for a geom without volume."""
     kinds, kind = load_mujoco().mjtGeom, int(model.geom_type[geom])
-    radius, half_length, _ = size = model.geom_size[geom].astype(float)
+    radius, half_length, _ = x, y, z = model.geom_size[geom].astype(float).tolist()
+    corners: Array | None
     if kind == kinds.mjGEOM_MESH:
         corners = _read_mesh_triangles(model, int(model.geom_dataid[geom]))
     elif kind == kinds.mjGEOM_BOX:
-        corners = _to_corner_array(surfaces.box(2 * size))
+        corners = create_shape_triangles(Box((2 * x, 2 * y, 2 * z)))
     elif kind == kinds.mjGEOM_SPHERE:
-        corners = _create_unit_ball() * radius
+        corners = create_shape_triangles(Sphere(radius))
     elif kind == kinds.mjGEOM_ELLIPSOID:
-        corners = _create_unit_ball() * size
+        corners = create_shape_triangles(Ellipsoid((x, y, z)))
     elif kind == kinds.mjGEOM_CYLINDER:
-        corners = _to_corner_array(surfaces.cylinder(radius, 2 * half_length, _SIDE_COUNT))
-        widening = np.sqrt(2 * pi * radius**2 * half_length / _compute_volume(corners, np.zeros(3)).size)
-        corners = corners * (widening, widening, 1.0)
+        corners = create_shape_triangles(Cylinder(radius, 2 * half_length))
     elif kind == kinds.mjGEOM_CAPSULE:
-        corners = _to_corner_array(surfaces.capsule(radius, 2 * half_length, _SIDE_COUNT))
-        exact_volume = pi * radius**2 * (2 * half_length + 4 / 3 * radius)
-        corners = corners * np.cbrt(exact_volume / _compute_volume(corners, np.zeros(3)).size)
+        corners = create_shape_triangles(Capsule(radius, 2 * half_length))
     else:
+        return None
+    if corners is None:
         return None
     qw, qx, qy, qz = model.geom_quat[geom].tolist()
     moved: Array = corners @ rotation_matrix((qx, qy, qz, qw)).T + model.geom_pos[geom]
     return moved
+
+
+def create_shape_triangles(shape: Shape) -> Array | None:
+    """Return the triangles of a primitive shape in its frame, shape (n, 3, 3); None for any other shape.
+
+    The triangles of round shapes enclose the volume of the exact shape.
+    """
+    if isinstance(shape, Box):
+        return _to_corner_array(surfaces.box(shape.size))
+    if isinstance(shape, Sphere):
+        return _create_unit_ball() * shape.radius
+    if isinstance(shape, Ellipsoid):
+        return _create_unit_ball() * shape.radii
+    if isinstance(shape, Cylinder):
+        corners = _to_corner_array(surfaces.cylinder(shape.radius, shape.length, _SIDE_COUNT))
+        exact_volume = pi * shape.radius**2 * shape.length
+        widening = np.sqrt(exact_volume / _compute_volume(corners, np.zeros(3)).size)
+        return corners * (widening, widening, 1.0)
+    if isinstance(shape, Capsule):
+        corners = _to_corner_array(surfaces.capsule(shape.radius, shape.length, _SIDE_COUNT))
+        exact_volume = pi * shape.radius**2 * (shape.length + 4 / 3 * shape.radius)
+        enlarged: Array = corners * np.cbrt(exact_volume / _compute_volume(corners, np.zeros(3)).size)
+        return enlarged
+    return None
 
 
 def _to_corner_array(triangles: Triangles) -> Array:
