@@ -11,11 +11,13 @@ from typing import Any, get_type_hints
 
 import pytest
 
+from linkwright.control.controllers.admittance_controller import AdmittanceController
 from linkwright.control.controllers.battery_state_broadcaster import BatteryStateBroadcaster
 from linkwright.control.controllers.chained_filter_controller import ChainedFilterController
 from linkwright.control.controllers.gpio_command_controller import GpioCommandController
 from linkwright.control.controllers.gripper_action_controller import EffortGripper, ParallelGripper, PositionGripper
 from linkwright.control.controllers.joint_trajectory_controller import JointTrajectoryController
+from linkwright.control.controllers.motion_primitives_controller import MotionPrimitivesForwardController
 from linkwright.control.controllers.pid_controller import PidController
 from linkwright.control.controllers.registry import GROUP, controller_class
 from linkwright.control.controllers.sensor_broadcasters import (
@@ -40,7 +42,7 @@ DOCUMENTED = [
     *(JointTrajectoryController, PidController, PositionGripper, EffortGripper, ParallelGripper),
     *(ImuBroadcaster, ForceTorqueBroadcaster, RangeBroadcaster, PoseBroadcaster, GpsBroadcaster),
     *(MagnetometerBroadcaster, BatteryStateBroadcaster, StateInterfacesBroadcaster, GpioCommandController),
-    ChainedFilterController,
+    *(ChainedFilterController, AdmittanceController, MotionPrimitivesForwardController),
 ]
 
 

@@ -393,6 +393,10 @@ class KinematicTree:
         except KeyError:
             raise UnknownNameError("KIN103", "link", name, self.link_names) from None
 
+    def mimic_relation(self, joint: str) -> MimicRelation:
+        """Return the relation of a moving joint to the joint that it follows, which is itself if it mimics none."""
+        return self._relations[joint]
+
     def _to_body_positions(self, positions: Array) -> Array:
         """Return the positions of all moving joints, including mimics, of shape (..., bodies - 1)."""
         if self._copies_positions:

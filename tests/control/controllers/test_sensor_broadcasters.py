@@ -179,11 +179,3 @@ async def test_sensor_and_interface_names_are_mutually_exclusive(bench, kind, na
 async def test_missing_or_invalid_parameters_are_rejected(bench, kind, parameters, message):
     with pytest.raises(LinkwrightError, match=message):
         bench.make(kind, **parameters)
-
-
-def test_admittance_controller_is_rejected_with_hint():
-    with pytest.raises(LinkwrightError) as error:
-        controller_class("admittance_controller/AdmittanceController")
-    (diagnostic,) = error.value.diagnostics
-    assert diagnostic.code == "CTL103"
-    assert "does not support admittance control" in str(diagnostic.hint)

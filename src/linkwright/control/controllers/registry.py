@@ -18,13 +18,6 @@ if TYPE_CHECKING:
 
 GROUP = "linkwright.controllers"
 
-_UNSUPPORTED_TYPES = {
-    "admittance_controller/AdmittanceController": phrase(
-        "Linkwright does not support admittance control; use a joint_trajectory_controller, which moves the "
-        "same joints without compliance"
-    ),
-}
-"""For each controller of ros2_controllers that is not supported, a hint for the user."""
 _REPLACEMENTS = {
     "effort_controllers/JointGroupPositionController": "pid_controller/PidController",
     "force_torque_sensor_controller/ForceTorqueSensorController": (
@@ -54,7 +47,7 @@ def controller_class(type_name: str) -> type[Controller[Any]]:
     entry = extensions(GROUP).get(type_name)
     if entry is None:
         message = phrase("no installed package provides a controller of type '{name}'", name=type_name)
-        hint = _UNSUPPORTED_TYPES.get(type_name) or did_you_mean(type_name, controller_types())
+        hint = did_you_mean(type_name, controller_types())
         if type_name in _REPLACEMENTS:
             hint = phrase("use {type}, which replaces this type of ROS 1", type=_REPLACEMENTS[type_name])
         raise LinkwrightError(Diagnostic("CTL103", message, hint=hint))
