@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 
@@ -156,6 +156,8 @@ class _SourcePair:
         changed = [(item, *detail) for name, item in after.items() if name in before
                    for detail in compare_details(before[name], item)]  # fmt: skip
         yield from self._report_details(kind, changed, old_names)
+        if kind is NameKind.PARAMETER:
+            yield from self._compare_scopes(before, after, old_names, new_names)
         if not self._is_reported(kind):
             return
         path, old_path = self.file.path, self.file.old_path or self.file.path
@@ -183,6 +185,26 @@ class _SourcePair:
             added = [item for item in added if item is not new_item]
         yield from self._compare_expressions(kind, removed, added)
         yield from self._report_unpaired(kind, removed, added, old_names)
+
+    def _compare_scopes(
+        self,
+        before: Mapping[str, SourceName],
+        after: Mapping[str, SourceName],
+        old_names: SourceNames,
+        new_names: SourceNames,
+    ) -> Iterator[Change]:
+        """Yield the parameters of ROS 1 that become private, or no longer are."""
+        unknown = old_names.unknown_scopes | new_names.unknown_scopes
+        known = [
+            {item.name.lstrip("/") for item in names.of_kind(NameKind.PARAMETER)} for names in (old_names, new_names)
+        ]
+        for name, item in after.items():
+            old = before.get(name)
+            if old is None or name in unknown or old.name.startswith("~") == item.name.startswith("~"):
+                continue
+            if old.name.lstrip("/") not in known[1] and item.name.lstrip("/") not in known[0]:
+                reason = self._find_removal_reason([old], old_names)
+                yield self._make_change(_format_rename(old, item), item.span, self.new, reason)
 
     def _is_reported(self, kind: NameKind) -> bool:
         """Return whether removed and added names of a kind matter outside of the file."""
