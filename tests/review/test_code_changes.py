@@ -203,6 +203,11 @@ def test_the_line_is_that_of_the_first_statement_that_differs(repository, compar
     assert found.changes[0].location.line == PYTHON[: PYTHON.index("= msg.data")].count("\n") + 1
 
 
+def test_macro_without_a_semicolon_may_stand_before_a_namespace(review_lines):
+    text = "PLUGIN_EXPORT(arm::Arm, Base)\n\nnamespace arm\n{\nvoid Arm::start()\n{\n  move(a);\n}\n}\n"
+    assert review_lines("arm.cpp", text, text.replace("move(a)", "turn(a)")) == ["code changed in 'Arm::start()'"]
+
+
 def test_a_class_in_cpp_may_have_a_macro_before_or_behind_its_name(review_lines):
     text = "class ARM_PUBLIC Tool ARM_FINAL : public Base {\n  int size() { return 1 + x; }\n};\n"
     assert review_lines("arm/src/tool.hpp", text, text.replace("+ x", "+ y")) == ["code changed in 'Tool::size()'"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import sentences
+from tests.review.conftest import breaking, sentences
 
 MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
 CLASS = "class Arm { public: Arm(); ros::NodeHandle nh, other; ros::Publisher p; };\n"
@@ -138,3 +138,37 @@ def test_options_of_several_nodes_remap_no_names(repository, compare):
     repository.write({"arm/src/arm.cpp": text.replace('Bool>("ready"', 'Bool>("done"')})
     (found,) = compare(repository).subjects
     assert sentences(found) == ["publisher 'ready' (Bool) renamed to 'done' (Bool)"]
+
+
+HANDLES = """#include <ros/ros.h>
+class Arm {{ public: ros::NodeHandle nh; ros::NodeHandle pnh{{"~"}}; }};
+void Arm::start({}) {{
+  {}
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "old", "new", "expected"),
+    [
+        ("", 'nh.getParam("gain", g);', 'pnh.getParam("gain", g);', ["parameter 'gain' renamed to '~gain'"]),
+        ("", 'pnh.param("gain", g, 1.0);', 'nh.param("gain", g, 1.0);',
+         ["parameter '~gain' (1.0) renamed to 'gain' (1.0)"]),
+        ("", 'nh.getParam("/gain", g);', 'nh.getParam("gain", g);', []),
+        ("", 'nh.getParam("gain", g);', 'pnh.getParam("gain", g); nh.getParam("gain", g);', []),
+        ("ros::NodeHandle & nh", 'nh.getParam("gain", g);', 'pnh.getParam("gain", g);', []),
+        ("", 'other.getParam("gain", g);', 'pnh.getParam("gain", g);', []),
+        ("", 'nh = make(); nh.getParam("gain", g);', 'pnh.getParam("gain", g);', []),
+    ],
+)  # fmt: skip
+def test_parameter_that_becomes_private_is_renamed(repository, compare, arguments, old, new, expected):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": HANDLES.format(arguments, old)})
+    repository.write({"arm/src/arm.cpp": HANDLES.format(arguments, new)})
+    assert breaking(compare(repository)) == expected
+
+
+def test_parameter_of_rospy_that_becomes_private_is_renamed(repository, compare):
+    text = "import rospy\nrospy.init_node('arm')\ngain = rospy.get_param('gain', 1)\n"
+    repository.commit({**MANIFEST, "arm/arm.py": text})
+    repository.write({"arm/arm.py": text.replace("'gain'", "'~gain'")})
+    assert breaking(compare(repository)) == ["parameter 'gain' (1) renamed to '~gain' (1)"]

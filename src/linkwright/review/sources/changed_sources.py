@@ -12,6 +12,7 @@ from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 from linkwright.review.sources.reading import read_source_names, try_read_source
 from linkwright.review.sources.unchanged_sources import UnchangedSources, get_counterpart, is_same_topic
+from linkwright.review.sources.used_packages import UsedPackages
 from linkwright.review.versions import Version
 
 COMMUNICATION_KINDS = (
@@ -35,6 +36,7 @@ class ChangedSources:
         self.version = version
         self._names = {path: read_source_names(version.file(path)) for path in paths if path is not None}
         self._unchanged_by_package: dict[str, UnchangedSources] = {}
+        self._used_by_package: dict[str, UsedPackages] = {}
 
     def get_names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
@@ -140,6 +142,13 @@ class ChangedSources:
     def find_package(self, path: str) -> str | None:
         """Return the folder of the package of a file, or None for a file outside of packages."""
         return self.version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
+
+    def get_used_packages(self, path: str) -> UsedPackages | None:
+        """Return the packages that the package of a file uses; None for a file outside of packages."""
+        package = self.find_package(path)
+        if package is None:
+            return None
+        return self._used_by_package.setdefault(package, UsedPackages(self.version, package))
 
     def _get_unchanged(self, package: str) -> UnchangedSources:
         if package not in self._unchanged_by_package:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
@@ -31,11 +30,13 @@ from linkwright.review.sources.names import (
     SourceNames,
 )
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
+from linkwright.review.sources.pairing import compute_similarity, pair_similar, take_pairs
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.unchanged_sources import make_user_reason
+from linkwright.review.sources.used_packages import compare_usage
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
@@ -45,12 +46,6 @@ _UNIT_NAMES = re.compile(
     r"\b(?:ros|rospy|rclcpp|rclpy|std|chrono|(?:nano|micro|milli)?seconds|duration|Duration|from_sec|to_sec|n?secs|"
     r"[num]?s|Hz|from_seconds|float|int)\b"
 )
-_MIN_SIMILARITY = 0.6
-"""The minimum ratio of equal characters of similar names of the same kind."""
-_MAX_COMPARED_PAIRS = 10_000
-"""The maximum number of pairs of names among which similar names are searched."""
-_UNTYPED_KINDS = (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
-"""The kinds for which equal types do not suggest a rename."""
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -107,6 +102,7 @@ class _SourcePair:
         changes += self._compare_imports(old_names, new_names)
         changes += self._find_undefined(old_names, new_names)
         changes += self._compare_protected(old_names, new_names)
+        changes += self._compare_packages(are_headers_told=not changes)
         if self.file.old_path is not None and self.file.new_path is not None:
             old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
             reported = [str(change.sentence) for change in changes]
@@ -165,6 +161,8 @@ class _SourcePair:
         changed = [(item, *detail) for name, item in after.items() if name in before
                    for detail in compare_details(before[name], item)]  # fmt: skip
         yield from self._report_details(kind, changed, old_names)
+        if kind is NameKind.PARAMETER:
+            yield from self._compare_scopes(before, after, old_names, new_names)
         if not self._is_reported(kind):
             return
         path, old_path = self.file.path, self.file.old_path or self.file.path
@@ -192,6 +190,26 @@ class _SourcePair:
             added = [item for item in added if item is not new_item]
         yield from self._compare_expressions(kind, removed, added)
         yield from self._report_unpaired(kind, removed, added, old_names)
+
+    def _compare_scopes(
+        self,
+        before: Mapping[str, SourceName],
+        after: Mapping[str, SourceName],
+        old_names: SourceNames,
+        new_names: SourceNames,
+    ) -> Iterator[Change]:
+        """Yield the parameters of ROS 1 that become private, or no longer are."""
+        unknown = old_names.unknown_scopes | new_names.unknown_scopes
+        known = [
+            {item.name.lstrip("/") for item in names.of_kind(NameKind.PARAMETER)} for names in (old_names, new_names)
+        ]
+        for name, item in after.items():
+            old = before.get(name)
+            if old is None or name in unknown or old.name.startswith("~") == item.name.startswith("~"):
+                continue
+            if old.name.lstrip("/") not in known[1] and item.name.lstrip("/") not in known[0]:
+                reason = self._find_removal_reason([old], old_names)
+                yield self._make_change(_format_rename(old, item), item.span, self.new, reason)
 
     def _is_reported(self, kind: NameKind) -> bool:
         """Return whether removed and added names of a kind matter outside of the file."""
@@ -243,7 +261,7 @@ class _SourcePair:
         unpaired_old, unpaired_new = (
             [item for item in items if item not in paired] for items in (old_items, new_items)
         )
-        return [*pairs, *_pair_similar(unpaired_old, unpaired_new)]
+        return [*pairs, *pair_similar(unpaired_old, unpaired_new)]
 
     def _pair_by_code(
         self, removed: Sequence[SourceName], added: Sequence[SourceName]
@@ -377,17 +395,17 @@ class _SourcePair:
         for item in list(removed_expressions):  # a different expression for the same name
             matching = [expression for expression in added_expressions if expression.type == item.type]
             if matching:
-                other = max(matching, key=lambda expression: _compute_similarity(item, expression))
+                other = max(matching, key=lambda expression: compute_similarity(item, expression))
                 removed_expressions.remove(item)
                 added_expressions.remove(other)
                 yield from self._compare_patterns(item, other)
-        for item, other in _take_pairs(removed, added_expressions):
+        for item, other in take_pairs(removed, added_expressions):
             text = phrase(
                 "{kind} {name} has a computed name now: {new}", kind=kind.title, name=format_name(item), new=other.name
             )
             reason = self._find_default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
             yield self._make_change(text, other.span, self.new, reason)
-        for item, other in _take_pairs(added, removed_expressions):
+        for item, other in take_pairs(added, removed_expressions):
             text = phrase(
                 "{kind} {name} had a computed name: {old}", kind=kind.title, name=format_name(item), old=other.name
             )
@@ -490,6 +508,13 @@ class _SourcePair:
                 text = phrase("calls its method '{name}', which is no longer defined", name=name)
                 yield self._make_change(text, span, self.new, phrase("the call fails"))
 
+    def _compare_packages(self, *, are_headers_told: bool) -> Iterator[Change]:
+        """Yield the packages, or else the headers, that the source is the first or was the last to use."""
+        old_path = self.file.old_path or self.file.path
+        old, new = self.old.get_used_packages(old_path), self.new.get_used_packages(self.file.path)
+        for change in compare_usage(old, new, self.file, are_headers_told=are_headers_told):
+            yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, None)
+
     def _compare_protected(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changes to protected members of the classes of an installed header."""
         if None in (self.file.old_path, self.file.new_path) or not self._is_interface(self.file.old_path or ""):
@@ -548,56 +573,3 @@ def _is_method_of(function: SourceName, classes: Collection[str]) -> bool:
     """Return whether a Python function is a method of a given class or a plain function."""
     class_name, _, _ = function.name.rpartition(".")
     return not class_name or class_name in classes
-
-
-def _pair_similar(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:
-    """Return the pairs of a removed and an added name of the same thing.
-
-    A pair is a single removed and added name that are alike, the only names of a type, or the most similar names.
-    """
-    pairs: list[tuple[SourceName, SourceName]] = []
-    if len(removed) == len(added) == 1:
-        (old,), (new,) = removed, added
-        has_types = old.kind not in _UNTYPED_KINDS
-        has_equal_type = old.type == new.type and (has_types or bool(old.type))
-        return [(old, new)] if has_equal_type or _compute_similarity(old, new) >= _MIN_SIMILARITY else []
-    unpaired = list(added)
-    is_compared = len(removed) * len(added) <= _MAX_COMPARED_PAIRS
-    for item in removed:
-        similar = [candidate for candidate in unpaired if _has_compatible_type(item, candidate)] if is_compared else []
-        candidates = [candidate for candidate in similar if _compute_similarity(item, candidate) >= _MIN_SIMILARITY]
-        same_type = [
-            [candidate for candidate in items if candidate.type == item.type and item.type]
-            for items in (removed, unpaired)
-        ]
-        is_typed = item.kind not in (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.MEMBER)
-        if is_typed and len(same_type[0]) == len(same_type[1]) == 1:
-            candidates = same_type[1]
-        if candidates:
-            best = max(candidates, key=lambda candidate: _compute_similarity(item, candidate))
-            pairs.append((item, best))
-            unpaired.remove(best)
-    return pairs
-
-
-def _take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> Iterator[tuple[SourceName, SourceName]]:
-    """Yield the pairs of a name and an expression that probably mean the same.
-
-    They are removed from both lists.
-    """
-    for item in list(literals):
-        is_only_pair = len(literals) == len(expressions) == 1
-        other = next((expression for expression in expressions if is_only_pair or expression.type == item.type), None)
-        if other is not None:
-            literals.remove(item)
-            expressions.remove(other)
-            yield item, other
-
-
-def _has_compatible_type(old: SourceName, new: SourceName) -> bool:
-    return old.type == new.type or not old.type or not new.type
-
-
-def _compute_similarity(old: SourceName, new: SourceName) -> float:
-    old_name, new_name = (item.name.rpartition("::")[2].casefold() for item in (old, new))
-    return SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()

@@ -240,12 +240,16 @@ class _Reader:
             ((begin, end) for begin, end in candidates if self._get_literal(begin, end) is not None), None
         )
         if name_offsets is not None:
-            namespace = ""
+            namespace, has_known_scope = "", True
             if function in _ROS1_CALLS:
                 namespace = self._handles.find_handle_namespace(match.start("name"))
+                is_global = match["scope"].startswith("ros::param")
+                has_known_scope = is_global or self._handles.has_known_namespace(match.start("name"))
             elif kind is not NameKind.PARAMETER:
                 namespace = self._handles.find_sub_namespace(match.start("name"))
             self._add_named_call(kind, function, type_name, arguments, name_offsets, namespace)
+            if kind is NameKind.PARAMETER and not has_known_scope:
+                self._names.unknown_scopes.add(self._get_literal(*name_offsets) or "")
         elif candidates:
             begin, end = candidates[0] if not is_action else candidates[min(1, len(candidates) - 1)]
             expression = SourceName(kind, " ".join(text[begin:end].split()), type_name, self._make_span(begin, end))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 _HANDLES = re.compile(r"\bNodeHandle\b(?P<names>[^;{}<>]*)[;{]")
 _HANDLE = re.compile(r'\b(?P<name>\w+)\s*[({]\s*(?:\w+\s*,\s*)?"(?P<namespace>[^"]+)"\s*[)}]')
@@ -47,6 +47,7 @@ class Handles:
             (match.start(), match["name"], _join(_PRIVATE if match["private"] else "", match["namespace"] or ""))
             for match in _ASSIGNED_HANDLE.finditer(text)
         ] + [(match.start(), match["name"], match["namespace"]) for match in _CREATED_HANDLE.finditer(text)]
+        self._sources = [text, *headers]
         self._sub_nodes: dict[str, str] = {}
         for match in _SUB_NODE.finditer(text):
             parent = self._sub_nodes.get((match["parent"] or "").removesuffix("->").strip(), "")
@@ -69,6 +70,23 @@ class Handles:
             return before[-1] if before else assigned[0][1]
         return self._namespaces.get(variable["name"], "")
 
+    def has_known_namespace(self, start: int) -> bool:
+        """Return whether the namespace of the handle on which the method at an offset is called is known.
+
+        The namespace of a handle that a caller passes is unknown.
+        """
+        if _find_receiver(_CALLED_GETTER, self._text, start) is not None:
+            return True
+        variable = _find_receiver(_VARIABLE, self._text, start)
+        if variable is None:
+            return False
+        name = variable["name"]
+        if name in self._namespaces or any(name == assigned for _, assigned, _ in self._assigned):
+            return True
+        is_declared = any(name in names.split() for source in self._sources for names in _list_plain_handles(source))
+        passed = re.compile(rf"\bNodeHandle\s*(?:const\s*)?[&*]\s*{name}\b|\b{name}\s*(?:[({{]\s*\w|=(?!=))")
+        return is_declared and not any(passed.search(source) for source in self._sources)
+
     def find_sub_namespace(self, start: int) -> str:
         """Return the namespace of the rclcpp sub-node on which the method at an offset is called; empty for a node."""
         receiver = _find_receiver(_CALLED_SUB_NODE, self._text, start)
@@ -76,6 +94,11 @@ class Handles:
             return receiver["namespace"]
         variable = _find_receiver(_VARIABLE, self._text, start)
         return "" if variable is None else self._sub_nodes.get(variable["name"], "")
+
+
+def _list_plain_handles(text: str) -> Iterator[str]:
+    """Yield the names in each declaration of handles without a namespace, separated by spaces."""
+    return (names.replace(",", " ") for names in _PLAIN_HANDLES.findall(text))
 
 
 def add_namespace(namespace: str, name: str) -> str:

@@ -11,6 +11,8 @@ from linkwright.review.sources.tokens import Token, TokenKind, match_brackets, t
 
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n\\]|\\\r?\n|\\.)*", re.MULTILINE)
 _DEFINE = re.compile(r"[ \t]*#[ \t]*define[ \t]+(?P<name>\w+)[ \t]+(?=\S)")
+_QUALIFIERS = frozenset({"const", "final", "noexcept", "override", "try", "volatile"})
+"""The words between the parameters and the body of a function."""
 _SCOPES = frozenset({"namespace", "class", "struct", "union", "extern"})
 _CONTROLS = frozenset({"if", "else", "for", "while", "do", "switch", "try", "catch", "case", "default", "return"})
 _LABELS = frozenset({"case", "default", "public", "private", "protected", "slots", "signals"})
@@ -151,6 +153,10 @@ class _Reader:
         header = self._pending
         name, is_function, pending = block.name, block.is_function, header
         if not block.is_function:
+            end = _find_macro_end(header)
+            if end:
+                self.add(name, header[:end])
+                header = header[end:]
             scope = _find_scope_name(header)
             words = {token.text for token in header}
             if scope is not None:
@@ -174,6 +180,19 @@ class _Reader:
     def _end_statement(self) -> None:
         self.add(self._blocks[-1].name, self._pending)
         self._pending = []
+
+
+def _find_macro_end(header: Sequence[Token]) -> int:
+    """Return the end of the calls of macros without a semicolon before a header; 0 if there are none."""
+    pairs, end = match_brackets(header), 0
+    while end + 1 < len(header) and header[end].text.isupper() and header[end + 1].text == "(":
+        following = pairs.get(end + 1, len(header)) + 1
+        if following >= len(header) or header[following].kind is not TokenKind.WORD:
+            break
+        if header[following].text in _QUALIFIERS:
+            break  # the header of a function with the name of a macro
+        end = following
+    return end
 
 
 def _find_scope_name(header: Sequence[Token]) -> str | None:

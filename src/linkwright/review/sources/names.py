@@ -115,6 +115,7 @@ class SourceNames:
         expressions: the names that are expressions, whose values are unknown.
         defaults: the names that expressions have by default, by the text of the expression.
         default_names: the names that parameters give by default.
+        unknown_scopes: the parameters of ROS 1 that may be private, because a caller passes the node handle.
         rates: the texts of rates and periods, each with its location.
         overrides: the names of functions that override a function of a base class.
         is_program: whether the source is a program and not a library.
@@ -140,6 +141,7 @@ class SourceNames:
     expressions: list[SourceName] = field(default_factory=list)
     defaults: dict[str, str] = field(default_factory=dict)
     default_names: set[DefaultName] = field(default_factory=set)
+    unknown_scopes: set[str] = field(default_factory=set)
     rates: list[tuple[str, Span]] = field(default_factory=list)
     overrides: set[str] = field(default_factory=set)
     is_program: bool = False

@@ -1,0 +1,69 @@
+"""Pair the old and new names in a source that probably mean the same thing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from difflib import SequenceMatcher
+
+from linkwright.review.sources.names import NameKind, SourceName
+
+_MIN_SIMILARITY = 0.6
+"""The minimum ratio of equal characters of similar names of the same kind."""
+_MAX_COMPARED_PAIRS = 10_000
+"""The maximum number of pairs of names among which similar names are searched."""
+_UNTYPED_KINDS = (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
+"""The kinds for which equal types do not suggest a rename."""
+
+
+def pair_similar(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:
+    """Return the pairs of a removed and an added name of the same thing.
+
+    A pair is a single removed and added name that are alike, the only names of a type, or the most similar names.
+    """
+    pairs: list[tuple[SourceName, SourceName]] = []
+    if len(removed) == len(added) == 1:
+        (old,), (new,) = removed, added
+        has_types = old.kind not in _UNTYPED_KINDS
+        has_equal_type = old.type == new.type and (has_types or bool(old.type))
+        return [(old, new)] if has_equal_type or compute_similarity(old, new) >= _MIN_SIMILARITY else []
+    unpaired = list(added)
+    is_compared = len(removed) * len(added) <= _MAX_COMPARED_PAIRS
+    for item in removed:
+        similar = [candidate for candidate in unpaired if _has_compatible_type(item, candidate)] if is_compared else []
+        candidates = [candidate for candidate in similar if compute_similarity(item, candidate) >= _MIN_SIMILARITY]
+        same_type = [
+            [candidate for candidate in items if candidate.type == item.type and item.type]
+            for items in (removed, unpaired)
+        ]
+        is_typed = item.kind not in (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.MEMBER)
+        if is_typed and len(same_type[0]) == len(same_type[1]) == 1:
+            candidates = same_type[1]
+        if candidates:
+            best = max(candidates, key=lambda candidate: compute_similarity(item, candidate))
+            pairs.append((item, best))
+            unpaired.remove(best)
+    return pairs
+
+
+def take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> Iterator[tuple[SourceName, SourceName]]:
+    """Yield the pairs of a name and an expression that probably mean the same.
+
+    They are removed from both lists.
+    """
+    for item in list(literals):
+        is_only_pair = len(literals) == len(expressions) == 1
+        other = next((expression for expression in expressions if is_only_pair or expression.type == item.type), None)
+        if other is not None:
+            literals.remove(item)
+            expressions.remove(other)
+            yield item, other
+
+
+def _has_compatible_type(old: SourceName, new: SourceName) -> bool:
+    return old.type == new.type or not old.type or not new.type
+
+
+def compute_similarity(old: SourceName, new: SourceName) -> float:
+    """Return the ratio of equal characters of the last words of two names."""
+    old_name, new_name = (item.name.rpartition("::")[2].casefold() for item in (old, new))
+    return SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()
