@@ -38,6 +38,25 @@ _ALWAYS_INSTALLED = frozenset(
     }
 )
 """Packages of the variant `ros_base` (REP 2001), which every installation is assumed to contain."""
+_CORE_PACKAGES = frozenset(
+    {
+        *("action_msgs", "actionlib_msgs", "builtin_interfaces", "class_loader", "composition_interfaces"),
+        *("diagnostic_msgs", "message_filters", "pluginlib", "rcpputils", "rcutils", "rosgraph_msgs", "shape_msgs"),
+        *("std_srvs", "stereo_msgs", "trajectory_msgs", "unique_identifier_msgs", "visualization_msgs"),
+    }
+)
+"""More packages that the base packages bring."""
+_CORE_PREFIXES = ("ament_", "rcl_", "rclcpp_", "rmw_", "rosidl_", "launch_")
+_CORE_PACKAGES_OF_ROS1 = frozenset(
+    {
+        *("actionlib", "bond", "catkin", "cpp_common", "dynamic_reconfigure", "genmsg", "gencpp", "genpy", "geneus"),
+        *("genlisp", "gennodejs", "message_generation", "message_runtime", "mk", "nodelet", "rosbag", "rosbuild"),
+        *("rosconsole", "roscpp", "roscpp_serialization", "roscpp_traits", "rosgraph", "roslaunch", "roslib", "rosmsg"),
+        *("rosnode", "rosparam", "rospy", "rosservice", "rostest", "rostime", "rostopic", "rosunit", "topic_tools"),
+        *("xmlrpcpp", "std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "cmake_modules"),
+    }
+)
+"""Packages of the variant `ros_base` of ROS 1 (REP 150)."""
 _METAPACKAGE_PREFIXES = (
     ("navigation2", "nav2_"),
     ("nav2_bringup", "nav2_"),
@@ -46,6 +65,9 @@ _METAPACKAGE_PREFIXES = (
     ("gazebo_ros_pkgs", "gazebo_"),
     ("joint_state_publisher_gui", "joint_state_publisher"),
     ("ros2_controllers", "controller_manager"),
+    ("ros2_control", "controller_"),
+    ("ros2_control", "hardware_interface"),
+    ("controller_interface", "hardware_interface"),
 )
 """Packages, each with the name prefix of the packages that it brings as dependencies."""
 _MAX_FILES = 200
@@ -54,6 +76,18 @@ _MAX_FILES = 200
 def is_always_installed(package: str) -> bool:
     """Return whether every installation of ROS 2 contains a package."""
     return package in _ALWAYS_INSTALLED
+
+
+def is_in_every_workspace(package: str, *, is_ros1: bool) -> bool:
+    """Return whether every installation in which packages are built contains a package.
+
+    Args:
+        package: the name of the package.
+        is_ros1: whether catkin builds the package that uses it.
+    """
+    if package in _CORE_PACKAGES or (is_ros1 and package in _CORE_PACKAGES_OF_ROS1):
+        return True
+    return is_always_installed(package) or package.startswith(_CORE_PREFIXES)
 
 
 def depends_indirectly_on(manifest: Manifest, package: str, finder: PackageFinder) -> bool:

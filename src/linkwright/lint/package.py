@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from linkwright.xmltree.reader import read_bytes
 
 if TYPE_CHECKING:
     from linkwright.packages.readers.cmake import CMakeFile
+    from linkwright.packages.readers.cmake_language import Command
     from linkwright.packages.readers.launch_files import LaunchFile
     from linkwright.packages.readers.package_xml import Manifest
     from linkwright.packages.readers.setup_py import SetupFile
@@ -132,6 +133,14 @@ class PackageContext:
 
         source = self.text("CMakeLists.txt")
         return None if source is None else read_cmake(source, self.folder)
+
+    @cached_property
+    def cmake_commands(self) -> Sequence[Command]:
+        """The commands of the package's ``CMakeLists.txt``; empty if there is none."""
+        from linkwright.packages.readers.cmake_language import CMakeProgram
+
+        source = self.text("CMakeLists.txt")
+        return () if source is None else tuple(CMakeProgram(self.folder).run(source))
 
     @cached_property
     def launch_files(self) -> Mapping[str, LaunchFile]:

@@ -30,11 +30,16 @@ _JOINED_PATH = lazy_pattern(r"\(\s*os\.path\.join\(\s*['\"]share['\"],\s*package
 _FIRST_IMPORT = lazy_pattern(r"^(import|from)[ \t]", re.MULTILINE)
 
 
-def make_dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
+def make_dependency_fix(manifest: Manifest, names: list[str], tag: str = "exec_depend") -> Fix | None:
     """Return the fix that adds dependencies to ``package.xml``, or None if it is impossible.
 
     The new lines follow the last dependency that is not only for tests or documentation, or else the license. They have
     its indentation.
+
+    Args:
+        manifest: the manifest to which the dependencies are added.
+        names: the names of the packages.
+        tag: the tag of the new elements.
     """
     source = manifest.document.source
     dependencies = manifest.dependencies
@@ -48,7 +53,7 @@ def make_dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     if indent.strip():
         return None
     newline = line_ending(source.text)
-    text = "".join(f"{newline}{indent}<exec_depend>{name}</exec_depend>" for name in names)
+    text = "".join(f"{newline}{indent}<{tag}>{name}</{tag}>" for name in names)
     return Fix((Edit(source.name, last_range[1], last_range[1], text),))
 
 

@@ -12,9 +12,9 @@ from linkwright.diagnostics import SourceText, Span
 from linkwright.packages.readers.python_values import PythonFile, SharePath, called_name, join_path
 
 CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".hpp", ".hh", ".h")
-_XML_SUFFIXES = (".launch", ".xml", ".xacro", ".urdf", ".srdf", ".sdf", ".world", ".test")
+XML_SUFFIXES = (".launch", ".xml", ".xacro", ".urdf", ".srdf", ".sdf", ".world", ".test")
 _OTHER_SUFFIXES = (".yaml", ".yml", ".rviz", ".sh", ".bash", ".service", ".cmake", "CMakeLists.txt")
-READER_SUFFIXES = (".py", *CPP_SUFFIXES, *_XML_SUFFIXES, *_OTHER_SUFFIXES)
+READER_SUFFIXES = (".py", *CPP_SUFFIXES, *XML_SUFFIXES, *_OTHER_SUFFIXES)
 """The ends of the names of files that may read installed files."""
 _PATH = r"(?P<path>[\w./+-]*)(?P<rest>.?)"
 _SUBSTITUTIONS = tuple(
@@ -68,7 +68,7 @@ def find_named_paths(source: SourceText, path: str) -> Iterator[NamedPath]:
     if path.endswith(".py"):
         yield from _find_python_paths(source)
         return
-    text = _without_comments(source.text, path)
+    text = without_comments(source.text, path)
     patterns = _SUBSTITUTIONS
     if path.endswith(CPP_SUFFIXES):
         for match in _INCLUDE.finditer(text):
@@ -82,9 +82,9 @@ def find_named_paths(source: SourceText, path: str) -> Iterator[NamedPath]:
             yield _make_named_path(source, match, match["package"], "cmake/")
 
 
-def _without_comments(text: str, path: str) -> str:
+def without_comments(text: str, path: str) -> str:
     """Return a text of the same length, with spaces in place of comments."""
-    kind = "cpp" if path.endswith(CPP_SUFFIXES) else "xml" if path.endswith(_XML_SUFFIXES) else "hash"
+    kind = "cpp" if path.endswith(CPP_SUFFIXES) else "xml" if path.endswith(XML_SUFFIXES) else "hash"
     return _COMMENTS[kind].sub(lambda match: " " * len(match[0]), text)
 
 

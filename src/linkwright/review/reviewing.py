@@ -61,6 +61,7 @@ from linkwright.review.notes import (
     make_unreadable_notes,
 )
 from linkwright.review.other_files import find_file_states
+from linkwright.review.package_lookups import find_new_lookups
 from linkwright.review.parts import compare_parts
 from linkwright.review.references import find_lost_references
 from linkwright.review.renamed_folders import merge_renamed_folders
@@ -255,6 +256,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_data))
         result = _add_changes(result, self._run_step(find_lost_installs))
         result = _add_changes(result, self._run_step(find_lost_programs))
+        result = _add_changes(result, self._run_step(find_new_lookups))
         return sorted(result, key=lambda subject: subject.path)
 
     def _find_removed_submodules(self) -> Iterator[Subject]:
