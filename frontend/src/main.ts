@@ -38,6 +38,7 @@ import { preserveSearches } from "./panels/preserve-searches";
 import { RequestedPanels } from "./panels/requested-panels";
 import { ChecksPanel } from "./panels/learning/checks-panel";
 import { LessonPanel } from "./panels/learning/lesson-panel";
+import { MotionPlanningPanel } from "./panels/planning/motion-planning-panel";
 import { createLivePanels } from "./panels/monitor/live-panels";
 import { showTopic } from "./panels/monitor/show-topic";
 import { ScenePanel } from "./panels/over-scene/scene-panel";
@@ -144,6 +145,7 @@ function start(app: HTMLElement): void {
     new WorldPanel(session.modeling, session.angleUnits, worldCommands),
     new ComparisonPanel(session, () => stage?.fit()),
     new EditingPanel(session),
+    new MotionPlanningPanel(session),
     voicePanel,
     terminalPanel,
     new ProgramPanel(session.terminals, theme),
@@ -244,6 +246,7 @@ function followAvailability(dock: Dock, session: Session): void {
   const followJoints = openWhile(dock, "joints", () => session.joints.controls !== null);
   const followWorld = openWhile(dock, "world", () => session.modeling.isActive);
   const followComparison = openWhile(dock, "comparison", () => session.comparison.compared !== null);
+  const followPlanning = openWhile(dock, "motion-planning", () => session.motionPlanning.isAvailable);
   const followCourse = (["lesson", "checks"] as const).map((id) => openWhile(dock, id, () => session.course.isAvailable));
   const followTerminals = openWhile(dock, "terminal", () => session.terminals.isAvailable);
   const followPrograms = openWhile(dock, "program", () => session.terminals.programs.length > 0);
@@ -255,6 +258,7 @@ function followAvailability(dock: Dock, session: Session): void {
   session.modeling.changed.on(followWorld);
   session.comparison.changed.on(followComparison);
   session.terminals.availabilityChanged.on(followTerminals);
+  session.motionPlanning.availabilityChanged.on(followPlanning);
   session.terminals.programsChanged.on((hasNew) => {
     followPrograms();
     if (hasNew) dock.open("program");
@@ -271,6 +275,7 @@ function followAvailability(dock: Dock, session: Session): void {
     followComparison();
     followTerminals();
     followPrograms();
+    followPlanning();
     followCourse.forEach((follow) => follow());
     pruneDisplayPanels();
     countFindings();

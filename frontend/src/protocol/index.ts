@@ -108,7 +108,13 @@ import type {
   WatchSeries,
   WatchTopics,
 } from "./monitor";
-import type { ChoosePlanner, ChooseQueryState, CommandMotion, MotionPlanningState } from "./motion-planning";
+import type {
+  ChoosePlanner,
+  ChooseQueryState,
+  CommandMotion,
+  MotionPlanningState,
+  SetQueryJoint,
+} from "./motion-planning";
 import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
 import type { CellGrid, CloudPoints, PointFields, RequestPoint } from "./points";
 import type { RequestedPanels } from "./requested-panels";
@@ -450,6 +456,7 @@ export type PageMessage =
   | SetParameter
   | SetPlayback
   | SetProperty
+  | SetQueryJoint
   | SetTime
   | SetToolProperty
   | ShowPanels

@@ -34,6 +34,15 @@ export interface ChooseQueryState {
   type: "choose_query_state";
 }
 
+/** The position of a joint in the start or goal state, rad or m. */
+export interface SetQueryJoint {
+  display: string;
+  query: QueryName;
+  joint: string;
+  position: number;
+  type: "set_query_joint";
+}
+
 /** The choice of a planning pipeline and one of its planners. Empty names leave the choice to move_group. */
 export interface ChoosePlanner {
   display: string;

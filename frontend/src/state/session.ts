@@ -17,6 +17,7 @@ import { InspectState } from "./inspect";
 import { JointsState } from "./joints";
 import { PageMemory } from "./page-memory";
 import { MeshProgress } from "./mesh-progress";
+import { MotionPlanning } from "./motion-planning";
 import { Modeling } from "./modeling/modeling";
 import { MonitorState } from "./monitor/monitor";
 import { PoseStore } from "./named-poses";
@@ -61,6 +62,7 @@ export class Session {
   readonly simulation: SimulationState;
   readonly modeling: Modeling;
   readonly editing: EditingState;
+  readonly motionPlanning: MotionPlanning;
   readonly robotChanged = new Signal<RobotScene>();
   readonly diagnosticsChanged = new Signal();
   /** Emitted with the answer to `request_provenance`. */
@@ -97,6 +99,7 @@ export class Session {
     this.modeling = new Modeling(connection, openBrowserStorage());
     this.editing = new EditingState(connection, openBrowserStorage());
     this.joints = new JointsState(connection);
+    this.motionPlanning = new MotionPlanning(connection, this.data, this.displays);
     this.description = new DescriptionState(connection);
     this.tipSwitch = new TipSwitch(this.joints, this.description, this.selection, this.frames);
     this.monitor = new MonitorState(connection, openBrowserStorage());

@@ -18,7 +18,7 @@ ON_DEMAND = (
             "linkwright.page.protocol.robot:MeshStatus",
             "linkwright.page.protocol.markers:MarkerFeedback",
             "linkwright.page.protocol.images:ImageSize",
-            *list_message_paths(_MOTIONS, "ChoosePlanner", "ChooseQueryState", "CommandMotion"),
+            *list_message_paths(_MOTIONS, "ChoosePlanner", "ChooseQueryState", "CommandMotion", "SetQueryJoint"),
         ),
     ),
     OnDemand("linkwright.panels.displays:PointsFeature", ("linkwright.page.protocol.points:RequestPoint",)),

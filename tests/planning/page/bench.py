@@ -11,7 +11,7 @@ from linkwright.graph import ActionServer
 from linkwright.messages import get_action, get_message
 from linkwright.nodes import NodeOptions
 from linkwright.page.protocol.markers import MarkerFeedback
-from linkwright.page.protocol.motion_planning import ChooseQueryState, CommandMotion
+from linkwright.page.protocol.motion_planning import ChooseQueryState, CommandMotion, SetQueryJoint
 from linkwright.planning.nodes.move_group import MoveGroup
 from tests.planning.arms import urdf
 from tests.planning.nodes.test_move_group import PARAMETERS, START
@@ -82,6 +82,9 @@ class PlanningBench:
 
     def choose(self, query: str, choice: str) -> None:
         self.display.receive(ChooseQueryState(self.display.id, query, choice))
+
+    def set_joint(self, joint: str, position: float) -> None:
+        self.display.receive(SetQueryJoint(self.display.id, "goal", joint, position))
 
     def command(self, command: str) -> None:
         self.display.receive(CommandMotion(self.display.id, command))

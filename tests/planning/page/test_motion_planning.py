@@ -128,6 +128,16 @@ async def test_states_are_copied_and_chosen_at_random():
         assert bench.joints()["lift"] == 0.6
 
 
+async def test_joints_of_goal_are_set_within_limits():
+    async with open_bench() as bench:
+        bench.set_joint("elbow", 0.5)
+        bench.set_joint("pan", 9.0)
+        bench.set_joint("nose", 1.0)
+        await bench.until(lambda: bench.joints()["elbow"] == 0.5)
+        assert bench.joints() == {"pan": 2.8, "lift": 0.6, "elbow": 0.5, "roll": 0.0, "bend": 1.0, "twist": 0.0}
+        assert bench.panel()["goal"] == ""
+
+
 async def test_colliding_links_are_red():
     async with open_bench() as bench:
         bench.choose("goal", "ready")

@@ -113,6 +113,15 @@ const PLACEMENTS: Readonly<Record<PanelId, Placement>> = {
     ],
     width: 290,
   },
+  "motion-planning": {
+    neighbors: [
+      ["diagnostics", "within"],
+      ["joints", "within"],
+      ["views", "below"],
+      ["scene", "right"],
+    ],
+    width: 320,
+  },
   diagnostics: {
     neighbors: [
       ["joints", "within"],
@@ -199,7 +208,7 @@ function placeInWide(api: DockviewApi, id: PanelId, isClassroom: boolean): Place
 }
 
 /** The order in which open panels move to their default places. */
-export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "lesson", "program", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "transformation", ...BOTTOM_PANELS];
+export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "lesson", "program", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "motion-planning", "transformation", ...BOTTOM_PANELS];
 
 /** Adds panels at their default places, or at those in the classroom. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[], isClassroom = false): void {

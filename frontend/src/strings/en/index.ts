@@ -8,6 +8,7 @@ import { learning } from "./learning";
 import { meshes } from "./meshes";
 import { modeling } from "./modeling";
 import { monitor } from "./monitor";
+import { motionPlanning } from "./motion-planning";
 import { plural } from "./plural";
 import { recording } from "./recording";
 import { sharing } from "./sharing";
@@ -38,6 +39,7 @@ export const en = {
     program: terminal.program,
     lesson: learning.lesson,
     checks: learning.checks,
+    "motion-planning": motionPlanning.panel,
   },
   shell,
   sharing,
@@ -50,6 +52,7 @@ export const en = {
   editing,
   sourceEditor,
   modeling,
+  motionPlanning,
   voice,
   terminal,
   learning,

@@ -9,6 +9,7 @@ import { learning } from "./learning";
 import { meshes } from "./meshes";
 import { modeling } from "./modeling";
 import { monitor } from "./monitor";
+import { motionPlanning } from "./motion-planning";
 import { recording } from "./recording";
 import { sharing } from "./sharing";
 import { shell } from "./shell";
@@ -22,7 +23,7 @@ import { voice } from "./voice";
 /** 简体中文 */
 export const zh: Strings = {
   panels: { ...description.panels,
-    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modeling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel, terminal: terminal.panel, program: terminal.program, lesson: learning.lesson, checks: learning.checks },
+    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modeling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel, terminal: terminal.panel, program: terminal.program, lesson: learning.lesson, checks: learning.checks, "motion-planning": motionPlanning.panel },
   shell,
   sharing,
   simulation,
@@ -34,6 +35,7 @@ export const zh: Strings = {
   editing,
   sourceEditor,
   modeling,
+  motionPlanning,
   voice,
   terminal,
   learning,

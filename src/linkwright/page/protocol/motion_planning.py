@@ -40,6 +40,15 @@ class ChooseQueryState(PageMessage):
     choice: str
 
 
+class SetQueryJoint(PageMessage):
+    """The position of a joint in the start or goal state, rad or m."""
+
+    display: str
+    query: QueryName
+    joint: str
+    position: float
+
+
 class ChoosePlanner(PageMessage):
     """The choice of a planning pipeline and one of its planners. Empty names leave the choice to move_group."""
 

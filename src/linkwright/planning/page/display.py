@@ -14,6 +14,7 @@ from linkwright.page.protocol.motion_planning import (
     ChooseQueryState,
     CommandMotion,
     QueryName,
+    SetQueryJoint,
 )
 from linkwright.planning.page.groups import PlanningGroup, Tip, read_groups
 from linkwright.planning.page.handles import choose_size, describe_place, make_handle, name_handle
@@ -183,6 +184,8 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
             self._session.command(message.command)
         elif isinstance(message, ChooseQueryState):
             self._session.choose(message.query, message.choice)
+        elif isinstance(message, SetQueryJoint):
+            self._session.set_joint(message.query, message.joint, message.position)
         elif isinstance(message, ChoosePlanner):
             self._session.pipeline, self._session.planner = message.pipeline, message.planner
             self._schedule_update()

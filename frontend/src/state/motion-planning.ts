@@ -1,0 +1,70 @@
+import type { Connection } from "../connection/connection";
+import type { ChoosePlanner, ChooseQueryState, CommandMotion, MotionPlanningState, SetQueryJoint } from "../protocol";
+import { Signal } from "../signal";
+import type { DisplayDataStore } from "./display-data";
+import type { DisplaysState } from "./displays";
+
+/** The messages of the panel, to which this adds the display. */
+type PanelMessage = ChoosePlanner | ChooseQueryState | CommandMotion | SetQueryJoint;
+export type PanelRequest = PanelMessage extends infer M ? (M extends PanelMessage ? Omit<M, "display"> : never) : never;
+
+/** The state of planning of the MotionPlanning displays; the panel shows the first one that can plan. */
+export class MotionPlanning {
+  readonly changed = new Signal();
+  /** A display that can plan appeared, or the last one disappeared. */
+  readonly availabilityChanged = new Signal();
+  private readonly states = new Map<string, MotionPlanningState>();
+  private wasAvailable = false;
+
+  constructor(
+    private readonly connection: Connection,
+    data: DisplayDataStore,
+    private readonly displays: DisplaysState,
+  ) {
+    data.received.on(({ display, content }) => {
+      if (content.kind !== "motion_planning_state") return;
+      this.states.set(display, content);
+      this.announce();
+    });
+    data.removed.on(({ display, key }) => {
+      if (key === null && this.states.delete(display)) this.announce();
+    });
+    displays.treeChanged.on(() => this.announce());
+    displays.enabledChanged.on(() => this.announce());
+  }
+
+  /** Whether there is a display with planning groups. */
+  get isAvailable(): boolean {
+    return this.current !== null;
+  }
+
+  /** The state of the first enabled display with planning groups, or null. */
+  get current(): MotionPlanningState | null {
+    const id = this.displayId;
+    return id === null ? null : (this.states.get(id) ?? null);
+  }
+
+  /** The ID of that display. */
+  get displayId(): string | null {
+    const display = this.displays.displays.find(({ id, isEnabled }) => isEnabled && (this.states.get(id)?.group ?? "") !== "");
+    return display?.id ?? null;
+  }
+
+  send(request: PanelRequest): void {
+    const display = this.displayId;
+    if (display !== null) this.connection.send({ ...request, display });
+  }
+
+  /** Sets a property of the display that has no row. */
+  setProperty(path: string, value: boolean | number | string): void {
+    const display = this.displayId;
+    if (display !== null) this.connection.send({ type: "set_property", id: `${display}/${path}`, value });
+  }
+
+  private announce(): void {
+    this.changed.emit();
+    if (this.isAvailable === this.wasAvailable) return;
+    this.wasAvailable = this.isAvailable;
+    this.availabilityChanged.emit();
+  }
+}
