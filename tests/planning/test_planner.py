@@ -24,6 +24,14 @@ IDENTITY = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
 WALL = SceneObject("wall", (PlacedShape(Box((0.6, 0.04, 0.8)), IDENTITY),), np.array((0.5, 0.0, 0.4, 0, 0, 0, 1.0)))
 LEFT, RIGHT = {"pan": 0.8, "lift": 0.8, "elbow": 0.9}, {"pan": -0.8, "lift": 0.8, "elbow": 0.9}
 
+WALLS = [
+    SceneObject(f"wall{number}", (PlacedShape(Box(size), IDENTITY),), np.array((*center, 0, 0, 0, 1.0)))
+    for number, (size, center) in enumerate(
+        (((1.9, 0.02, 3.0), (1.05, 0, 0)), ((1.9, 0.02, 3.0), (-1.05, 0, 0)), ((4.0, 4.0, 0.02), (0, 0, 0.75)))
+    )
+]
+"""Two walls on both sides of the arm, and a ceiling: the arm cannot get from one half of the room to the other."""
+
 
 def scene(*objects: SceneObject) -> CollisionScene:
     return CollisionScene(arm().robot, arm().shapes, objects, arm().allowed())
@@ -135,14 +143,17 @@ class TestFailures:
         assert error.failure is Failure.NO_IK_SOLUTION
 
     def test_goal_behind_closed_walls(self) -> None:
-        boxes = (((1.9, 0.02, 3.0), (1.05, 0, 0)), ((1.9, 0.02, 3.0), (-1.05, 0, 0)), ((4.0, 4.0, 0.02), (0, 0, 0.75)))
-        walls = [
-            SceneObject(f"wall{number}", (PlacedShape(Box(size), IDENTITY),), np.array((*center, 0, 0, 0, 1.0)))
-            for number, (size, center) in enumerate(boxes)
-        ]
         start = {"pan": pi / 2, "lift": 1.2, "elbow": 0.6}
-        error = self.failure(request(joint_goal(**start | {"pan": -pi / 2}), start=start, timeout_s=1.0), *walls)
+        error = self.failure(request(joint_goal(**start | {"pan": -pi / 2}), start=start, timeout_s=1.0), *WALLS)
         assert error.failure is Failure.PLANNING_FAILED
+        assert str(error) == "no path to the goal was found"
+
+    def test_failure_tells_of_the_same_configuration_without_a_turn(self) -> None:
+        start = {"pan": 1.0, "lift": 1.2, "elbow": 0.6}
+        turning = replace(arm().group, lower=np.full(6, -6.0), upper=np.full(6, 6.0))
+        goal = joint_goal(**start | {"pan": -5.0})
+        error = self.failure(replace(request(goal, start=start, timeout_s=0.5), group=turning), *WALLS)
+        assert str(error).endswith("; the same configuration is nearer to the start with 'pan' at 1.28")
 
 
 class TestLines:

@@ -165,6 +165,13 @@ class TestSignals:
         with pytest.raises(rclpy.executors.ExternalShutdownException):
             rclpy.spin(node)
 
+    def test_sigterm_wakes_a_rate_that_no_thread_ticks(self, node):
+        rate = node.create_rate(0.001)
+        threading.Timer(0.05, os.kill, [os.getpid(), signal.SIGTERM]).start()
+        with pytest.raises(rclpy.exceptions.ROSInterruptException):
+            rate.sleep()
+        assert not rclpy.ok()
+
     @pytest.mark.parametrize("executor", ["SingleThreadedExecutor", "MultiThreadedExecutor"])
     def test_ctrl_c_raises_keyboard_interrupt_in_program(self, executor, tmp_path):
         program = tmp_path / "program.py"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 from functools import cache
 from typing import Any
 
@@ -23,4 +25,6 @@ def load_ompl() -> Any:
     except ModuleNotFoundError as error:
         raise missing_extra("ARM103", error) from None
     util.setLogLevel(util.LOG_NONE)
+    # The command line freezes all objects at its end, and OMPL's bindings would report them as leaks.
+    atexit.register(gc.unfreeze)
     return ompl

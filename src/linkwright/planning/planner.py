@@ -165,7 +165,7 @@ class MotionPlanner:
                 return Plan(start, path, trajectory)
             if request.method is not Method.SAMPLING or perf_counter() >= deadline:
                 break
-        raise PlanError(Failure.PLANNING_FAILED)
+        raise PlanError(Failure.PLANNING_FAILED, reason=_explain_turns(request.group, start[indexes], goals, indexes))
 
     def time_path(
         self, request: PlanRequest, start: Array, path: Array, scales: tuple[Array, Array] | None = None
@@ -337,3 +337,20 @@ class MotionPlanner:
     def _is_valid(self, request: PlanRequest, positions: Array) -> bool:
         constraint = request.path_constraint
         return self._scene.is_free(positions) and (constraint is None or constraint.is_met(self._model, positions))
+
+
+def _explain_turns(group: JointGroup, start: Array, goals: Sequence[Array], indexes: Any) -> str:
+    """Return why there is no path if a goal is the same configuration as a nearer one, up to full turns of joints.
+
+    Collisions of neighboring links often separate such goals, which then have no path at all.
+    """
+    for goal in goals:
+        nearer = group.unwind(goal[indexes], start)
+        if np.any(turned := np.abs(nearer - goal[indexes]) > np.pi):
+            joints = " and ".join(
+                f"'{name}' at {position:.2f}"
+                for name, position, is_turned in zip(group.joint_names, nearer, turned, strict=True)
+                if is_turned
+            )
+            return f"{Failure.PLANNING_FAILED.value}; the same configuration is nearer to the start with {joints}"
+    return ""

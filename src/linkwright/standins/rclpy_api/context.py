@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import _thread
 import atexit
 import inspect
 import os
@@ -26,6 +27,7 @@ from linkwright.standins.rclpy_api.state import current_state
 if TYPE_CHECKING:
     from typing_extensions import Self
 
+    from linkwright.graph.loop.timer import Rate
     from linkwright.wire.background import BackgroundTransport
 
 _MAX_JOIN_WAIT_S = 3.0
@@ -43,6 +45,7 @@ class Context:
     def __init__(self, graph: Graph | None = None) -> None:
         self._lock = threading.RLock()
         self._callbacks: list[Callable[[], Callable[[], object] | None]] = []
+        self._rates: weakref.WeakSet[Rate] = weakref.WeakSet()
         self._initialized = False
         self._ok = False
         self._was_ended_by_signal = False
@@ -189,6 +192,16 @@ class Context:
                 for node in self._graph.nodes():
                     node.is_valid = False
             self._notify()
+            # Waking needs locks that the interrupted code may hold, and the start of a `threading.Thread` as well.
+            _thread.start_new_thread(self._wake_rates, ())
+
+    def wake_on_signal(self, rate: Rate) -> None:
+        """Wake the threads that sleep on a rate when a signal shuts the context down.
+
+        The context keeps only a weak reference to the rate.
+        """
+        with self._lock:
+            self._rates.add(rate)
 
     def destroy(self) -> None:
         """Shut the context down if necessary, like `try_shutdown`."""
@@ -223,6 +236,12 @@ class Context:
             callback = callback_reference()
             if callback is not None:
                 callback()
+
+    def _wake_rates(self) -> None:
+        with self._lock:
+            rates = tuple(self._rates)
+        for rate in rates:
+            rate.wake()
 
     def _create_graph(self) -> Graph:
         create_graph = current_state().create_graph

@@ -8,9 +8,11 @@ from typing import Any
 from linkwright.graph import Node as GraphNode
 from linkwright.graph.command_line.ros_arguments import RosArguments
 from linkwright.graph.logger_services import LoggerServices
+from linkwright.graph.loop.timer import Rate
 from linkwright.graph.names.rules import Remappings, absolute_namespace, join
 from linkwright.graph.parameters.parameter import Parameter
 from linkwright.graph.qos.profile import ROSOUT_QOS, QoSProfile
+from linkwright.graph.time.clock import Clock
 from linkwright.standins.rclpy_api.context import Context, read_ros_arguments
 from linkwright.standins.rclpy_api.defaults import check_initialized, get_default_context
 
@@ -95,6 +97,22 @@ class Node(GraphNode):
         if enable_logger_service:
             LoggerServices(self, graph.levels)
         self.__context.wait_for_network()
+
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
+        """Create a rate, with which a loop sleeps until its next iteration.
+
+        A signal that shuts the context down ends the sleep, also if no thread runs the node's callbacks.
+
+        Args:
+            frequency: iterations per second.
+            clock: the clock that measures time; the node's clock by default.
+
+        Raises:
+            ValueError: the frequency is not positive.
+        """
+        rate = super().create_rate(frequency, clock)
+        self.__context.wake_on_signal(rate)
+        return rate
 
     @property
     def context(self) -> Context:
