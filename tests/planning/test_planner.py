@@ -70,6 +70,12 @@ class TestSampling:
         assert np.all(np.abs(trajectory.velocities) <= arm().group.max_velocities)
         assert np.all(np.abs(trajectory.accelerations) <= arm().group.max_accelerations)
 
+    def test_fingers_with_a_short_range_are_planned_for(self) -> None:
+        positions = arm().positions(**LEFT)
+        goal = Goal({"left": JointTarget(0.03)})
+        trajectory = plan(PlanRequest(arm().groups["gripper"], positions, (goal,)))
+        assert trajectory.positions[-1][0] == pytest.approx(0.03)
+
     def test_scales_slow_the_motion(self) -> None:
         fast = plan(request(joint_goal(pan=0.0)))
         slow = plan(request(joint_goal(pan=0.0), velocity_scale=0.1, acceleration_scale=0.1))

@@ -24,6 +24,8 @@ _PLANNERS = (
 )  # fmt: skip
 _MAX_STEP = 0.05
 """The largest step between two checked configurations while planning, in rad or m over all joints."""
+_MAX_STEP_SHARE = 0.5
+"""The largest step as a share of the range of all joints. OMPL refuses 1, and the range of fingers can be shorter."""
 _CHECKS_PER_STEP = 10
 """How many times as many configurations of the final path are checked."""
 _SEARCH_SHARE = 0.3
@@ -111,7 +113,7 @@ class SamplingProblem:
         is_free, indexes = self._is_free, range(count)
         setup.setStateValidityChecker(lambda state: is_free(np.array([state[index] for index in indexes])))
         information = setup.getSpaceInformation()
-        information.setStateValidityCheckingResolution(step / space.getMaximumExtent())
+        information.setStateValidityCheckingResolution(min(step / space.getMaximumExtent(), _MAX_STEP_SHARE))
         setup.setStartState(_make_state(space, start))
         goal = base.GoalStates(information)
         for positions in goals:

@@ -47,6 +47,13 @@ class TestFoundGroups:
         names = by_name(robot(link("base"), chain("base", "a_", 3), second))
         assert list(names) == ["arm_1", "arm_2"]
 
+    def test_legs_are_named_by_their_joints(self) -> None:
+        legs = "".join(
+            chain("base", f"{side}_", 3, xyz=f"0 {y} 0").replace(f"{side}_joint_1", f"{side}_hip_joint")
+            for side, y in (("FL", 0.2), ("FR", -0.2))
+        )
+        assert list(by_name(robot(link("base"), legs))) == ["FL_leg", "FR_leg"]
+
     def test_hand_with_many_fingers_is_a_gripper(self) -> None:
         hand = "".join(
             link(f"f{finger}_{part}", 0.02)

@@ -15,6 +15,7 @@ _TIP_NAME = re.compile(r"(?i)(^|_)(tool\d*|tcp|ee|eef|end_?effector|flange|tip|g
 _SENSOR_NAME = re.compile(r"(?i)camera|optical|sensor|imu|(^|_)ft(_|$)")
 _NAME_WORDS = re.compile(r"[A-Za-z]+|\d+")
 _IGNORED_WORDS = frozenset({"joint", "link", "j"})
+_LEG_NAME = re.compile(r"(?i)hip|thigh|knee|calf|shank|ankle")
 _KIND_WORDS = frozenset({"arm", "leg", "manipulator", "robot", "head", "torso", "hand"})
 
 
@@ -207,9 +208,11 @@ def _name_groups(bodies: list[Body], chains: Sequence[Chain]) -> list[tuple[str,
     if len(set(prefixes)) < len(prefixes) or "" in prefixes:
         prefixes = [f"arm_{index}" for index in range(1, len(chains) + 1)]
     names = []
-    for prefix in prefixes:
+    for prefix, chain in zip(prefixes, chains, strict=True):
         owner = "_".join(word for word in prefix.split("_") if word.lower() not in _KIND_WORDS)
-        names.append((prefix if owner != prefix else f"{prefix}_arm", f"{owner or prefix}_gripper"))
+        is_leg = any(_LEG_NAME.search(bodies[number].joint_name) for number in chain.bodies)
+        kind = "leg" if is_leg else "arm"
+        names.append((prefix if owner != prefix else f"{prefix}_{kind}", f"{owner or prefix}_gripper"))
     return names
 
 
