@@ -7,10 +7,16 @@ from linkwright.sdf.plugins import library_name
 
 _AIR_SPEED_ALTERNATIVE = phrase("the velocity that gz-sim-odometry-publisher-system publishes, in still air")
 _WIDE_CAMERA_ALTERNATIVE = phrase("a camera with a wide <horizontal_fov>")
+_AUTOPILOT_ALTERNATIVE = phrase(
+    "a ROS node in place of the autopilot: commands on the topics of the motors and joints, "
+    "such as /MODEL/gazebo/command/motor_speed, and the topics of the sensors"
+)
 
 _ALTERNATIVES = {
     "air_speed": _AIR_SPEED_ALTERNATIVE,
     "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
+    "ArduPilotPlugin": _AUTOPILOT_ALTERNATIVE,
+    "gazebo_mavlink_interface": _AUTOPILOT_ALTERNATIVE,
     "gz-sim-air-speed-system": _AIR_SPEED_ALTERNATIVE,
     "gz-sim-camera-video-recorder-system": phrase("`linkwright bag record` with the topic of the camera"),
     "gz-sim-follow-actor-system": phrase("an <actor> with the waypoints of a <script>"),

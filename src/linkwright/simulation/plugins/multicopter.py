@@ -12,9 +12,10 @@ quadrotor UAV on SE(3)", 2010.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from math import exp, hypot, inf, isfinite
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -68,9 +69,9 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         speed: the current speed, in rad/s.
     """
 
-    PARAMETERS = MotorParameters
-    IGNORED = ("motorSpeedPubTopic",)
-    CARRIED = ("target_speed", "speed")
+    PARAMETERS: ClassVar[type[Any]] = MotorParameters
+    IGNORED: ClassVar[Collection[str]] = ("motorSpeedPubTopic",)
+    CARRIED: ClassVar[tuple[str, ...]] = ("target_speed", "speed")
 
     def start(self) -> None:
         """Find the rotor, and subscribe to its speed commands.
@@ -95,9 +96,27 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         self.reset()
         namespace = self.text_in(self.context.element, "robotNamespace").strip("/") or self.context.path
         self.node.subscribe(
-            "actuator_msgs/msg/Actuators", f"/{namespace}/{parameters.command_topic}", self._on_actuators
+            "actuator_msgs/msg/Actuators", f"/{namespace}/{parameters.command_topic.lstrip('/')}", self._on_actuators
         )
         self.every(0.0, self._apply_thrust)
+
+    def limit_target(self, speed: float) -> float:
+        """Return a commanded speed within the limits of the motor, in rad/s."""
+        return min(max(speed, 0.0), self.parameters.max_rot_velocity)
+
+    def compute_thrust(self, axial_velocity: float) -> float:
+        """Return the thrust in N, for the velocity in m/s of the rotor along its axis, relative to the air."""
+        return self.parameters.motor_constant * self.speed**2
+
+    @property
+    def wind(self) -> Array:
+        """The velocity of the air in m/s in the axes of the world, which gz ignores."""
+        return np.zeros(3)
+
+    @property
+    def rolling_sign(self) -> float:
+        """The sign of the rolling moment."""
+        return 1.0
 
     def reset(self) -> None:
         """Stop the rotor."""
@@ -111,18 +130,19 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
 
     def _apply_thrust(self) -> None:
         parameters, simulation = self.parameters, self.simulation
-        target_speed = min(max(self.target_speed, 0.0), parameters.max_rot_velocity)
+        target_speed = self.limit_target(self.target_speed)
         time_constant = parameters.time_constant_up if target_speed > self.speed else parameters.time_constant_down
         old_weight = exp(-simulation.step / NANOSECONDS_PER_SECOND / time_constant) if time_constant > 0.0 else 0.0
         self.speed = old_weight * self.speed + (1.0 - old_weight) * target_speed
-        thrust = parameters.motor_constant * self.speed**2
         axis = rotation_matrix(simulation.link_pose(self._link)[3:])[:, 2]
-        velocity, _ = simulation.link_velocity(self._link)
-        cross_velocity = self.speed * (velocity - velocity @ axis * axis)
+        velocity = simulation.link_velocity(self._link)[0] - self.wind
+        axial_velocity = float(velocity @ axis)
+        thrust = self.compute_thrust(axial_velocity)
+        cross_velocity = abs(self.speed) * (velocity - axial_velocity * axis)
         force = thrust * axis - parameters.rotor_drag_coefficient * cross_velocity
         torque = (
             -self._sign * thrust * parameters.moment_constant * axis
-            - parameters.rolling_moment_coefficient * cross_velocity
+            - self.rolling_sign * parameters.rolling_moment_coefficient * cross_velocity
         )
         self.push(self._link, force)
         self.push(self._parent, (0.0, 0.0, 0.0), torque)

@@ -1,0 +1,1 @@
+"""Plugins of the flying models of PX4 for Gazebo Classic, without its protocol MAVLink."""
