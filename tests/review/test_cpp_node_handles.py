@@ -172,3 +172,20 @@ def test_parameter_of_rospy_that_becomes_private_is_renamed(repository, compare)
     repository.commit({**MANIFEST, "arm/arm.py": text})
     repository.write({"arm/arm.py": text.replace("'gain'", "'~gain'")})
     assert breaking(compare(repository)) == ["parameter 'gain' (1) renamed to '~gain' (1)"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('s = nh.subscribe(prefix + "/pose", 1, &Arm::go, this);', 's = nh.subscribe("joints", 1, &Arm::go, this);',
+         ["subscription 'joints' had a computed name: prefix + \"/pose\""]),
+        ("", 'nh.param<int>(prefix + "/port", port, 23);',
+         ["parameters with computed names added: 'prefix + \"/port\"' (23)"]),
+        ("list.subscribe(x);", "list.subscribe(y);", ["code changed in 'Arm::start()'"]),
+    ],
+)  # fmt: skip
+def test_computed_names_of_ros_1(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": HANDLES.format("", old)})
+    repository.write({"arm/src/arm.cpp": HANDLES.format("", new)})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[:1] == expected
