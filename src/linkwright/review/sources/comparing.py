@@ -18,9 +18,10 @@ from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
-from linkwright.review.sources.details import compare_details, format_name, format_names
+from linkwright.review.sources.details import compare_details, format_name, format_names, make_required_reason
 from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
+    CPP_SUFFIXES,
     PYTHON_SUFFIX,
     YES,
     Detail,
@@ -71,12 +72,13 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
 
 def _is_source(versions: Versions, file: ChangedFile) -> bool:
     path = PurePosixPath(file.path)
-    if path.name in _SKIPPED_FILES or path.name.startswith(("test_", ".")) or file.is_submodule:
+    if path.name in _SKIPPED_FILES or path.name.startswith(".") or file.is_submodule:
         return False
     if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
         return False
     version = versions.new if file.new_path else versions.old
-    return is_program_text(version.file(file.path))
+    is_test = path.name.startswith("test_") and (path.suffix not in CPP_SUFFIXES or "gtest" in version.text(file.path))
+    return not is_test and is_program_text(version.file(file.path))
 
 
 @dataclass(frozen=True)
@@ -546,7 +548,7 @@ def _find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
         return None
     if items[0].kind is NameKind.FUNCTION:
         return phrase("classes that derive from the class and do not define it do not build")
-    return phrase("callers that do not pass '{name}' get an error", name=joined_first(names, MAX_NAMES))
+    return make_required_reason(items[0].kind, joined_first(names, MAX_NAMES))
 
 
 def _drop_defined_imports(items: Sequence[SourceName], names: SourceNames) -> list[SourceName]:

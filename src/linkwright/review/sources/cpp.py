@@ -65,6 +65,9 @@ _ROS1_CALLS = frozenset(
 _COMMUNICATION_KINDS = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT)
 _GRAPH_KINDS = frozenset({*_COMMUNICATION_KINDS, NameKind.ACTION, NameKind.ACTION_CLIENT})
 """The kinds of names that remappings change."""
+_FREE_INDEX = {"create_publisher": 1, "create_subscription": 1, "create_service": 2, "create_client": 3}
+"""The index of the name in the free functions of rclcpp, behind the interfaces of the node."""
+_CLIENT_LIBRARY = "rclcpp::"
 _NODE_FIRST_CALLS = frozenset({"declare_parameter_if_not_declared"})
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
 _PARAM_ARGUMENTS = 3
@@ -230,6 +233,8 @@ class _Reader:
         if function == "param" and not type_name and not match["scope"].strip():
             return  # a different function with the same name
         arguments = list(_find_arguments(text, start))
+        if function in _FREE_INDEX and text.startswith(_CLIENT_LIBRARY, match.start("name") - len(_CLIENT_LIBRARY)):
+            arguments = arguments[_FREE_INDEX[function] :]
         if kind is NameKind.FRAME_LOOKUP:
             for begin, end in arguments[:2]:
                 self._add_frame(kind, begin, end)
