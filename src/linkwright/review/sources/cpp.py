@@ -89,6 +89,10 @@ _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
 )
 _COMPONENT = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(")
+_NAMESPACE = re.compile(r"^[ \t]*(?:inline\s+)?namespace\s+(?P<name>[A-Za-z_]\w*(?:\s*::\s*\w+)*)\s*\{", re.MULTILINE)
+_ALIAS = re.compile(
+    r"\btypedef\s+(?P<type>[^;{}]+[\s>*&])(?P<name>\w+)\s*;|\busing\s+(?P<using>\w+)\s*=\s*(?P<used>[^;{}]+);"
+)
 _CLASS = re.compile(
     r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z]\w*_(?:PUBLIC|EXPORT|API|DECL)(?:_TYPE)?\s+)?"
     r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)[^;{]*)?\{",
@@ -185,6 +189,11 @@ class _Reader:
         """
         if PurePosixPath(self._source.name).suffix not in HEADER_SUFFIXES:
             return
+        for match in _ALIAS.finditer(self._text):
+            type_name = re.sub(r"\s*([*&<>,:()])\s*", r"\1", " ".join((match["type"] or match["used"]).split()))
+            self._names.aliases[match["name"] or match["using"]] = type_name
+        for match in _NAMESPACE.finditer(self._text):
+            self._names.namespaces.setdefault(match["name"], self._make_span(match.start("name"), match.end("name")))
         overloads: dict[str, list[DeclaredFunction]] = {}
         for function in read_declared_functions(self._text):
             if function.is_override:
