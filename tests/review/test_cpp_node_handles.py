@@ -172,3 +172,37 @@ def test_parameter_of_rospy_that_becomes_private_is_renamed(repository, compare)
     repository.commit({**MANIFEST, "arm/arm.py": text})
     repository.write({"arm/arm.py": text.replace("'gain'", "'~gain'")})
     assert breaking(compare(repository)) == ["parameter 'gain' (1) renamed to '~gain' (1)"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('s = nh.subscribe(prefix + "/pose", 1, &Arm::go, this);', 's = nh.subscribe("joints", 1, &Arm::go, this);',
+         ["subscription 'joints' had a computed name: prefix + \"/pose\""]),
+        ("", 'nh.param<int>(prefix + "/port", port, 23);',
+         ["parameters with computed names added: 'prefix + \"/port\"' (23)"]),
+        ("list.subscribe(x);", "list.subscribe(y);", ["code changed in 'Arm::start()'"]),
+    ],
+)  # fmt: skip
+def test_computed_names_of_ros_1(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": HANDLES.format("", old)})
+    repository.write({"arm/src/arm.cpp": HANDLES.format("", new)})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[:1] == expected
+
+
+@pytest.mark.parametrize(
+    ("call", "expected"),
+    [
+        ('p_ = rclcpp::create_publisher<Bool>(topics, "ready", rclcpp::QoS(10));', "publisher 'ready' (Bool)"),
+        ('s_ = rclcpp::create_service<Trigger>(base, services, "ready", f, qos, group);', "service 'ready' (Trigger)"),
+        ('c_ = rclcpp::create_client<Trigger>(base, graph, services, "ready", qos, group);',
+         "service client 'ready' (Trigger)"),
+    ],
+)  # fmt: skip
+def test_names_behind_the_interfaces_of_a_node(repository, compare, call, expected):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": NODE.format(call)})
+    repository.write({"arm/src/arm.cpp": NODE.format(call.replace("ready", "done"))})
+    (found,) = compare(repository).subjects
+    new_name = expected[expected.index("'") :].replace("ready", "done")
+    assert sentences(found) == [f"{expected} renamed to {new_name}"]

@@ -365,6 +365,8 @@ def test_program_of_the_same_package_is_not_a_replacement(review_changes):
          "callers that pass the name of a file instead of its path fail"),
         ('<arg name="odom_topic" default="odom"/>', '<arg name="odom_topic" default="wheel_odom"/>',
          "argument 'odom_topic': default odom -> wheel_odom", "programs that use the name 'odom' do not find it"),
+        ('<arg name="tf_prefix" default=\'""\'/>', '<arg name="tf_prefix" default=""/>',
+         "argument 'tf_prefix': default \"\" -> ''", None),
         ('<arg name="speed" default="1"/>', '<arg name="speed" default="2"/>',
          "argument 'speed': default 1 -> 2", None),
         ('args="arm_controller"', 'args="hand_controller"',
@@ -410,6 +412,7 @@ DEFAULTS = """<launch>
   <arg name="urdf" default="arm.urdf"/>
   <arg name="odom_topic" default="odom"/>
   <arg name="speed" default="1"/>
+  <arg name="tf_prefix" default='""'/>
   <node pkg="arm" exec="driver.py" namespace="$(var side)" if="$(var real)"/>
   <node pkg="arm" exec="model" args="--type $(var ur) --speed $(var speed)"/>
   <node pkg="controller_manager" exec="spawner" args="arm_controller"/>

@@ -70,6 +70,39 @@ def test_names_that_controllers_offer_are_breaking(review_changes, old, new, exp
     assert bool(found_breaking) is is_breaking
 
 
+FILTERS = """local_filter:
+  ros__parameters: {odom_frame: odom, base_link_frame: base_link, world_frame: odom}
+global_filter:
+  ros__parameters: {map_frame: map, odom_frame: odom, base_link_frame: base_link, world_frame: map}
+costmap:
+  ros__parameters: {global_frame: map}
+"""
+LOST = "the filter no longer publishes the transform of the frame '{}'"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reasons"),
+    [
+        ("world_frame: map", "world_frame: earth", [LOST.format("map")]),
+        ("odom}", "map}", []),
+        (": odom", ": wheels", [LOST.format("odom")]),
+        ("world_frame: map", "publish_tf: false, world_frame: earth", []),
+        ("costmap:\n  ros__parameters: {global_frame: map}", "costmap:\n  ros__parameters: {global_frame: odom}", []),
+    ],
+)
+def test_frames_that_a_filter_no_longer_publishes(repository, compare, old, new, reasons):
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: FILTERS})
+    repository.write({PATH: FILTERS.replace(old, new)})
+    assert [str(change.reason) for _, change in compare(repository).breaking_changes] == reasons
+
+
+def test_node_that_claims_interfaces_is_a_controller(review_changes):
+    start = CONTROLLERS.index("arm:\n  ros__parameters:\n    joints")
+    text = CONTROLLERS[start:]
+    _, found = review_changes(text, text.replace("joints: [upper, lower]", "joints: [upper]"))
+    assert found == ["arm.ros__parameters.joints [upper, lower] -> [upper]"]
+
+
 def test_renamed_controller_is_compared_with_the_old_one(review_changes):
     text = CONTROLLERS.replace("    base:\n", "    drive:\n").replace("\nbase:\n", "\ndrive:\n").replace("0.4", "0.5")
     changes, found_breaking = review_changes(CONTROLLERS, text)

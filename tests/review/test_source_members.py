@@ -245,3 +245,56 @@ def test_types_of_protected_members_of_an_installed_class(repository, compare, o
     repository.write({path: PROTECTED_HEADER.replace(old, new)})
     first = subject(compare(repository), path).changes[0]
     assert (str(first.sentence), first.reason and str(first.reason)) == (expected, reason)
+
+
+NAMESPACES = "#pragma once\nnamespace arm {\nnamespace detail {\nint count();\n}\n}\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("namespace arm", "namespace tool", "namespace 'arm' renamed to 'tool'"),
+        ("namespace detail {\nint count();\n}", "int count();", "namespaces removed: 'detail'"),
+        ("int count();", "int count();\nnamespace more {\nint size();\n}", None),
+    ],
+)
+def test_namespaces_of_an_installed_header(repository, compare, old, new, expected):
+    path = "arm/include/arm/arm.hpp"
+    repository.commit({**HEADER_PACKAGE, path: NAMESPACES})
+    repository.write({path: NAMESPACES.replace(old, new)})
+    found = [sentence for sentence in breaking(compare(repository)) if "namespace" in sentence]
+    assert found == ([expected] if expected else [])
+
+
+ALIASES = """#pragma once
+class Arm {
+public:
+  typedef std::function<void(int)> Callback;
+  using Speed = double;
+  void start(Callback callback);
+  void move(Speed speed);
+};
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("Callback", "Handler", []),
+        ("(Speed speed)", "(double speed)", []),
+        ("(Speed speed)", "(int speed)", ["function 'Arm::move': (Speed) -> (int)"]),
+    ],
+)
+def test_other_names_of_types_are_no_other_types(repository, compare, old, new, expected):
+    path = "arm/include/arm/arm.hpp"
+    repository.commit({**HEADER_PACKAGE, path: ALIASES})
+    repository.write({path: ALIASES.replace(old, new)})
+    assert breaking(compare(repository)) == expected
+
+
+def test_header_that_a_manifest_of_rosbuild_exports_is_an_interface(repository, compare):
+    manifest = '<package><export><cpp cflags="-I${prefix}/include"/></export></package>'
+    files = {"arm/manifest.xml": manifest, "arm/CMakeLists.txt": "rosbuild_init()\n"}
+    repository.commit({**files, "arm/include/arm/arm.h": ALIASES})
+    repository.write({"arm/include/arm/arm.h": ALIASES.replace("  void move(Speed speed);\n", "")})
+    assert breaking(compare(repository)) == ["functions removed: 'Arm::move' (Speed)"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import lru_cache
 from pathlib import PurePosixPath
 
@@ -11,9 +12,13 @@ from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.build_facts import BuildFacts, FactKind
 from linkwright.review.files.cmake_files import CMAKE_FILE, read_cmake_facts
+from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.files.setup_files import SETUP_FILE, read_setup_facts
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
+
+_EXPORTED_FOLDER = re.compile(r"-I\$\{prefix\}/(?P<folder>[\w./-]+)")
+"""A folder with headers in the compiler flags that a manifest of rosbuild exports."""
 
 
 def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bool:
@@ -105,12 +110,15 @@ def find_python_packages(version: Version, package: str) -> list[str]:
 def is_exported_header(version: Version, package: str, path: str) -> bool:
     """Return whether other packages find a header.
 
-    Such a header is installed, or is in a folder that catkin exports.
+    Such a header is installed, or is in a folder that catkin or the manifest of rosbuild exports.
     """
     facts = read_package_facts(version, package)
+    source = PurePosixPath(path).relative_to(package).as_posix()
+    rosbuild_folders = _EXPORTED_FOLDER.findall(version.text(f"{package}/{ROSBUILD_MANIFEST}".lstrip("/")))
+    if any(PurePosixPath(source).is_relative_to(folder) for folder in rosbuild_folders):
+        return True
     if facts is None:
         return False
-    source = PurePosixPath(path).relative_to(package).as_posix()
     folders = (fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER)
     is_installed = any(target.startswith("include/") and source == other for target, other in facts.files.items())
     return is_installed or any(PurePosixPath(source).is_relative_to(folder) for folder in folders)

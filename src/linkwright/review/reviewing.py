@@ -349,7 +349,7 @@ class _Reviewer:
             return False
         sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
         return rule.kind is not SubjectKind.PARAMETERS or any(
-            version.package_of(path) is not None for version, path in sides if path
+            version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST)) is not None for version, path in sides if path
         )
 
     def _find_affected(self) -> Iterator[set[str]]:

@@ -21,6 +21,12 @@ _TRANSFORM_SWITCH = re.compile(
     r"(^|[._])(publish_tf|tf[._]send|enable_odom_tf|broadcast_tf|publish_odom_tf|pub_tf|tf_broadcast)$"
 )
 """The parameters that enable and disable a transform of a node."""
+_FILTER_FRAME = re.compile(r"(?P<node>.*)\.world_frame")
+"""The parameter of robot_localization with the frame whose transform the filter publishes."""
+_FILTER_FRAMES = ("odom_frame", "base_link_frame")
+"""The other frames of a filter of robot_localization."""
+_CLAIM = re.compile(r"(?:[^.]+\.)*(?P<controller>[^.]+)\.ros__parameters\.(command|state)_interfaces")
+"""The parameters that only controllers have."""
 _JOINT_PARAMETER = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
 """The parameters that name joints of a controller. Other nodes only use the joints."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
@@ -56,6 +62,8 @@ class NameRules:
     def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
         self._new_nodes = {node for name in new if (node := find_node_name(name)) is not None}
         self._controllers = {*find_controllers(old), *find_controllers(new)}
+        self._controllers |= {match["controller"] for name in old if (match := _CLAIM.fullmatch(name)) is not None}
+        self._new = new
         self._new_controllers = set(find_controllers(new))
         self._new_parts = {part for name in new for part in list_part_paths(name)}
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
@@ -77,6 +85,8 @@ class NameRules:
         removed -= {name for name in removed if any(can_evaluate_to(item, name) for item in _find_name_items(new))}
         if _TRANSFORM_SWITCH.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
             return phrase("the node no longer publishes its transform")
+        if removed and self._is_lost_filter_frame(parameter, old):
+            return phrase("the filter no longer publishes the transform of the frame '{name}'", name=old)
         is_offered = offers_frame(parameter)
         if is_offered:
             removed -= self._new_frames
@@ -119,6 +129,17 @@ class NameRules:
         """
         group = list_part_paths(parameter)[-2]
         return root in self._new_parts and group not in self._new_parts
+
+    def _is_lost_filter_frame(self, parameter: str, frame: str) -> bool:
+        """Return whether no filter of robot_localization in the file publishes the transform of a frame any more."""
+        match = _FILTER_FRAME.fullmatch(parameter)
+        if match is None or any(f"{match['node']}.{name}" not in self._new for name in _FILTER_FRAMES):
+            return False
+        switch = self._new.get(f"{match['node']}.publish_tf")
+        filters = [other["node"] for name in self._new if (other := _FILTER_FRAME.fullmatch(name)) is not None]
+        frames = (self._new.get(f"{node}.{name}") for node in filters for name in ("world_frame", *_FILTER_FRAMES))
+        is_used = any(value is not None and value.text == frame for value in frames)
+        return not is_used and (switch is None or switch.text.lower() != "false")
 
     def _belongs_to_controller(self, parameter: str) -> bool:
         """Return whether a parameter belongs to a controller."""

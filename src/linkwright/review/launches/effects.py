@@ -358,8 +358,10 @@ def _find_default_reason(
     if stopped:
         return phrase("by default, {entry} no longer starts", entry=stopped[0])
     reason = next((use.reason for use in uses), None)
-    if reason is None and old_value and _NAME_ARGUMENT.search(argument.name) and "/" not in f"{old_value}{new_value}":
-        return name_reason(old_value)
+    old_name, new_name = (value.strip("\"'") for value in (old_value, new_value))  # '""' is an empty name for xacro
+    is_name = bool(old_name) and old_name != new_name and "/" not in f"{old_name}{new_name}"
+    if reason is None and is_name and _NAME_ARGUMENT.search(argument.name):
+        return name_reason(old_name)
     return reason
 
 

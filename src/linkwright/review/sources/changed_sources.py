@@ -20,7 +20,10 @@ COMMUNICATION_KINDS = (
     *(NameKind.ACTION, NameKind.ACTION_CLIENT),
 )
 """The kinds of names by which a node communicates."""
-_LOCAL_KINDS = (NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
+_LOCAL_KINDS = (
+    *(NameKind.OPTION, NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER),
+    *(NameKind.COMMAND_INTERFACE, NameKind.STATE_INTERFACE, NameKind.CLAIMED_INTERFACE),
+)
 """The kinds whose names may mean something else in a different source."""
 
 

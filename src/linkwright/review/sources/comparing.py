@@ -19,9 +19,10 @@ from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
-from linkwright.review.sources.details import compare_details, format_name, format_names
+from linkwright.review.sources.details import compare_details, format_name, format_names, make_required_reason
 from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
+    CPP_SUFFIXES,
     PYTHON_SUFFIX,
     YES,
     Detail,
@@ -29,6 +30,7 @@ from linkwright.review.sources.names import (
     SourceName,
     SourceNames,
 )
+from linkwright.review.sources.namespaces import compare_namespaces
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.pairing import compute_similarity, pair_similar, take_pairs
 from linkwright.review.sources.protected_members import compare_protected
@@ -72,12 +74,13 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
 
 def _is_source(versions: Versions, file: ChangedFile) -> bool:
     path = PurePosixPath(file.path)
-    if path.name in _SKIPPED_FILES or path.name.startswith(("test_", ".")) or file.is_submodule:
+    if path.name in _SKIPPED_FILES or path.name.startswith(".") or file.is_submodule:
         return False
     if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
         return False
     version = versions.new if file.new_path else versions.old
-    return is_program_text(version.file(file.path))
+    is_test = path.name.startswith("test_") and (path.suffix not in CPP_SUFFIXES or "gtest" in version.text(file.path))
+    return not is_test and is_program_text(version.file(file.path))
 
 
 @dataclass(frozen=True)
@@ -101,7 +104,7 @@ class _SourcePair:
         changes += self._compare_rates(old_names, new_names)
         changes += self._compare_imports(old_names, new_names)
         changes += self._find_undefined(old_names, new_names)
-        changes += self._compare_protected(old_names, new_names)
+        changes += self._compare_header(old_names, new_names)
         changes += self._compare_packages(are_headers_told=not changes)
         if self.file.old_path is not None and self.file.new_path is not None:
             old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
@@ -158,8 +161,12 @@ class _SourcePair:
         """Yield the changes to the names of a kind."""
         before = {get_comparison_name(item): item for item in old_names.of_kind(kind)}
         after = {get_comparison_name(item): item for item in new_names.of_kind(kind)}
-        changed = [(item, *detail) for name, item in after.items() if name in before
-                   for detail in compare_details(before[name], item)]  # fmt: skip
+        changed = [
+            (item, *detail)
+            for name, item in after.items()
+            if name in before and not _has_same_types(before[name], item, old_names, new_names)
+            for detail in compare_details(before[name], item)
+        ]
         yield from self._report_details(kind, changed, old_names)
         if kind is NameKind.PARAMETER:
             yield from self._compare_scopes(before, after, old_names, new_names)
@@ -515,11 +522,11 @@ class _SourcePair:
         for change in compare_usage(old, new, self.file, are_headers_told=are_headers_told):
             yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, None)
 
-    def _compare_protected(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changes to protected members of the classes of an installed header."""
+    def _compare_header(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the changes to namespaces of an installed header, and to protected members of its classes."""
         if None in (self.file.old_path, self.file.new_path) or not self._is_interface(self.file.old_path or ""):
             return
-        for change in compare_protected(old_names, new_names):
+        for change in (*compare_namespaces(old_names, new_names), *compare_protected(old_names, new_names)):
             yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, change.reason)
 
     @staticmethod
@@ -527,6 +534,12 @@ class _SourcePair:
         path = side.version.relative(span.file)
         location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
         return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
+
+
+def _has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, new_names: SourceNames) -> bool:
+    """Return whether a function or member only has other names for the same types."""
+    is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
+    return is_member and old_names.resolve_aliases(old.type) == new_names.resolve_aliases(new.type)
 
 
 def _is_number(rate: str) -> bool:
@@ -551,7 +564,7 @@ def _find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
         return None
     if items[0].kind is NameKind.FUNCTION:
         return phrase("classes that derive from the class and do not define it do not build")
-    return phrase("callers that do not pass '{name}' get an error", name=joined_first(names, MAX_NAMES))
+    return make_required_reason(items[0].kind, joined_first(names, MAX_NAMES))
 
 
 def _drop_defined_imports(items: Sequence[SourceName], names: SourceNames) -> list[SourceName]:

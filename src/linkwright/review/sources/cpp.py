@@ -19,6 +19,7 @@ from linkwright.review.sources.cpp_functions import (
 )
 from linkwright.review.sources.cpp_handles import Handles, add_namespace
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
+from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
 from linkwright.review.sources.name_patterns import find_format
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.node_options import Remappings, read_remappings
@@ -64,8 +65,14 @@ _ROS1_CALLS = frozenset(
 _COMMUNICATION_KINDS = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT)
 _GRAPH_KINDS = frozenset({*_COMMUNICATION_KINDS, NameKind.ACTION, NameKind.ACTION_CLIENT})
 """The kinds of names that remappings change."""
+_FREE_INDEX = {"create_publisher": 1, "create_subscription": 1, "create_service": 2, "create_client": 3}
+"""The index of the name in the free functions of rclcpp, behind the interfaces of the node."""
+_CLIENT_LIBRARY = "rclcpp::"
 _NODE_FIRST_CALLS = frozenset({"declare_parameter_if_not_declared"})
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
+_PARAM_ARGUMENTS = 3
+"""The number of arguments of ``param`` of ROS 1, which also has the variable for the value."""
+_MEMBER_CALLBACK = re.compile(r",\s*&\s*\w+::\w+\s*,\s*this\b")
 _OUTPUT_CALLS = frozenset({"getParam", "getParamCached", "get"})
 _ROS2_PARAMETER_CALLS = frozenset({"declare_parameter", "auto_declare", "declare_parameter_if_not_declared"})
 _NODE = re.compile(
@@ -82,6 +89,10 @@ _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
 )
 _COMPONENT = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(")
+_NAMESPACE = re.compile(r"^[ \t]*(?:inline\s+)?namespace\s+(?P<name>[A-Za-z_]\w*(?:\s*::\s*\w+)*)\s*\{", re.MULTILINE)
+_ALIAS = re.compile(
+    r"\btypedef\s+(?P<type>[^;{}]+[\s>*&])(?P<name>\w+)\s*;|\busing\s+(?P<using>\w+)\s*=\s*(?P<used>[^;{}]+);"
+)
 _CLASS = re.compile(
     r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z]\w*_(?:PUBLIC|EXPORT|API|DECL)(?:_TYPE)?\s+)?"
     r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)[^;{]*)?\{",
@@ -140,6 +151,8 @@ class _Reader:
         for element in read_elements(text):
             end = element.start + len(element.name)
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
+        for interface in find_hardware_interfaces(text):
+            self._add(interface.kind, interface.name, interface.start, interface.end)
         for match in _RATE.finditer(text):
             self._read_rate(match)
         for match in _RECONFIGURATION.finditer(text):
@@ -176,6 +189,11 @@ class _Reader:
         """
         if PurePosixPath(self._source.name).suffix not in HEADER_SUFFIXES:
             return
+        for match in _ALIAS.finditer(self._text):
+            type_name = re.sub(r"\s*([*&<>,:()])\s*", r"\1", " ".join((match["type"] or match["used"]).split()))
+            self._names.aliases[match["name"] or match["using"]] = type_name
+        for match in _NAMESPACE.finditer(self._text):
+            self._names.namespaces.setdefault(match["name"], self._make_span(match.start("name"), match.end("name")))
         overloads: dict[str, list[DeclaredFunction]] = {}
         for function in read_declared_functions(self._text):
             if function.is_override:
@@ -224,6 +242,8 @@ class _Reader:
         if function == "param" and not type_name and not match["scope"].strip():
             return  # a different function with the same name
         arguments = list(_find_arguments(text, start))
+        if function in _FREE_INDEX and text.startswith(_CLIENT_LIBRARY, match.start("name") - len(_CLIENT_LIBRARY)):
+            arguments = arguments[_FREE_INDEX[function] :]
         if kind is NameKind.FRAME_LOOKUP:
             for begin, end in arguments[:2]:
                 self._add_frame(kind, begin, end)
@@ -252,10 +272,16 @@ class _Reader:
                 self._names.unknown_scopes.add(self._get_literal(*name_offsets) or "")
         elif candidates:
             begin, end = candidates[0] if not is_action else candidates[min(1, len(candidates) - 1)]
-            expression = SourceName(kind, " ".join(text[begin:end].split()), type_name, self._make_span(begin, end))
-            is_default = self._add_default(kind, expression.name)
-            if function not in _ROS1_CALLS or is_default or (type_name and kind is not NameKind.PARAMETER):
-                self._names.expressions.append(expression)
+            name = " ".join(text[begin:end].split())
+            is_ros = self._add_default(kind, name) or function not in _ROS1_CALLS
+            if function == "param" and type_name and len(arguments) == _PARAM_ARGUMENTS:
+                is_ros, type_name = True, self._find_literal_default(function, arguments)
+            elif kind is not NameKind.PARAMETER:
+                is_ros = is_ros or bool(type_name) or _MEMBER_CALLBACK.search(text, start, arguments[-1][1]) is not None
+                if kind is NameKind.SUBSCRIPTION and not type_name:
+                    type_name = self._find_callback_type(arguments)
+            if is_ros:
+                self._names.expressions.append(SourceName(kind, name, type_name, self._make_span(begin, end)))
 
     def _add_default(self, kind: NameKind, expression: str) -> bool:
         """Add the name that an expression has by default, and return whether a parameter gives it."""

@@ -122,7 +122,7 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
     if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:
         return phrase("classes that derive from the class and do not define it do not build") if after else None
     if detail is Detail.REQUIRED and after:
-        return phrase("callers that do not pass '{name}' get an error", name=name.name)
+        return make_required_reason(name.kind, name.name)
     if detail is Detail.ARGUMENTS:
         old_signature, new_signature = parse_signature(old), parse_signature(new)
         is_accepted = old_signature is None or new_signature is None or new_signature.accepts_calls_of(old_signature)
@@ -132,6 +132,13 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
     if detail is Detail.LATCH and before:
         return phrase("subscribers that start later do not get the last message")
     return None
+
+
+def make_required_reason(kind: NameKind, names: Phrase | str) -> Phrase:
+    """Return the reason why an option or parameter without a default is breaking."""
+    if kind is NameKind.PARAMETER:
+        return phrase("the program fails where '{name}' is not set", name=names)
+    return phrase("callers that do not pass '{name}' get an error", name=names)
 
 
 def _find_qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:

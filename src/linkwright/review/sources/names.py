@@ -5,6 +5,7 @@ Such names are topics, parameters, frames and options.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from enum import Enum
@@ -36,6 +37,9 @@ class NameKind(Enum):
     FRAME = (phrase("frame"), phrase("frames"))
     MESSAGE_FRAME = (phrase("frame of messages"), phrase("frames of messages"))
     FRAME_LOOKUP = (phrase("frame that is looked up"), phrase("frames that are looked up"))
+    COMMAND_INTERFACE = (phrase("command interface"), phrase("command interfaces"))
+    STATE_INTERFACE = (phrase("state interface"), phrase("state interfaces"))
+    CLAIMED_INTERFACE = (phrase("claimed interface"), phrase("claimed interfaces"))
     OPTION = (phrase("command-line option"), phrase("command-line options"))
     PLUGIN = (phrase("exported class"), phrase("exported classes"))
     CLASS = (phrase("class"), phrase("classes"))
@@ -133,6 +137,8 @@ class SourceNames:
             the location of its first call.
         non_public: the private and protected members of the classes of a C++ header, with the names of the classes.
         protected: the protected members, functions and nested classes of the classes of a C++ header.
+        aliases: the types that a C++ header names with ``typedef`` and ``using``, by name.
+        namespaces: the named namespaces that a C++ header opens, each with its first location.
         hidden_classes: the names of the protected and private classes in a C++ source.
         has_star_import: whether an ``__init__.py`` imports all names of a module, so that it may have other names.
     """
@@ -157,6 +163,8 @@ class SourceNames:
     undefined_methods: dict[str, Span] = field(default_factory=dict)
     non_public: frozenset[str] = frozenset()
     protected: list[SourceName] = field(default_factory=list)
+    aliases: dict[str, str] = field(default_factory=dict)
+    namespaces: dict[str, Span] = field(default_factory=dict)
     hidden_classes: set[str] = field(default_factory=set)
     has_star_import: bool = False
 
@@ -168,6 +176,10 @@ class SourceNames:
                     self.names[index] = name
                 return
         self.names.append(name)
+
+    def resolve_aliases(self, types: str) -> str:
+        """Return a text with types in which the names that the header gives to types are replaced by these."""
+        return re.sub(r"\w+", lambda word: self.aliases.get(word[0], word[0]), types)
 
     def add_default(self, kind: NameKind, expression: str, parameter: str, default: str) -> None:
         """Add the name that an expression has by default, because it reads a parameter."""

@@ -3,45 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
-from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.diagnostics import phrase
 from linkwright.review.sources.details import accepts_all, format_names, format_overload_change
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
+from linkwright.review.sources.namespaces import HeaderChange
 
 _KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 
 
-class ProtectedChange(NamedTuple):
-    """A change to protected members.
-
-    Attributes:
-        text: the change in one line.
-        span: the location.
-        reason: why the change is breaking, or None.
-        is_old: whether the location is in the old version.
-    """
-
-    text: Phrase
-    span: Span
-    reason: Phrase | None = None
-    is_old: bool = False
-
-
-def compare_protected(old: SourceNames, new: SourceNames) -> Iterator[ProtectedChange]:
+def compare_protected(old: SourceNames, new: SourceNames) -> Iterator[HeaderChange]:
     """Yield the changes to protected members of classes that both versions of a header have."""
     added, lost = _find_lost(new, old), _find_lost(old, new)
     if added:
         text = phrase("protected members added: {names}", names=format_names(added))
-        yield ProtectedChange(text, added[0].span)
+        yield HeaderChange(text, added[0].span)
     if lost:
         text = phrase("protected members removed: {names}", names=format_names(lost))
         reason = phrase("classes that derive from the class and use the members do not build")
-        yield ProtectedChange(text, lost[0].span, reason, is_old=True)
+        yield HeaderChange(text, lost[0].span, reason, is_old=True)
     before = {(item.kind, item.name): item for item in old.protected}
     for item in new.protected:
         other = before.get((item.kind, item.name))
-        if other is not None and other.type != item.type:
+        if other is not None and old.resolve_aliases(other.type) != new.resolve_aliases(item.type):
             yield _compare_types(other, item)
 
 
@@ -57,11 +41,11 @@ def _find_lost(old: SourceNames, new: SourceNames) -> list[SourceName]:
     return [item for item in lost.values() if item.name.split("::")[-2] in classes]
 
 
-def _compare_types(old: SourceName, new: SourceName) -> ProtectedChange:
+def _compare_types(old: SourceName, new: SourceName) -> HeaderChange:
     """Return the change of the type of a member, or of the parameters of a function."""
     if new.kind is not NameKind.FUNCTION:
         text = phrase("protected member '{name}': type {old} -> {new}", name=new.name, old=old.type, new=new.type)
-        return ProtectedChange(text, new.span)
+        return HeaderChange(text, new.span)
     text = phrase("protected {change}", change=format_overload_change(new.name, old.type, new.type))
     reason = phrase("classes that derive from the class and call or define '{name}' do not build", name=new.name)
-    return ProtectedChange(text, new.span, None if accepts_all(old.type, new.type) else reason)
+    return HeaderChange(text, new.span, None if accepts_all(old.type, new.type) else reason)

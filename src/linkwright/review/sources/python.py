@@ -19,6 +19,7 @@ from linkwright.review.sources.parameter_defaults import find_parameter_default
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python2 import as_python3
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
+from linkwright.review.sources.required_parameters import is_required_parameter
 from linkwright.review.sources.shared_constants import read_imported_constants
 from linkwright.review.sources.signatures import is_self_contained, read_method_signatures, read_signature
 from linkwright.review.sources.undefined_names import find_bound_names, find_undefined_names
@@ -430,6 +431,8 @@ class _Reader:
             literal = resolved.operand if isinstance(resolved, ast.UnaryOp) else resolved
             if isinstance(literal, ast.Constant) and literal.value is not None:
                 details = ((Detail.VALUE_TYPE, type(literal.value).__name__),)
+        elif is_required_parameter(self._python, call):
+            details = ((Detail.REQUIRED, YES),)
         self._add(NameKind.PARAMETER, node, value, details)
 
     def _read_parameters(self, namespace: ast.expr | None, parameters: ast.expr | None) -> None:

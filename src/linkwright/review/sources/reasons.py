@@ -10,7 +10,10 @@ from linkwright.review.breaking import frame_reason, name_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 
-_CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME)
+_CLIENT_KINDS = (
+    *(NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME),
+    NameKind.CLAIMED_INTERFACE,
+)
 _HEADER_FOLDER = "include"
 
 
@@ -50,6 +53,8 @@ def find_removal_reason(items: Sequence[SourceName], names: SourceNames, path: s
         return phrase("values that worlds and descriptions give to '{name}' have no effect", name=text)
     if kind is NameKind.FRAME:
         return frame_reason(str(text))
+    if kind in (NameKind.COMMAND_INTERFACE, NameKind.STATE_INTERFACE):
+        return phrase("controllers that claim '{name}' do not start", name=text)
     if kind is NameKind.OPTION:
         return phrase("callers that pass '{name}' get an error", name=text)
     if kind is NameKind.PLUGIN:

@@ -1,0 +1,63 @@
+"""The lines of a review about interfaces of ros2_control in C++ sources."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import sentences, subject
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+PATH = "arm/src/arm.cpp"
+HARDWARE = """#include <arm.hpp>
+std::vector<CommandInterface> Arm::export_command_interfaces() {
+  std::vector<hardware_interface::CommandInterface> all;
+  all.emplace_back(hardware_interface::CommandInterface("load", "mass", &mass_));
+  all.push_back(hardware_interface::CommandInterface("tool", hardware_interface::HW_IF_POSITION, &tool_));
+  return all;
+}
+std::vector<StateInterface> Arm::export_state_interfaces() {
+  return {StateInterface("load", "ready", &ready_), StateInterface(info_.joints[0].name, "x", &x_)};
+}
+"""
+CONTROLLER = """#include <hold.hpp>
+InterfaceConfiguration Hold::command_interface_configuration() const {
+  InterfaceConfiguration config;
+  config.names.emplace_back("load/mass");
+  config.names.push_back(joint_ + "/position");
+  return config;
+}
+"""
+NOT_STARTED = "controllers that claim '{}' do not start"
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "sentence", "reason"),
+    [
+        (HARDWARE, '"mass"', '"weight"', "command interface 'load/mass' renamed to 'load/weight'",
+         NOT_STARTED.format("load/mass")),
+        (HARDWARE, "HW_IF_POSITION", "HW_IF_VELOCITY", "command interface 'tool/position' renamed to 'tool/velocity'",
+         NOT_STARTED.format("tool/position")),
+        (HARDWARE, 'StateInterface("load", "ready", &ready_), ', "", "state interfaces removed: 'load/ready'",
+         NOT_STARTED.format("load/ready")),
+        (HARDWARE, "  return all;", '  all.emplace_back("x", 1);\n  all.push_back(CommandInterface("load", "x", &x_));',
+         "command interfaces added: 'load/x'", None),
+        (CONTROLLER, "load/mass", "load/weight", "claimed interface 'load/mass' renamed to 'load/weight'", None),
+        (CONTROLLER, '  config.names.emplace_back("load/mass");\n', "",
+         "claimed interfaces removed: 'load/mass'", None),
+    ],
+)  # fmt: skip
+def test_interfaces_of_hardware_and_controllers(repository, compare, text, old, new, sentence, reason):
+    other = CONTROLLER if text is HARDWARE else HARDWARE
+    repository.commit({**MANIFEST, PATH: text, "arm/src/other.cpp": other})
+    repository.write({PATH: text.replace(old, new, 1)})
+    change = subject(compare(repository), PATH).changes[0]
+    assert str(change.sentence) == sentence
+    assert (None if change.reason is None else str(change.reason)) == reason
+
+
+def test_names_of_other_lists_are_no_interfaces(repository, compare):
+    text = 'void Arm::f() {\n  names.emplace_back("load/mass");\n}\n'
+    repository.commit({**MANIFEST, PATH: text})
+    repository.write({PATH: text.replace("mass", "weight")})
+    assert not any("interface" in sentence for sentence in sentences(subject(compare(repository), PATH)))
