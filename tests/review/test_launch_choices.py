@@ -143,3 +143,24 @@ def generate_launch_description():
         "launch file added: action 'Starter' (parameter rate 5, package arm, executable drive), "
         "action 'Waiter' (target Starter), event handler OnProcessExit of Starter"
     )
+
+
+def test_changed_code_of_functions_is_reported_with_their_names(repository, compare):
+    code = """from launch import LaunchDescription
+
+def read(name):
+    values = {'a': 1}
+    return values[name]
+
+def write(name):
+    print(name)
+
+def generate_launch_description():
+    return LaunchDescription([])
+"""
+    path = "arm/launch/arm.launch.py"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: code})
+    changed = code.replace("return values[name]", "values.pop('b', None)\n    return dict(values)")
+    repository.write({path: changed.replace("    print(name)", "    open(name, 'w').write(name)")})
+    (line,) = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert line.startswith("other code changed in 'read()', 'write()', such as ")
