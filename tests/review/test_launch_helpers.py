@@ -112,7 +112,7 @@ def test_substitutions_in_a_list_are_one_word_of_the_arguments(review_changes):
     changes, found = review_changes("arm.launch.py", LOOP, '"camera"', '"lidar"')
     assert len(changes) == 1
     assert changes == found
-    assert changes[0].endswith("map, $(var map)camera] -> [0, 0, 0, 0, 0, 0, map, $(var map)lidar]")
+    assert changes[0].endswith("child frame '$(var map)camera' -> '$(var map)lidar'")
 
 
 def test_comparison_of_an_argument_may_be_a_substitution(review_changes):

@@ -10,8 +10,8 @@ from linkwright.review.launches.titles import format_settings, format_title
 from linkwright.review.versions import Version
 
 _SHOWN_KINDS = (
-    "node", "process", "include", "parameters", "parameter", SERVER_PARAMETER, "remapping", "environment", READING,
-    "argument",
+    "node", "process", "action", "include", "parameters", "parameter", SERVER_PARAMETER, "remapping", "environment",
+    READING, "handler", "argument",
 )  # fmt: skip
 _MAX_SETTINGS = 8
 """The maximum number of settings of each action in the line."""
@@ -20,7 +20,7 @@ _MAX_SETTINGS = 8
 def launch_contents(version: Version, path: str) -> Phrase | None:
     """Summarize the actions of a launch file, or return None if it has none.
 
-    The summary lists nodes, processes, includes, parameters and arguments.
+    The summary lists nodes, processes, includes, parameters, event handlers and arguments.
 
     Args:
         version: the version that contains the file.

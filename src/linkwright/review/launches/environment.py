@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from linkwright.diagnostics import Span
 from linkwright.packages.readers.python_values import PythonFile, called_name
@@ -15,14 +15,17 @@ _READING_FUNCTIONS = re.compile(r"(os\.)?(environ\.get|getenv)")
 _ENVIRON = ("os.environ", "environ")
 _SUBSTITUTION = re.compile(r"\$\((?P<kind>env|optenv) (?P<name>\w+)(?P<default> [^()]*)?\)")
 _NAME = re.compile(r"\w+")
+_ALWAYS_SET = re.compile(r"ROS_(?:DISTRO|VERSION|PYTHON_VERSION)")
+"""The variables that the setup files of ROS set."""
 _DEFAULT = "default"
 
 
 def find_python_readings(python: PythonFile) -> list[Entry]:
     """Return an entry for each environment variable that a launch file in Python reads."""
     texts = ExpressionTexts(python)
+    guarded = set(_find_guarded_readings(python.tree, frozenset()))
     readings = (
-        (texts.text(name), has_default, python.span(node))
+        (texts.text(name), has_default or id(node) in guarded, python.span(node))
         for node in ast.walk(python.tree)
         if isinstance(node, ast.expr)
         for name, has_default in _find_read_names(node)
@@ -55,6 +58,55 @@ def _find_read_names(node: ast.expr) -> Iterator[tuple[ast.expr, bool]]:
             yield node.args[0], len(node.args) + len(node.keywords) > 1
 
 
+def _find_guarded_readings(node: ast.AST, names: frozenset[str]) -> Iterator[int]:
+    """Yield the identities of expressions that read a variable only if it is set, or whose error is handled.
+
+    Args:
+        node: the syntax tree.
+        names: the expressions of the names of variables that are set.
+    """
+    if isinstance(node, ast.Subscript) and ast.unparse(node.value) in _ENVIRON and ast.unparse(node.slice) in names:
+        yield id(node)
+    elif isinstance(node, ast.BoolOp):
+        for value in node.values:
+            yield from _find_guarded_readings(value, names)
+            names |= _find_set_names(value, is_true=isinstance(node.op, ast.And))
+        return
+    elif isinstance(node, (ast.If, ast.IfExp, ast.While)):
+        yield from _find_guarded_readings(node.test, names)
+        for branch, is_true in ((node.body, True), (node.orelse, False)):
+            inner = names | _find_set_names(node.test, is_true=is_true)
+            statements: Sequence[ast.AST] = branch if isinstance(branch, list) else [branch]
+            for statement in statements:
+                yield from _find_guarded_readings(statement, inner)
+        return
+    elif isinstance(node, ast.Try) and any(map(_handles_missing_keys, node.handlers)):
+        yield from (id(child) for statement in node.body for child in ast.walk(statement))
+    for child in ast.iter_child_nodes(node):
+        yield from _find_guarded_readings(child, names)
+
+
+def _find_set_names(test: ast.expr, *, is_true: bool) -> frozenset[str]:
+    """Return the expressions of the names of variables that are set if a test is true, or false."""
+    if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+        return _find_set_names(test.operand, is_true=not is_true)
+    if isinstance(test, ast.BoolOp) and isinstance(test.op, ast.And if is_true else ast.Or):
+        return frozenset().union(*(_find_set_names(value, is_true=is_true) for value in test.values))
+    if isinstance(test, ast.Compare) and len(test.ops) == 1:
+        operator = ast.In if is_true else ast.NotIn
+        is_membership = isinstance(test.ops[0], operator) and ast.unparse(test.comparators[0]) in _ENVIRON
+        return frozenset({ast.unparse(test.left)}) if is_membership else frozenset()
+    if is_true and isinstance(test, ast.Call) and test.args and _READING_FUNCTIONS.fullmatch(called_name(test)):
+        return frozenset({ast.unparse(test.args[0])})
+    return frozenset()
+
+
+def _handles_missing_keys(handler: ast.ExceptHandler) -> bool:
+    return handler.type is None or any(
+        name in ast.unparse(handler.type) for name in ("KeyError", "LookupError", "Exception")
+    )
+
+
 def _make_entries(readings: Iterable[tuple[str, bool, Span]]) -> list[Entry]:
     """Return an entry for each variable.
 
@@ -62,6 +114,7 @@ def _make_entries(readings: Iterable[tuple[str, bool, Span]]) -> list[Entry]:
     """
     entries: dict[str, Entry] = {}
     for name, has_default, span in readings:
+        has_default = has_default or _ALWAYS_SET.fullmatch(name) is not None
         if _NAME.fullmatch(name) and (name not in entries or not has_default):
             entries[name] = Entry(READING, name, {_DEFAULT: "given"} if has_default else {}, span)
     return list(entries.values())

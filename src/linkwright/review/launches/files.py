@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
+from pathlib import Path
 
-from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.diagnostics import Phrase, counted, joined_first, phrase
 from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.review.breaking import name_reason
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import find_addition_reason, find_removal_reason
@@ -252,7 +256,8 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
                 phrase("other code: {old} -> {new}", old=old_excerpt, new=new_excerpt), pair.location(new_part.span)
             )
     else:
-        pair.add(_format_code_change(removed, added), location)
+        functions = [*_find_functions(pair.new_file, added), *_find_functions(pair.old_file, removed)]
+        pair.add(_format_code_change(removed, added, list(dict.fromkeys(functions))), location)
 
 
 def _report_failures(
@@ -285,11 +290,30 @@ def _report_failures(
     return other_statements
 
 
-def _format_code_change(removed: Sequence[CodePart], added: Sequence[CodePart]) -> Phrase:
-    """Return the sentence about changed statements, which quotes the first one."""
+def _find_functions(file: Path, parts: Sequence[CodePart]) -> Iterator[str]:
+    """Yield the functions of a Python file that contain statements, except the one that returns the actions."""
+    try:
+        tree = (
+            ast.parse(file.read_text("utf-8", errors="replace")) if file.suffix == PYTHON_SUFFIX else ast.Module([], [])
+        )
+    except (OSError, SyntaxError, ValueError, RecursionError):
+        return
+    functions = [node for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
+    for part in parts:
+        around = [node for node in functions if node.lineno <= part.span.line <= (node.end_lineno or node.lineno)]
+        innermost = max(around, key=lambda node: node.lineno, default=None)
+        if innermost is not None and innermost.name != LAUNCH_FUNCTION:
+            yield innermost.name
+
+
+def _format_code_change(removed: Sequence[CodePart], added: Sequence[CodePart], functions: Sequence[str]) -> Phrase:
+    """Return the sentence about changed statements, which names their functions and quotes the first statement."""
     parts = added or removed
     code = shorten_middle(parts[0].source, _MAX_STATEMENT_CHARACTERS)
     if removed and added:
+        if functions:
+            names = joined_first([f"'{name}()'" for name in functions], MAX_NAMES)
+            return phrase("other code changed in {names}, such as {code}", names=names, code=code)
         return phrase("other code changed, such as {code}", code=code)
     text = phrase("other code added: {code}", code=code) if added else phrase("other code removed: {code}", code=code)
     more = len(parts) - 1

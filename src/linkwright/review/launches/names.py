@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +11,8 @@ from linkwright.packages.readers.python_values import PythonFile
 
 _MAX_ASSIGNMENTS = 40
 _WHOLE_FILE = (0, 1 << 30)
+_CHOSEN_MARK = "is_chosen"
+"""The attribute of expressions that represent the values that an ``if`` statement gives to a name."""
 _Branching = ast.If | ast.For | ast.While | ast.Try
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
@@ -98,7 +100,12 @@ def _walk_scope(scope: ast.AST, block: tuple[int, int]) -> Iterator[tuple[ast.AS
 
 
 def _find_bound_names(node: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
-    """Yield the names that a node assigns, with their values; None for unknown values."""
+    """Yield the names that a node or the branches of a statement assign; None for unknown values."""
+    yield from _find_chosen_values(node).items() if isinstance(node, ast.If) else _find_simple_names(node)
+
+
+def _find_simple_names(node: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
+    """Yield the names that a node itself assigns, with their values; None for unknown values."""
     if isinstance(node, ast.arguments):
         arguments = [*node.posonlyargs, *node.args, *node.kwonlyargs, node.vararg, node.kwarg]
         yield from ((argument.arg, None) for argument in arguments if argument is not None)
@@ -109,3 +116,44 @@ def _find_bound_names(node: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
     elif isinstance(node, (ast.Assign, ast.AugAssign, ast.NamedExpr, ast.For, ast.comprehension, ast.withitem)):
         targets = (child for child in ast.walk(node) if isinstance(child, ast.Name))
         yield from ((target.id, None) for target in targets if isinstance(target.ctx, ast.Store))
+
+
+def is_chosen_value(node: ast.expr) -> bool:
+    """Return whether an expression represents the values that an ``if`` statement gives to a name."""
+    return hasattr(node, _CHOSEN_MARK)
+
+
+def _find_chosen_values(node: ast.If) -> dict[str, ast.expr]:
+    """Return the values of the names that a statement assigns, as conditional expressions.
+
+    In a branch that does not assign it, a name has the value before the statement.
+    """
+    values, other_values = _find_last_values(node.body), _find_last_values(node.orelse)
+    names = {name for child in ast.walk(node) for name, _ in _find_simple_names(child)}
+    chosen: dict[str, ast.expr] = {}
+    for name in sorted(names & (values.keys() | other_values.keys())):
+        before = ast.copy_location(ast.Name(name, ast.Load()), node)
+        branches = [
+            branch_values.get(name) or (None if _assigns(branch, name) else before)
+            for branch_values, branch in ((values, node.body), (other_values, node.orelse))
+        ]
+        if branches[0] is not None and branches[1] is not None:
+            value = ast.copy_location(ast.IfExp(node.test, branches[0], branches[1]), node)
+            setattr(value, _CHOSEN_MARK, True)
+            chosen[name] = value
+    return chosen
+
+
+def _assigns(body: Sequence[ast.stmt], name: str) -> bool:
+    return any(name == other for node in body for child in ast.walk(node) for other, _ in _find_simple_names(child))
+
+
+def _find_last_values(body: Sequence[ast.stmt]) -> dict[str, ast.expr]:
+    """Return the values that the statements of a block certainly give to names."""
+    values: dict[str, ast.expr] = {}
+    for statement in body:
+        bound = dict(_find_bound_names(statement))
+        nested = {name for child in ast.walk(statement) for name, _ in _find_simple_names(child)} - bound.keys()
+        values = {name: value for name, value in values.items() if name not in nested and name not in bound}
+        values |= {name: value for name, value in bound.items() if value is not None}
+    return values

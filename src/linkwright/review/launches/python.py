@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.helpers import Function, HelperFunctions
 from linkwright.review.launches.list_additions import find_added_items
 from linkwright.review.launches.literals import CoveredLiterals, Literals
+from linkwright.review.launches.names import is_chosen_value
 from linkwright.review.launches.other_code import find_definitions, read_other_code
 from linkwright.review.launches.outlines import (
     CONDITION,
@@ -18,6 +19,7 @@ from linkwright.review.launches.outlines import (
     Entry,
     LaunchOutline,
     Scope,
+    with_condition,
 )
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts
 
@@ -148,6 +150,12 @@ class _Reader:
             self._visit_call(node, scope)
         elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             return  # the object of a method, whose value is not in the scope of the call
+        elif isinstance(node, ast.Assign) and scope.conditions and isinstance(node.value, (ast.List, ast.Tuple)):
+            for item in node.value.elts:
+                if not isinstance(item, ast.Name):  # the named actions get their conditions where the list is used
+                    self.visit(item, scope)
+        elif isinstance(node, ast.IfExp) and is_chosen_value(node):
+            self._visit_chosen_values(node, scope)
         elif isinstance(node, (ast.List, ast.Tuple)):
             for item in node.elts:
                 scope = scope.with_namespace(self._find_pushed_namespace(item))
@@ -220,6 +228,14 @@ class _Reader:
                 self._visit_loop(target, iterable, body, scope.with_condition(condition))
         self._passes = loops
         self.covered.add(id(choice))
+
+    def _visit_chosen_values(self, choice: ast.IfExp, scope: Scope) -> None:
+        """Find the actions of the lists that a statement chooses. An action of both lists has no condition."""
+        branches = [[part.node for part in self.texts.find_list_parts(value)] for value in (choice.body, choice.orelse)]
+        common = {id(node) for node in branches[0]} & {id(node) for node in branches[1]}
+        for condition, nodes in zip(_format_conditions(choice.test), branches, strict=True):
+            for node in nodes:
+                self.visit(node, scope if id(node) in common else scope.with_condition(condition))
 
     def _visit_branches(self, node: ast.If, scope: Scope) -> None:
         """Find the actions of both branches, with the condition of the statement."""
@@ -433,13 +449,25 @@ class _Reader:
 
     def _read_foreign_action(self, call: ast.Call, scope: Scope) -> Entry:
         keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
-        settings = self._read_node_settings(keywords)
+        programs = {key: self.texts.text(keywords[key]) for key in ("package", "executable") if key in keywords}
+        actions = {key: self._format_short_name(node) for key, node in keywords.items() if self._is_action(node)}
+        others = {key: node for key, node in keywords.items() if key not in actions}
+        settings = programs | actions | self._read_node_settings(others)
         if call.args:
             settings["arguments"] = f"[{', '.join(map(self.texts.text, call.args))}]"
         condition = self.texts.format_condition(keywords.get(CONDITION))
         if condition:
             settings[CONDITION] = condition
         return Entry("action", called_name(call), scope.add_to_settings("action", settings), self.python.span(call))
+
+    def _is_action(self, node: ast.expr) -> bool:
+        """Return whether an expression is another action, which has its own entry."""
+        action = self.python.resolved(node)
+        return (
+            isinstance(action, ast.Call)
+            and action is not node
+            and (called_name(action).rpartition(".")[2] in ACTIONS or self.helpers.is_foreign(self.python, action))
+        )
 
     def _read_passed_arguments(self, node: ast.expr | None) -> dict[str, str]:
         """Return the arguments of an include: ``{...}.items()``, a dictionary or a list of pairs."""
@@ -471,15 +499,30 @@ class _Reader:
             parts["arguments"] = f"[{', '.join(texts)}]"
             del others["arguments"]
         if "remappings" in others:
-            parts |= _split_remappings(others.pop("remappings"))
+            parts |= _split_choice(others.pop("remappings"), _split_remappings)
         if "parameters" in others:
-            parts |= _split_parameters(others.pop("parameters"))
+            parts |= _split_choice(others.pop("parameters"), _split_parameters)
         return {**_format_settings(others), **parts}
 
 
 def _format_settings(values: Mapping[str, BoundExpression]) -> dict[str, str]:
     ignored = {*_IGNORED_ARGUMENTS, *_INNER_ACTIONS, CONDITION}
     return {key: value.texts.text(value.node) for key, value in values.items() if key not in ignored}
+
+
+def _split_choice(value: BoundExpression, split: Callable[[BoundExpression], dict[str, str]]) -> dict[str, str]:
+    """Return the settings in a list, or in one of two lists that a condition chooses, with the condition."""
+    chosen = value.texts.resolve(value.node)
+    if not isinstance(chosen.node, ast.IfExp):
+        return split(value)
+    conditions = _format_conditions(chosen.node.test)
+    branches = [
+        _split_choice(BoundExpression(chosen.texts, node), split) for node in (chosen.node.body, chosen.node.orelse)
+    ]
+    common = {name: text for name, text in branches[0].items() if branches[1].get(name) == text}
+    for condition, settings in zip(conditions, branches, strict=True):
+        common |= {with_condition(name, condition): text for name, text in settings.items() if name not in common}
+    return common
 
 
 def _split_remappings(value: BoundExpression) -> dict[str, str]:

@@ -1,0 +1,166 @@
+"""Values of Python launch files that both branches of a statement assign, and guarded environment variables."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences
+
+LAUNCH = """import os
+from launch import LaunchDescription
+from launch_ros.actions import Node
+from others.launching import Waiter, Starter
+
+def generate_launch_description():
+{code}
+    node = Node(package='arm', executable='drive', remappings=mappings)
+    return LaunchDescription([node])
+"""
+PLAIN = "    mappings = [('cmd_vel_unstamped', 'cmd_vel'), ('odom', 'robot/odom')]"
+CHOSEN = """    if os.environ.get('STAMPED'):
+        mappings = [('cmd_vel', 'robot/cmd_vel'), ('odom', 'robot/odom')]
+    else:
+        mappings = [('cmd_vel_unstamped', 'cmd_vel'), ('odom', 'robot/odom')]"""
+
+
+@pytest.fixture
+def review_code(repository, compare):
+    """Review a change to the code of a launch file; return its lines and the breaking ones."""
+
+    def run(old: str, new: str):
+        path = "arm/launch/arm.launch.py"
+        repository.commit({"arm/package.xml": PACKAGE_XML, path: LAUNCH.format(code=old)})
+        repository.write({path: LAUNCH.format(code=new)})
+        result = compare(repository)
+        return [line for found in result.subjects for line in sentences(found)], breaking(result)
+
+    return run
+
+
+def test_remappings_that_a_statement_chooses_have_its_condition(review_code):
+    lines, _ = review_code(PLAIN, CHOSEN)
+    node = "node 'arm/drive': "
+    assert [line for line in lines if line.startswith(node)] == [
+        f"{node}remapping cmd_vel robot/cmd_vel (if `os.environ.get('STAMPED')`) added",
+        f"{node}remapping cmd_vel_unstamped cmd_vel -> cmd_vel (unless `os.environ.get('STAMPED')`)",
+    ]
+
+
+@pytest.mark.parametrize(
+    "branches",
+    [
+        "    if os.name:\n        mappings = [('a', 'b')]\n    else:\n        mappings = [('a', 'b')]",
+        "    mappings = [('a', 'b')] if os.environ.get('A') else [('a', 'b')]",
+    ],
+)
+def test_equal_values_of_all_branches_are_no_change(review_code, branches):
+    lines, _ = review_code("    mappings = [('a', 'b')]", branches)
+    assert not [line for line in lines if "remapping" in line]
+
+
+def test_value_that_a_branch_replaces_has_its_condition(review_code):
+    override = "    if os.environ.get('A'):\n        mappings = [('odom', 'robot/odom')]"
+    lines, _ = review_code(PLAIN, f"{PLAIN}\n{override}")
+    assert "node 'arm/drive': remapping cmd_vel_unstamped cmd_vel -> cmd_vel (unless `os.environ.get('A')`)" in lines
+    assert not [line for line in lines if "odom" in line and line.startswith("node")]
+
+
+def test_value_that_a_branch_extends_is_not_known(review_code):
+    lines, _ = review_code(PLAIN, f"{PLAIN}\n    if os.environ.get('A'):\n        mappings += [('a', 'b')]")
+    assert not [line for line in lines if "(if" in line or "(unless" in line]
+
+
+def test_action_of_both_lists_has_no_condition(repository, compare):
+    code = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    first = Node(package='arm', executable='first')
+    second = Node(package='arm', executable='second')
+    nodes = [first]
+CHOICE    return LaunchDescription(nodes)
+"""
+    choice = "    if first:\n        nodes = [first, second]\n"
+    path = "arm/launch/arm.launch.py"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: code.replace("CHOICE", "")})
+    repository.write({path: code.replace("CHOICE", choice)})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert not [line for line in lines if "'arm/first'" in line]
+
+
+@pytest.mark.parametrize(
+    ("reading", "is_breaking"),
+    [
+        ("os.environ['MODEL']", True),
+        ("'MODEL' in os.environ and os.environ['MODEL'] == 'a'", False),
+        ("'MODEL' not in os.environ or os.environ['MODEL'] == 'a'", False),
+        ("'MODEL' in os.environ or os.environ['MODEL'] == 'a'", True),
+        ("os.environ['MODEL'] if 'MODEL' in os.environ else ''", False),
+        ("'' if 'MODEL' in os.environ else os.environ['MODEL']", True),
+        ("os.environ.get('MODEL') and os.environ['MODEL']", False),
+        ("'OTHER' in os.environ and os.environ['MODEL']", True),
+        ("os.environ['ROS_DISTRO']", False),
+    ],
+)
+def test_environment_variable_that_is_only_read_if_it_is_set_is_not_required(review_code, reading, is_breaking):
+    lines, found = review_code(PLAIN, f"{PLAIN}\n    model = {reading}")
+    assert any(line.startswith("use of environment variable") for line in lines)
+    assert [line.partition(" '")[0] for line in found] == ["use of environment variable"] * is_breaking
+
+
+@pytest.mark.parametrize(
+    ("code", "is_breaking"),
+    [
+        ("    if 'MODEL' in os.environ:\n        model = os.environ['MODEL']", False),
+        ("    if 'MODEL' not in os.environ:\n        a = ''\n    else:\n        a = os.environ['MODEL']", False),
+        ("    try:\n        model = os.environ['MODEL']\n    except KeyError:\n        model = ''", False),
+        ("    try:\n        model = os.environ['MODEL']\n    except TypeError:\n        model = ''", True),
+    ],
+)
+def test_environment_variable_in_a_guarded_block_is_not_required(review_code, code, is_breaking):
+    assert bool(review_code(PLAIN, f"{PLAIN}\n{code}")[1]) is is_breaking
+
+
+def test_added_file_lists_actions_of_other_packages_and_event_handlers(repository, compare):
+    text = """from launch import LaunchDescription
+from launch.actions import RegisterEventHandler
+from launch.event_handlers import OnProcessExit
+from others.launching import Starter, Waiter
+
+def generate_launch_description():
+    starter = Starter(package='arm', executable='drive', parameters=[{'rate': 5}])
+    return LaunchDescription([
+        starter,
+        Waiter(target=starter),
+        RegisterEventHandler(OnProcessExit(target_action=starter)),
+    ])
+"""
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    repository.write({"arm/launch/arm.launch.py": text})
+    (line,) = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert line == (
+        "launch file added: action 'Starter' (parameter rate 5, package arm, executable drive), "
+        "action 'Waiter' (target Starter), event handler OnProcessExit of Starter"
+    )
+
+
+def test_changed_code_of_functions_is_reported_with_their_names(repository, compare):
+    code = """from launch import LaunchDescription
+
+def read(name):
+    values = {'a': 1}
+    return values[name]
+
+def write(name):
+    print(name)
+
+def generate_launch_description():
+    return LaunchDescription([])
+"""
+    path = "arm/launch/arm.launch.py"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: code})
+    changed = code.replace("return values[name]", "values.pop('b', None)\n    return dict(values)")
+    repository.write({path: changed.replace("    print(name)", "    open(name, 'w').write(name)")})
+    (line,) = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert line.startswith("other code changed in 'read()', 'write()', such as ")
