@@ -231,8 +231,9 @@ async def test_motion_is_planned_and_executed():
         await bench.until(lambda: bench.panel()["outcome"] == "executed" and len(bench.followed) == 2)
 
 
-async def test_cartesian_path_is_straight_and_scaled():
-    async with open_bench(", MoveIt_Use_Cartesian_Path: true, Velocity_Scaling_Factor: 0.5") as bench:
+async def test_cartesian_path_is_shown_and_scaled():
+    drawn = ", Planned Path: {Show Robot Collision: true}"
+    async with open_bench(f", MoveIt_Use_Cartesian_Path: true, Velocity_Scaling_Factor: 0.5{drawn}") as bench:
         await bench.until(lambda: f"marker {HANDLE}" in bench.contents())
         pose = bench.handle_pose()
         bench.drag(moved(pose, -0.1))
@@ -240,6 +241,7 @@ async def test_cartesian_path_is_straight_and_scaled():
         bench.command("plan")
         await bench.until(lambda: bench.panel()["outcome"] == "planned")
         slow = bench.panel()["duration"]
+        await bench.until(lambda: "Planned Path/palm" in bench.markers())
         bench.display.set_property(("Velocity_Scaling_Factor",), 1.0)
         bench.display.set_property(("Acceleration_Scaling_Factor",), 1.0)
         bench.command("plan")

@@ -28,7 +28,7 @@ export class ObjectsTab implements Tab {
   private readonly sizes = h("div", { class: "planning-grid" });
   private readonly list: HTMLSelectElement;
   private readonly emptyNote = h("p", { class: "note" }, strings.motionPlanning.objects.none);
-  private readonly poseTitle = h("span", { class: "toolbar-label" });
+  private readonly poseTitle = h("span", { class: "toolbar-label pose-title" });
   private readonly poseFields: readonly HTMLInputElement[];
   private readonly link: ChoiceSetting;
   private readonly selectedBox: HTMLElement;
@@ -171,7 +171,7 @@ export class ObjectsTab implements Tab {
       field.disabled = isAttached;
       if (document.activeElement !== field) field.value = formatFixed(i < 3 ? value : value * this.angleScale, i < 3 || this.angleScale === 1 ? 3 : 1);
     });
-    const link = isAttached ? selected.link : this.state.links.includes(this.chosenLink) ? this.chosenLink : (this.state.links.at(-1) ?? "");
+    const link = isAttached ? selected.link : this.state.links.includes(this.chosenLink) ? this.chosenLink : (this.state.links[0] ?? "");
     this.link.show(link, this.state.links.map((name) => [name, name] as const));
     this.attachButton.disabled = isAttached;
     this.detachButton.disabled = !isAttached;

@@ -164,7 +164,7 @@ class MotionPlanningState(DataContent):
         fraction: the share of a Cartesian path that was planned.
         executable: whether there is a plan to execute.
         objects: the objects of the planning scene, sorted by name.
-        links: the links to which objects can be attached.
+        links: the links to which objects can be attached, those with handles first.
         refused: whether move_group did not accept the last change of the planning scene.
     """
 

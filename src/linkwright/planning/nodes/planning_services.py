@@ -104,7 +104,7 @@ class PlanningServices:
                 raise RequestError(error.failure.name, self._explain(error)) from None
             except LinkwrightError as error:  # OMPL is not installed.
                 raise RequestError("FAILURE", render(error.diagnostics[0])) from None
-        self._publish_path(start, trajectory, group.joint_names)
+        self.publish_path(start, trajectory, group.joint_names)
         return start, trajectory, group.joint_names
 
     def _make_request(self, request: Any, group: JointGroup, start: Array) -> PlanRequest:
@@ -150,7 +150,14 @@ class PlanningServices:
             response.planner_interfaces.append(description)
         return response
 
-    def _publish_path(self, start: Array, trajectory: Trajectory, names: tuple[str, ...]) -> None:
+    def publish_path(self, start: Array, trajectory: Trajectory, names: tuple[str, ...]) -> None:
+        """Publish a motion on ``display_planned_path``.
+
+        Args:
+            start: the positions of all joints at the start.
+            trajectory: the motion.
+            names: the joints that it moves.
+        """
         message = get_message("moveit_msgs/msg/DisplayTrajectory")()
         message.model_id = self._robot.robot.name
         message.trajectory_start = self._robot.state_message(start)

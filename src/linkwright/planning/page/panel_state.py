@@ -51,9 +51,17 @@ def make_panel_state(
         fraction=session.fraction,
         executable=session.result is not None,
         objects=describe_objects(scene),
-        links=list(session.robot.link_names) if session.robot is not None else [],
+        links=_list_links(session),
         refused=session.is_refused,
     )
+
+
+def _list_links(session: PlanningSession) -> list[str]:
+    """Return the links of the robot, those with handles first."""
+    if session.robot is None:
+        return []
+    tips = [tip.link for tip in session.group.tips] if session.group is not None else []
+    return list(dict.fromkeys((*tips, *session.robot.link_names)))
 
 
 def _find_missing_part(session: PlanningSession, *, has_state: bool) -> MissingPart:

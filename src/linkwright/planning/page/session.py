@@ -333,7 +333,7 @@ class PlanningSession:
             self._is_stopped = True
             if self.client is not None:
                 self.client.stop()
-        elif self.activity == "idle" and self.client is not None and self.group is not None:
+        elif not self._motion.is_running and self.client is not None and self.group is not None:
             self._motion.request(partial(self._run, command))
 
     async def _run(self, command: MotionCommand) -> None:
