@@ -185,3 +185,25 @@ def test_joint_slider_moves_goal(planning):
     assert find_violations(page, ".planning-panel") == []
     page.get_by_role("tab", name="Joints").press("ArrowLeft")
     until(page, "document.querySelectorAll('.planning-row select')[2].value === ''")
+
+
+def test_scene_object_is_added_moved_and_attached(planning, tmp_path):
+    viewer, page = planning
+    panel = page.locator(".planning-panel")
+    panel.get_by_role("tab", name="Scene Objects").click()
+    panel.get_by_label("Shape", exact=True).select_option("sphere")
+    panel.get_by_role("button", name="Add", exact=True).click()
+    until(page, f"{DRAWN}.markers['Scene Geometry/sphere_1'] === 'sphere'")
+    panel.get_by_label("Pose: Y", exact=True).fill("-0.4")
+    panel.get_by_label("Pose: Y", exact=True).press("Enter")
+    scene = viewer.viewer.displays[1].scene
+    wait_until(lambda: viewer.run(lambda: scene.objects["sphere_1"].pose.position.y) == -0.4, TIMEOUT_S)
+    assert find_violations(page, ".planning-panel") == []
+    panel.get_by_label("Link", exact=True).select_option("tool")
+    panel.get_by_role("button", name="Attach").click()
+    until(page, f"{DRAWN}.markers['Scene Robot holds/sphere_1'] === 'sphere'")
+    page.screenshot(path=tmp_path / "objects.png")
+    panel.get_by_role("button", name="Detach").click()
+    until(page, f"{DRAWN}.markers['Scene Geometry/sphere_1'] === 'sphere'")
+    panel.get_by_role("button", name="Remove").click()
+    until(page, f"{DRAWN}.markers['Scene Geometry/sphere_1'] === undefined")

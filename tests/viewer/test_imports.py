@@ -30,6 +30,7 @@ def test_panels_and_displays_are_imported_on_demand():
     lazy_modules = {f"{panels}.monitor.{name}" for name in ("node_graph", "parameters", "plots", "teleop", "topics")}
     lazy_modules |= {f"{displays}.{name}" for name in ("image", "map", "marker", "point_clouds")}
     assert not opened & {*lazy_modules, f"{panels}.export.feature", "linkwright.sdf.reader", "linkwright.sdf.writer"}
+    assert not [module for module in opened if module.startswith("linkwright.planning")]
     assert watching & lazy_modules == {f"{panels}.monitor.node_graph"}
 
 

@@ -109,10 +109,14 @@ import type {
   WatchTopics,
 } from "./monitor";
 import type {
+  AddSceneObject,
+  AttachSceneObject,
   ChoosePlanner,
   ChooseQueryState,
   CommandMotion,
   MotionPlanningState,
+  MoveSceneObject,
+  RemoveSceneObject,
   SetQueryJoint,
 } from "./motion-planning";
 import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
@@ -362,10 +366,12 @@ export type PageMessage =
   | AcknowledgeTerminal
   | AddDisplay
   | AddEntity
+  | AddSceneObject
   | AddTool
   | AimTeleop
   | AnswerStep
   | ApplyEdit
+  | AttachSceneObject
   | BeginTake
   | CatchUp
   | CenterJoints
@@ -400,6 +406,7 @@ export type PageMessage =
   | MarkerFeedback
   | MeshStatus
   | MoveDisplays
+  | MoveSceneObject
   | NewConfiguration
   | OpenConfiguration
   | OpenEditor
@@ -418,6 +425,7 @@ export type PageMessage =
   | RedoWorld
   | RemoveDisplays
   | RemoveSavedView
+  | RemoveSceneObject
   | RemoveTool
   | RemoveWord
   | RenameDisplay

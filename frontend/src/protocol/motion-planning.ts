@@ -51,6 +51,50 @@ export interface ChoosePlanner {
   type: "choose_planner";
 }
 
+export type ObjectShape = "box" | "sphere" | "cylinder" | "cone";
+
+/** A new object in the planning scene, in front of the robot. */
+export interface AddSceneObject {
+  display: string;
+  name: string;
+  shape: ObjectShape;
+  size: number[];
+  type: "add_scene_object";
+}
+
+/** A new pose of an object in its frame: `position` in meters, and roll, pitch, yaw in rad. */
+export interface MoveSceneObject {
+  display: string;
+  name: string;
+  position: number[];
+  rpy: number[];
+  type: "move_scene_object";
+}
+
+/** The removal of an object from the planning scene. */
+export interface RemoveSceneObject {
+  display: string;
+  name: string;
+  type: "remove_scene_object";
+}
+
+/** The attachment of an object to a link, or its detachment if `link` is empty. */
+export interface AttachSceneObject {
+  display: string;
+  name: string;
+  link: string;
+  type: "attach_scene_object";
+}
+
+/** An object of the planning scene with its pose in `frame`: meters, and roll, pitch, yaw in rad. */
+export interface PlanningObject {
+  name: string;
+  link: string;
+  frame: string;
+  position: number[];
+  rpy: number[];
+}
+
 /** A planning pipeline with the names of its planners. */
 export interface PlanningPipeline {
   id: string;
@@ -100,5 +144,8 @@ export interface MotionPlanningState {
   duration: number;
   fraction: number;
   executable: boolean;
+  objects: PlanningObject[];
+  links: string[];
+  refused: boolean;
   kind: "motion_planning_state";
 }

@@ -6,8 +6,17 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_message, get_service
+from linkwright.page.protocol.motion_planning import (
+    AddSceneObject,
+    AttachSceneObject,
+    MoveSceneObject,
+    RemoveSceneObject,
+)
+from linkwright.planning.page.scene_edits import describe_objects, make_moved_object
+from linkwright.rviz.displays.moveit.scene import Scene
 from tests.planning.arms import SRDF
 from tests.planning.page.bench import HANDLE, open_bench
+from tests.rviz.displays.moveit.arm import make_collision_object, make_pose, make_scene
 
 pytestmark = pytest.mark.extra("arm")
 
@@ -222,8 +231,9 @@ async def test_motion_is_planned_and_executed():
         await bench.until(lambda: bench.panel()["outcome"] == "executed" and len(bench.followed) == 2)
 
 
-async def test_cartesian_path_is_straight_and_scaled():
-    async with open_bench(", MoveIt_Use_Cartesian_Path: true, Velocity_Scaling_Factor: 0.5") as bench:
+async def test_cartesian_path_is_shown_and_scaled():
+    drawn = ", Planned Path: {Show Robot Collision: true}"
+    async with open_bench(f", MoveIt_Use_Cartesian_Path: true, Velocity_Scaling_Factor: 0.5{drawn}") as bench:
         await bench.until(lambda: f"marker {HANDLE}" in bench.contents())
         pose = bench.handle_pose()
         bench.drag(moved(pose, -0.1))
@@ -231,6 +241,7 @@ async def test_cartesian_path_is_straight_and_scaled():
         bench.command("plan")
         await bench.until(lambda: bench.panel()["outcome"] == "planned")
         slow = bench.panel()["duration"]
+        await bench.until(lambda: "Planned Path/palm" in bench.markers())
         bench.display.set_property(("Velocity_Scaling_Factor",), 1.0)
         bench.display.set_property(("Acceleration_Scaling_Factor",), 1.0)
         bench.command("plan")
@@ -282,3 +293,46 @@ async def test_disabled_display_disconnects():
         bench.display.set_checked(True)
         bench.display.on_enabled_changed()
         await bench.until(lambda: bench.panel()["missing"] == "none" and bench.session.client is not None)
+
+
+async def test_objects_are_added_moved_attached_and_removed():
+    async with open_bench() as bench:
+        identity = bench.display.id
+        bench.display.receive(AddSceneObject(identity, "mug", "cylinder", [0.1, 0.03]))
+        bench.display.receive(AddSceneObject(identity, "crate", "box", [0.1, 0.0, 0.1]))  # not a valid size
+        await bench.until(lambda: bench.panel()["objects"])
+        await bench.until(lambda: bench.markers().get("Scene Geometry/mug", {}).get("shape") == "cylinder")
+        bench.display.receive(MoveSceneObject(identity, "mug", [0.1, 0.2, 0.3], [0.0, 0.0, 1.0]))
+        await bench.until(lambda: bench.panel()["objects"][0]["position"] == pytest.approx([0.1, 0.2, 0.3]))
+        assert bench.panel()["objects"][0]["rpy"] == pytest.approx([0.0, 0.0, 1.0])
+        assert "tool" in bench.panel()["links"]
+        bench.display.receive(AttachSceneObject(identity, "mug", "tool"))
+        await bench.until(lambda: bench.panel()["objects"][0]["link"] == "tool")
+        attached = bench.move_group._monitor.scene.attached["mug"]
+        assert list(attached.touch_links) == ["flange", "left_finger", "right_finger", "tool"]
+        bench.display.receive(AttachSceneObject(identity, "mug", ""))
+        await bench.until(lambda: bench.panel()["objects"][0]["link"] == "")
+        bench.display.receive(AttachSceneObject(identity, "mug", "tool"))
+        await bench.until(lambda: bench.panel()["objects"][0]["link"] == "tool")
+        bench.display.receive(RemoveSceneObject(identity, "mug"))
+        await bench.until(lambda: not bench.panel()["objects"])
+        assert bench.move_group._monitor.scene.objects == {}
+        assert not bench.panel()["refused"]
+
+
+async def test_refused_object_is_reported():
+    async with open_bench() as bench:
+        bench.display.receive(AddSceneObject(bench.display.id, "palm", "sphere", [0.1]))  # the name of a link
+        await bench.until(lambda: bench.panel()["refused"])
+        assert bench.panel()["objects"] == []
+
+
+def test_pose_of_object_includes_that_of_its_shape():
+    scene = Scene()
+    lamp = make_collision_object("lamp", object_pose=make_pose(x=1.0))
+    lamp.primitive_poses = [make_pose(z=0.5)]
+    scene.apply(make_scene(lamp))
+    (description,) = describe_objects(scene)
+    assert description.position == [1.0, 0.0, 0.5]
+    moved = make_moved_object(MoveSceneObject("", "lamp", [0.0, 0.0, 2.0], [0.0, 0.0, 0.0]), scene)
+    assert moved.world.collision_objects[0].pose.position.z == 1.5

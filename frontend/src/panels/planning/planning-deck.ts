@@ -4,6 +4,7 @@ import type { MotionPlanningState } from "../../protocol";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { JointsTab } from "./joints-tab";
+import { ObjectsTab } from "./objects-tab";
 import { PlanningTab } from "./planning-tab";
 import type { Tab } from "./tab";
 
@@ -18,7 +19,7 @@ export class PlanningDeck {
   private state: MotionPlanningState | null = null;
 
   constructor(session: Session) {
-    this.tabs = { planning: new PlanningTab(session.motionPlanning), joints: new JointsTab(session.motionPlanning, session.angleUnits) };
+    this.tabs = { planning: new PlanningTab(session.motionPlanning), joints: new JointsTab(session.motionPlanning, session.angleUnits), objects: new ObjectsTab(session.motionPlanning, session.angleUnits) };
     const bar = h("div", { class: "segmented planning-tabs", role: "tablist", aria: { label: strings.motionPlanning.tabsLabel } });
     const pages = this.names.map((name) => {
       const { element } = this.tabs[name];

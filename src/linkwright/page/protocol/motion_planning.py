@@ -57,6 +57,58 @@ class ChoosePlanner(PageMessage):
     planner: str
 
 
+ObjectShape = Literal["box", "sphere", "cylinder", "cone"]
+
+
+class AddSceneObject(PageMessage):
+    """A new object in the planning scene, in front of the robot.
+
+    `size` is x, y, z of a box, the radius of a sphere, or the height and the radius of a cylinder or cone, in meters.
+    """
+
+    display: str
+    name: str
+    shape: ObjectShape
+    size: list[float]
+
+
+class MoveSceneObject(PageMessage):
+    """A new pose of an object in its frame: `position` in meters, and roll, pitch, yaw in rad."""
+
+    display: str
+    name: str
+    position: list[float]
+    rpy: list[float]
+
+
+class RemoveSceneObject(PageMessage):
+    """The removal of an object from the planning scene."""
+
+    display: str
+    name: str
+
+
+class AttachSceneObject(PageMessage):
+    """The attachment of an object to a link, or its detachment if `link` is empty."""
+
+    display: str
+    name: str
+    link: str
+
+
+class PlanningObject(Record):
+    """An object of the planning scene with its pose in `frame`: meters, and roll, pitch, yaw in rad.
+
+    `link` is the link to which it is attached, or empty.
+    """
+
+    name: str
+    link: str
+    frame: str
+    position: list[float]
+    rpy: list[float]
+
+
 class PlanningPipeline(Record):
     """A planning pipeline with the names of its planners."""
 
@@ -111,6 +163,9 @@ class MotionPlanningState(DataContent):
         duration: the duration of the planned motion, s.
         fraction: the share of a Cartesian path that was planned.
         executable: whether there is a plan to execute.
+        objects: the objects of the planning scene, sorted by name.
+        links: the links to which objects can be attached, those with handles first.
+        refused: whether move_group did not accept the last change of the planning scene.
     """
 
     missing: MissingPart
@@ -133,3 +188,6 @@ class MotionPlanningState(DataContent):
     duration: float
     fraction: float
     executable: bool
+    objects: list[PlanningObject]
+    links: list[str]
+    refused: bool

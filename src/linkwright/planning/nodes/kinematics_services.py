@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -41,12 +41,19 @@ class KinematicsServices:
         robot: the robot.
         monitor: the planning scene.
         ik_timeout: returns the time in s for the inverse kinematics of a group.
+        publish_path: called with the start, the group and the trajectory of each Cartesian path.
     """
 
     def __init__(
-        self, node: Node, robot: RobotContext, monitor: SceneMonitor, ik_timeout: Callable[[str], float]
+        self,
+        node: Node,
+        robot: RobotContext,
+        monitor: SceneMonitor,
+        ik_timeout: Callable[[str], float],
+        publish_path: Callable[[Array, Iterable[tuple[JointGroup, Trajectory]]], None],
     ) -> None:
         self._node, self._robot, self._monitor, self._ik_timeout = node, robot, monitor, ik_timeout
+        self._publish_path = publish_path
         self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
         for name, kind, callback in (
             ("compute_fk", "GetPositionFK", self._compute_fk),
@@ -163,6 +170,7 @@ class KinematicsServices:
         response.start_state = self._robot.state_message(start)
         response.solution = trajectory_message(group.joint_names, trajectory, self._robot.frame)
         response.error_code.val = self._error_codes.SUCCESS
+        self._publish_path(start, [(group, trajectory)])
         return response
 
     def _follow_waypoints(self, request: Any, start: Array) -> tuple[JointGroup, Trajectory, float]:

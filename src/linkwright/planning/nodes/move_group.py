@@ -67,8 +67,8 @@ class MoveGroup(SingleNode):
         self._execution = TrajectoryExecution(node, controllers)
         publishes_states = parameters.get("publish_state_updates", parameters.get("publish_planning_scene", True))
         self._monitor = SceneMonitor(node, self._robot, publishes_states=bool(publishes_states))
-        KinematicsServices(node, self._robot, self._monitor, self._ik_timeout)
         self._planning = PlanningServices(node, self._robot, self._monitor, Pipelines(parameters), self._default_scale)
+        KinematicsServices(node, self._robot, self._monitor, self._ik_timeout, self._planning.publish_path)
         self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
         group = ReentrantCallbackGroup()
         for name, kind, callback in (

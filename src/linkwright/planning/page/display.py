@@ -32,6 +32,7 @@ from linkwright.planning.page.properties import (
     read_workspace,
     request_spec,
 )
+from linkwright.planning.page.scene_edits import SCENE_REQUESTS, SceneRequest, make_differences
 from linkwright.planning.page.semantic_source import SemanticSource
 from linkwright.planning.page.session import QUERIES, PlanningSession
 from linkwright.planning.semantics import Semantics, read_semantics
@@ -189,8 +190,17 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         elif isinstance(message, ChoosePlanner):
             self._session.pipeline, self._session.planner = message.pipeline, message.planner
             self._schedule_update()
+        elif isinstance(message, SCENE_REQUESTS):
+            self._edit_scene(message)
         else:
             super().receive(message)
+
+    def _edit_scene(self, request: SceneRequest) -> None:
+        if self.robot is not None:
+            arms = {tip.group for group in self._groups_by_name.values() for tip in group.tips}
+            joints = {name for arm in arms for name in self._groups_by_name[arm].joint_names}
+            for difference in make_differences(request, self.scene, self.robot, joints):
+                self._session.apply_scene(difference)
 
     def _drag(self, feedback: MarkerFeedback) -> None:
         group = self._session.group
@@ -309,7 +319,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._send_handles()
         self._report_planning()
         groups, settings = tuple(self._groups_by_name), read_settings(self.properties)
-        state = make_panel_state(self._session, groups, settings, has_state=self._has_state)
+        state = make_panel_state(self._session, self.scene, groups, settings, has_state=self._has_state)
         if state != self._sent_state:
             self._sent_state = state
             self.send(state, key=_PANEL_KEY)

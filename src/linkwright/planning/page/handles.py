@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, sqrt
+from math import sqrt
 from typing import Any
 
 from linkwright.geometry.single import Transform
@@ -14,7 +14,6 @@ from linkwright.planning.page.groups import Tip
 from linkwright.planning.page.move_group import make_pose
 from linkwright.rviz.displays.moveit.robot import JointPositions, PosableRobot
 from linkwright.rviz.markers.interactive import read_interactive_marker
-from linkwright.urdf import Robot, parent_joints
 
 _SHARE_OF_REACH = 0.2
 _MIN_SIZE_M, _MAX_SIZE_M = 0.05, 1.0
@@ -44,17 +43,7 @@ def choose_size(robot: PosableRobot, tip: Tip, size: float) -> float:
     """
     if size > 0.0:
         return size
-    return min(max(_SHARE_OF_REACH * _compute_reach(robot.description, tip.link), _MIN_SIZE_M), _MAX_SIZE_M)
-
-
-def _compute_reach(robot: Robot, link: str) -> float:
-    """Return the length of the path along the joints from the root to a link, in meters."""
-    parents = parent_joints(robot)
-    reach = 0.0
-    while link in parents:
-        reach += hypot(*parents[link].origin.xyz)
-        link = parents[link].parent
-    return reach
+    return min(max(_SHARE_OF_REACH * robot.compute_reach(tip.link), _MIN_SIZE_M), _MAX_SIZE_M)
 
 
 def make_handle(

@@ -30,6 +30,7 @@ _SERVICES = {
     "check_state_validity": "GetStateValidity",
     "compute_cartesian_path": "GetCartesianPath",
     "query_planner_interface": "QueryPlannerInterfaces",
+    "apply_planning_scene": "ApplyPlanningScene",
 }
 _ACTIONS = {"move_action": "MoveGroup", "execute_trajectory": "ExecuteTrajectory"}
 
@@ -155,6 +156,11 @@ class MoveGroupClient:
             bodies = ((contact.body_type_1, contact.contact_body_1), (contact.body_type_2, contact.contact_body_2))
             links |= {body for kind, body in bodies if kind == _ROBOT_LINK}
         return bool(response.valid), links
+
+    async def apply_scene(self, difference: Any) -> bool:
+        """Apply a difference to the planning scene, and return whether move_group accepted all of it."""
+        response = await self._call("apply_planning_scene", scene=difference)
+        return response is not None and bool(response.success)
 
     async def plan(self, motion: MotionRequest) -> PlanResult:
         """Plan a motion without executing it."""

@@ -8,16 +8,19 @@ from linkwright.page.protocol.motion_planning import (
     PlannedJoint,
     PlanningSettings,
 )
+from linkwright.planning.page.scene_edits import describe_objects
 from linkwright.planning.page.session import PlanningSession
+from linkwright.rviz.displays.moveit.scene import Scene
 
 
 def make_panel_state(
-    session: PlanningSession, groups: tuple[str, ...], settings: PlanningSettings, *, has_state: bool
+    session: PlanningSession, scene: Scene, groups: tuple[str, ...], settings: PlanningSettings, *, has_state: bool
 ) -> MotionPlanningState:
     """Return the content for the panel.
 
     Args:
         session: the planning session.
+        scene: the planning scene.
         groups: the names of the planning groups.
         settings: the settings of requests.
         has_state: whether the state of the robot is known.
@@ -47,7 +50,18 @@ def make_panel_state(
         duration=session.duration_s,
         fraction=session.fraction,
         executable=session.result is not None,
+        objects=describe_objects(scene),
+        links=_list_links(session),
+        refused=session.is_refused,
     )
+
+
+def _list_links(session: PlanningSession) -> list[str]:
+    """Return the links of the robot, those with handles first."""
+    if session.robot is None:
+        return []
+    tips = [tip.link for tip in session.group.tips] if session.group is not None else []
+    return list(dict.fromkeys((*tips, *session.robot.link_names)))
 
 
 def _find_missing_part(session: PlanningSession, *, has_state: bool) -> MissingPart:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+from collections import deque
 from collections.abc import Callable, Mapping
 from functools import partial
 from random import Random
+from typing import Any
 
 from linkwright.geometry.single import Transform, interpolate
 from linkwright.page.protocol.motion_planning import (
@@ -85,6 +87,7 @@ class PlanningSession:
         planning_time_s: the time that the last planning took.
         duration_s: the duration of the last planned motion.
         fraction: the share of the last Cartesian path that was planned.
+        is_refused: whether move_group did not accept the last change of the planning scene.
     """
 
     def __init__(
@@ -100,7 +103,9 @@ class PlanningSession:
         self._random = random or Random()  # noqa: S311  # not for secrets
         self._ik = LatestJob(self._end_drags)
         self._released: set[str] = set()
-        self._sampling, self._motion, self._listing = LatestJob(), LatestJob(), LatestJob()
+        self._sampling, self._motion, self._listing, self._editing = (LatestJob() for _ in range(4))
+        self._differences: deque[Any] = deque()
+        self.is_refused = False
         self._validity: dict[QueryName, LatestJob] = {"start": LatestJob(), "goal": LatestJob()}
         self.robot: PosableRobot | None = None
         self.current = JointPositions()
@@ -128,11 +133,12 @@ class PlanningSession:
 
     def disconnect(self) -> None:
         """Cancel all jobs, and close the clients."""
-        for job in (self._ik, self._sampling, self._motion, self._listing, *self._validity.values()):
+        for job in (self._ik, self._sampling, self._motion, self._listing, self._editing, *self._validity.values()):
             job.cancel()
         if self.client is not None:
             self.client.close()
             self.client = None
+        self._differences.clear()
         self.pipelines, self.activity = [], "idle"
 
     def set_group(self, group: PlanningGroup | None) -> None:
@@ -307,6 +313,18 @@ class PlanningSession:
                 best, reached = values, ratio
         return best
 
+    # --- planning scene ----------------------------------------------------------------------------------------
+
+    def apply_scene(self, difference: Any) -> None:
+        """Apply a difference to the planning scene of move_group, after the differences before it."""
+        self._differences.append(difference)
+        self._editing.request(self._apply_differences)
+
+    async def _apply_differences(self) -> None:
+        while self._differences and self.client is not None:
+            self.is_refused = not await self.client.apply_scene(self._differences.popleft())
+            self._on_changed()
+
     # --- motions -----------------------------------------------------------------------------------------------
 
     def command(self, command: MotionCommand) -> None:
@@ -315,7 +333,7 @@ class PlanningSession:
             self._is_stopped = True
             if self.client is not None:
                 self.client.stop()
-        elif self.activity == "idle" and self.client is not None and self.group is not None:
+        elif not self._motion.is_running and self.client is not None and self.group is not None:
             self._motion.request(partial(self._run, command))
 
     async def _run(self, command: MotionCommand) -> None:

@@ -18,7 +18,7 @@ from linkwright.page.protocol.robot import LinkScene, Shape
 from linkwright.rviz.displays.moveit.solids import Color
 from linkwright.rviz.markers.shapes import make_marker, pose_to_values
 from linkwright.rviz.robot import SceneBuilder
-from linkwright.urdf import Robot
+from linkwright.urdf import Robot, parent_joints
 
 _DEFAULT_COLOR: Color = (1.0, 0.0, 0.0, 1.0)
 """The color of shapes for which the description has no color, as in RViz."""
@@ -86,6 +86,7 @@ class PosableRobot:
         description: the robot's description.
         root: the name of the root link, which is also the name of its frame.
         joint_names: the joints with a position of their own, parents before children.
+        link_names: the links that are connected to the root, parents before children.
         shaped_links: the names of the links with shapes, in alphabetical order.
         problems: the problems with mesh and texture files, by link name.
     """
@@ -98,6 +99,7 @@ class PosableRobot:
         self.shaped_links = sorted(link.name for link in self._links.values() if link.visuals or link.collisions)
         self._tree = KinematicTree(robot)
         self.joint_names = tuple(self._tree.joint_names)
+        self.link_names = tuple(self._tree.link_names)
         self._independent_joints = frozenset(self.joint_names)
         self._joint_names = frozenset(robot.joints)
         self._children_by_parent: dict[str, list[str]] = {}
@@ -124,6 +126,15 @@ class PosableRobot:
                 links.add(link)
                 pending += self._children_by_parent.get(link, ())
         return links
+
+    def compute_reach(self, link: str) -> float:
+        """Return the length of the path along the joints from the root to a link, in meters."""
+        parents = parent_joints(self.description)
+        reach = 0.0
+        while link in parents:
+            reach += math.hypot(*parents[link].origin.xyz)
+            link = parents[link].parent
+        return reach
 
     def set_state(self, state: JointPositions, message: Any) -> list[str]:
         """Copy the joint positions and the root's pose of a moveit_msgs/msg/RobotState to a state.

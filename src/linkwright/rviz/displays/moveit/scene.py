@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -122,6 +122,16 @@ class Scene:
         octomap = message.world.octomap
         if octomap.octomap.id or octomap.octomap.data:
             self._apply_octomap(octomap)
+
+    @property
+    def objects(self) -> Mapping[str, SceneObject]:
+        """The objects around the robot by ID."""
+        return self._objects
+
+    @property
+    def attached(self) -> Mapping[str, tuple[str, SceneObject]]:
+        """The attached objects by ID, each with the link to which it is attached."""
+        return self._attached
 
     def attach(self, messages: Iterable[Any]) -> None:
         """Attach and detach objects, as moveit_msgs/msg/AttachedCollisionObject messages request."""
