@@ -231,6 +231,19 @@ async def test_motion_is_planned_and_executed():
         await bench.until(lambda: bench.panel()["outcome"] == "executed" and len(bench.followed) == 2)
 
 
+async def test_stop_cancels_execution():
+    async with open_bench() as bench:
+        bench.is_slow = True
+        bench.choose("goal", "ready")
+        bench.command("plan_and_execute")
+        await bench.until(lambda: bench.panel()["activity"] == "executing" and bench.followed)
+        bench.command("plan")  # ignored while a motion is executed
+        bench.command("stop")
+        await bench.until(lambda: bench.panel()["activity"] == "idle")
+        assert bench.panel()["outcome"] == "stopped"
+        assert not bench.panel()["executable"]
+
+
 async def test_cartesian_path_is_shown_and_scaled():
     drawn = ", Planned Path: {Show Robot Collision: true}"
     async with open_bench(f", MoveIt_Use_Cartesian_Path: true, Velocity_Scaling_Factor: 0.5{drawn}") as bench:
