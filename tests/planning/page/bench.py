@@ -8,6 +8,8 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 from linkwright.graph import ActionServer
+from linkwright.graph.actions.goal import CancelResponse
+from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_action, get_message
 from linkwright.nodes import NodeOptions
 from linkwright.page.protocol.markers import MarkerFeedback
@@ -31,12 +33,15 @@ class PlanningBench:
         self.display = world.display("MotionPlanning")
         self.session = self.display._session
         self.followed: list[Any] = []
+        self.is_slow = False
         node = world.graph.create_node("controllers")
         self._server = ActionServer(
             node,
             "control_msgs/action/FollowJointTrajectory",
             "arm_controller/follow_joint_trajectory",
             self._follow,
+            callback_group=ReentrantCallbackGroup(),
+            cancel_callback=lambda _goal: CancelResponse.ACCEPT,
         )
         self._states = node.create_publisher("sensor_msgs/msg/JointState", "joint_states", 10)
         self.move_group: MoveGroup | None = None
@@ -89,9 +94,14 @@ class PlanningBench:
     def command(self, command: str) -> None:
         self.display.receive(CommandMotion(self.display.id, command))
 
-    def _follow(self, goal: Any) -> Any:
+    async def _follow(self, goal: Any) -> Any:
         trajectory = goal.request.trajectory
         self.followed.append(trajectory)
+        while self.is_slow:
+            await asyncio.sleep(0.01)
+            if goal.is_cancel_requested:
+                goal.canceled()
+                return get_action("control_msgs/action/FollowJointTrajectory").Result()
         self.publish_joints(**dict(zip(trajectory.joint_names, trajectory.points[-1].positions, strict=True)))
         goal.succeed()
         return get_action("control_msgs/action/FollowJointTrajectory").Result()

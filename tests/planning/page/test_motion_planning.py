@@ -182,6 +182,21 @@ async def test_dragged_handle_moves_goal_with_inverse_kinematics():
         assert (bench.panel()["goal"], bench.panel()["unreachable"]) == ("", [])
 
 
+async def test_dragged_start_is_planned_from_and_not_executed_elsewhere():
+    async with open_bench(GHOSTS) as bench:
+        start = "start tool"
+        await bench.until(lambda: f"marker {start}" in bench.contents())
+        bench.choose("goal", "ready")
+        pose = moved(bench.handle_pose(start), -0.1)
+        bench.drag(pose, handle=start)
+        await bench.until(lambda: bench.handle_pose(start) == pytest.approx(pose, abs=1e-3))
+        assert (bench.panel()["start"], bench.panel()["goal"]) == ("", "ready")
+        bench.command("plan_and_execute")
+        await bench.until(lambda: bench.panel()["outcome"] == "execution_failed")
+        assert bench.panel()["error"] == "CONTROL_FAILED"  # the robot is not at the start
+        assert bench.followed == []
+
+
 async def test_unreachable_pose_keeps_goal_and_is_reported():
     async with open_bench() as bench:
         await bench.until(lambda: f"marker {HANDLE}" in bench.contents())
@@ -229,6 +244,19 @@ async def test_motion_is_planned_and_executed():
         await bench.until(lambda: bench.session.current.values.get("lift") == pytest.approx(0.4, abs=1e-3))
         bench.command("plan_and_execute")
         await bench.until(lambda: bench.panel()["outcome"] == "executed" and len(bench.followed) == 2)
+
+
+async def test_stop_cancels_execution():
+    async with open_bench() as bench:
+        bench.is_slow = True
+        bench.choose("goal", "ready")
+        bench.command("plan_and_execute")
+        await bench.until(lambda: bench.panel()["activity"] == "executing" and bench.followed)
+        bench.command("plan")  # ignored while a motion is executed
+        bench.command("stop")
+        await bench.until(lambda: bench.panel()["activity"] == "idle")
+        assert bench.panel()["outcome"] == "stopped"
+        assert not bench.panel()["executable"]
 
 
 async def test_cartesian_path_is_shown_and_scaled():
