@@ -109,6 +109,7 @@ import type {
   WatchTopics,
 } from "./monitor";
 import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
+import type { OverlayFigure } from "./overlays";
 import type { CellGrid, CloudPoints, PointFields, RequestPoint } from "./points";
 import type { RequestedPanels } from "./requested-panels";
 import type {
@@ -245,6 +246,7 @@ export * from "./markers";
 export * from "./message";
 export * from "./monitor";
 export * from "./navigation";
+export * from "./overlays";
 export * from "./points";
 export * from "./requested-panels";
 export * from "./robot";
@@ -485,6 +487,7 @@ export type DataContent =
   | InteractiveMarkerShape
   | MarkersChanged
   | OccupancyMap
+  | OverlayFigure
   | ParticleMarks
   | PointMarks
   | PolygonLine

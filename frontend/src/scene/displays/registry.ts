@@ -12,6 +12,7 @@ import { GridDrawing } from "./grid";
 import { GridMapDrawing } from "./grid-map";
 import { InteractiveMarkersDrawing } from "./interactive-markers";
 import { MarkersDrawing } from "./markers";
+import { OverlayDrawing } from "./overlay";
 import { ParticleCloudDrawing } from "./particle-cloud";
 import { PathDrawing } from "./path";
 import { PointStampedDrawing } from "./point-stamped";
@@ -64,5 +65,6 @@ export const DRAWINGS: ReadonlyMap<string, DrawingClass> = new Map<string, Drawi
   ["vision_msgs_rviz_plugins/Detection3D", BoxesDrawing],
   ["vision_msgs_rviz_plugins/Detection3DArray", BoxesDrawing],
   ["linkwright/Detections", DetectionImageDrawing],
+  ["rviz_2d_overlay_plugins/TextOverlay", OverlayDrawing],
   ["linkwright/World", WorldDrawing],
 ]);
