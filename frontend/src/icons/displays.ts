@@ -64,6 +64,7 @@ export const DISPLAY_ICON_PATHS = {
   Plotter2D: "M2 2v12h12M4 11l3-4 3 2 4-5.5",
   OverlayImage: "M1.8 3h12.4v10H1.8zM1.8 11l3.4-3.6 2.6 2.7 2.6-3.2 3.8 4.1M5 5.7v.01",
   AccelerationMeter: "M3.8 12.9a6 6 0 118.4 0M8 8.6l2.6-3.2M8 8.6v.01",
+  AerialMap: "M1.8 3.8L6 2.2l4 1.6 4.2-1.6v10L10 13.8l-4-1.6-4.2 1.6zM6 2.2v10M10 3.8v10",
 } as const;
 
 export type DisplayIcon = keyof typeof DISPLAY_ICON_PATHS;

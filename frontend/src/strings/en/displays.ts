@@ -55,6 +55,7 @@ const about: Readonly<Record<DisplayIcon, string>> = {
   PoseWithUuidStamped: "Autoware: a pose with its ID, as axes.",
   PoseHistory: "The last poses of a topic, as a line.",
   ColoredPoseWithCovarianceHistory: "The last poses of a topic, as a line colored by values.",
+  AerialMap: "Aerial images around a position of GNSS, from a local folder.",
   Imu: "The orientation and the acceleration of an IMU.",
   TextOverlay: "A text over the scene.",
   StringStampedOverlayDisplay: "Autoware: a text over the scene.",

@@ -56,6 +56,7 @@ export const displays: typeof english = {
   PoseWithUuidStamped: "Autoware：用坐标轴显示带 ID 的位姿。",
   PoseHistory: "把话题最近的位姿连成线。",
   ColoredPoseWithCovarianceHistory: "把话题最近的位姿连成线，按数值着色。",
+  AerialMap: "GNSS 位置周围的航拍图像，来自本地文件夹。",
   Imu: "IMU 的姿态和加速度。",
   TextOverlay: "场景上方的文字。",
   StringStampedOverlayDisplay: "Autoware：场景上方的文字。",
