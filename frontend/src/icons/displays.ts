@@ -62,6 +62,7 @@ export const DISPLAY_ICON_PATHS = {
   PieChartOverlay: "M8 2a6 6 0 100 12A6 6 0 008 2M8 8V2M8 8l4.3 4.2",
   PieChart: "M8 2a6 6 0 100 12A6 6 0 008 2M8 8V2M8 8l4.3 4.2",
   Plotter2D: "M2 2v12h12M4 11l3-4 3 2 4-5.5",
+  OverlayText: "M1.8 3h12.4v10H1.8zM4.5 6h7M4.5 8.5h7M4.5 11h4",
   OverlayImage: "M1.8 3h12.4v10H1.8zM1.8 11l3.4-3.6 2.6 2.7 2.6-3.2 3.8 4.1M5 5.7v.01",
   AccelerationMeter: "M3.8 12.9a6 6 0 118.4 0M8 8.6l2.6-3.2M8 8.6v.01",
   AerialMap: "M1.8 3.8L6 2.2l4 1.6 4.2-1.6v10L10 13.8l-4-1.6-4.2 1.6zM6 2.2v10M10 3.8v10",

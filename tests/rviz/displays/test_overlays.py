@@ -89,6 +89,19 @@ async def test_text_has_the_place_and_the_colors_of_its_message_or_of_the_displa
         assert over.figure is None
 
 
+async def test_text_of_jsk_has_a_place_from_the_corner():
+    kind = get_message("jsk_rviz_plugins/msg/OverlayText")
+    async with overlay("jsk_rviz_plugin/OverlayText", kind) as over:
+        await over.publish(kind(left=3, top=4, width=100, height=20, text_size=9.0, text="ready"))
+        assert over.texts == ["ready"]
+        assert [over.figure[name] for name in ("horizontal", "vertical", "x", "y")] == ["left", "top", 3, 4]
+        over.set("Overtake Position Properties", True)
+        over.set("left", 50)
+        assert [over.figure[name] for name in ("x", "y", "width")] == [50, 0, 128]
+        over.set("Align Bottom", True)
+        assert over.figure["shapes"][0]["is_above"]
+
+
 async def test_stamped_text_fades_after_an_empty_one():
     kind = get_message("autoware_internal_debug_msgs/msg/StringStamped")
     cls = "autoware_string_stamped_rviz_plugin/StringStampedOverlayDisplay"

@@ -63,6 +63,7 @@ const about: Readonly<Record<DisplayIcon, string>> = {
   PieChartOverlay: "A number as a gauge over the scene.",
   PieChart: "A number as a gauge over the scene.",
   Plotter2D: "The last numbers of a topic as a plot over the scene.",
+  OverlayText: "A text over the scene.",
   OverlayImage: "An image over the scene.",
   AccelerationMeter: "Autoware: an acceleration as a meter over the scene.",
 };

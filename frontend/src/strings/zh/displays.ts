@@ -64,6 +64,7 @@ export const displays: typeof english = {
   PieChartOverlay: "把一个数画成场景上方的仪表。",
   PieChart: "把一个数画成场景上方的仪表。",
   Plotter2D: "把话题最近的数画成场景上方的曲线。",
+  OverlayText: "场景上方的文字。",
   OverlayImage: "场景上方的图像。",
   AccelerationMeter: "Autoware：把加速度画成场景上方的表盘。",
   },

@@ -25,14 +25,14 @@ def _opacity(name: str, default: float, description: str) -> PropertySpec:
     return PropertySpec(name, "float", default, description, minimum=0.0, maximum=1.0)
 
 
-def _color_specs() -> Schema:
+def _color_specs(text_size: int) -> Schema:
     return (
         PropertySpec("foreground color", "color", "#19fff0", "Color of the lines and texts."),
         _opacity("foreground alpha", 0.7, "Opacity of the lines and texts."),
         PropertySpec("background color", "color", "#000000", "Color of the background."),
         # RViz spells the name of this property so.
         _opacity("backround alpha", 0.0, "Opacity of the background."),
-        PropertySpec("text size", "int", 12, "Size of the texts, in points.", minimum=1),
+        PropertySpec("text size", "int", text_size, "Size of the texts, in points.", minimum=1),
         PropertySpec("show caption", "bool", True, "Write the name of the display below."),
         PropertySpec("auto color change", "bool", False, "Change the color when the value comes near the maximum."),
         PropertySpec("max color", "color", "#ff0000", "Color of the maximum.", when=(("auto color change",), True)),
@@ -88,7 +88,7 @@ class PieChartDisplay(_NumberDisplay):
         _pixels("size", 128, "Width and height", 1),
         _pixels("left", 128, "Distance from the left edge"),
         _pixels("top", 128, "Distance from the upper edge"),
-        *_color_specs(),
+        *_color_specs(14),
         _opacity("foreground alpha 2", 0.4, "Opacity of the guide below the ring."),
         PropertySpec("max value", "float", 1.0, "The value that fills the ring."),
         PropertySpec("min value", "float", 0.0, "The value that leaves the ring empty."),
@@ -149,7 +149,7 @@ class PlotterDisplay(_NumberDisplay):
         PropertySpec("auto scale", "bool", True, "Take the range of the values that are kept."),
         PropertySpec("max value", "float", 1.0, "The value at the upper edge.", when=(("auto scale",), False)),
         PropertySpec("min value", "float", -1.0, "The value at the lower edge.", when=(("auto scale",), False)),
-        *_color_specs(),
+        *_color_specs(12),
         PropertySpec("linewidth", "int", 1, "Width of the line, in pixels.", minimum=1),
         PropertySpec("border", "bool", True, "Draw a border around the plot."),
     )

@@ -39,11 +39,24 @@ def _opacity(name: str, description: str) -> PropertySpec:
     return PropertySpec(name, "float", 0.8, description, minimum=0.0, maximum=1.0)
 
 
-_TEXT_SCHEMA: Schema = (
+_SWITCHES: Schema = (
     PropertySpec(_POSITION, "bool", False, "Use the place and the size below instead of those of the messages."),
     PropertySpec(_FOREGROUND, "bool", False, "Use the color below instead of that of the messages."),
     PropertySpec(_BACKGROUND, "bool", False, "Use the background below instead of that of the messages."),
     PropertySpec("Align Bottom", "bool", False, "Write the text at the lower edge."),
+)
+
+_SIZE_AND_COLORS: Schema = (
+    _pixels("width", 128, "Width", minimum=0, when=((_POSITION,), True)),
+    _pixels("height", 128, "Height", minimum=0, when=((_POSITION,), True)),
+    PropertySpec("text size", "int", 12, "Size of the text, in points.", minimum=0, when=((_POSITION,), True)),
+    PropertySpec("Foreground Color", "color", "#19fff0", "Color of the text.", when=((_FOREGROUND,), True)),
+    _opacity("Foreground Alpha", "Opacity of the text."),
+    PropertySpec("Background Color", "color", "#000000", "Color of the background.", when=((_BACKGROUND,), True)),
+    _opacity("Background Alpha", "Opacity of the background."),
+)
+
+_ALIGNED_PLACE: Schema = (
     _pixels("hor_dist", 0, "Distance from the side, or from the middle", when=((_POSITION,), True)),
     _pixels("ver_dist", 0, "Distance from the upper or lower edge, or from the middle", when=((_POSITION,), True)),
     PropertySpec(
@@ -62,13 +75,6 @@ _TEXT_SCHEMA: Schema = (
         options=tuple(_VERTICAL),
         when=((_POSITION,), True),
     ),
-    _pixels("width", 128, "Width", minimum=0, when=((_POSITION,), True)),
-    _pixels("height", 128, "Height", minimum=0, when=((_POSITION,), True)),
-    PropertySpec("text size", "int", 12, "Size of the text, in points.", minimum=0, when=((_POSITION,), True)),
-    PropertySpec("Foreground Color", "color", "#19fff0", "Color of the text.", when=((_FOREGROUND,), True)),
-    _opacity("Foreground Alpha", "Opacity of the text."),
-    PropertySpec("Background Color", "color", "#000000", "Color of the background.", when=((_BACKGROUND,), True)),
-    _opacity("Background Alpha", "Opacity of the background."),
 )
 
 
@@ -77,7 +83,7 @@ class TextOverlayDisplay(OverlayDisplay):
 
     CLASS = "rviz_2d_overlay_plugins/TextOverlay"
     MESSAGE = "rviz_2d_overlay_msgs/msg/OverlayText"
-    SCHEMA: ClassVar[Schema] = (topic_spec(description=MESSAGE), *_TEXT_SCHEMA)
+    SCHEMA: ClassVar[Schema] = (topic_spec(description=MESSAGE), *_SWITCHES, *_ALIGNED_PLACE, *_SIZE_AND_COLORS)
 
     def figure(self, message: Any) -> Figure | None:
         """Return the text on its background."""
@@ -93,18 +99,21 @@ class TextOverlayDisplay(OverlayDisplay):
 
     def _place(self, message: Any) -> tuple[Figure, float]:
         """Return an empty figure, and the height of its text."""
-        number, text = self.properties.number, self.properties.text
+        number = self.properties.number
         if self.properties.flag(_POSITION):
-            figure = Figure(
-                number("hor_dist"),
-                number("ver_dist"),
-                number("width"),
-                number("height"),
-                _HORIZONTAL[text("hor_alignment")],
-                _VERTICAL[text("ver_alignment")],
-            )
+            figure = self.own_place(number("width"), number("height"))
             return figure, number("text size") * POINTS_TO_PIXELS
-        figure = Figure(
+        return self.place_of(message), message.text_size * POINTS_TO_PIXELS
+
+    def own_place(self, width: float, height: float) -> Figure:
+        """Return an empty figure at the place of the properties."""
+        number, text = self.properties.number, self.properties.text
+        sides = _HORIZONTAL[text("hor_alignment")], _VERTICAL[text("ver_alignment")]
+        return Figure(number("hor_dist"), number("ver_dist"), width, height, *sides)
+
+    def place_of(self, message: Any) -> Figure:
+        """Return an empty figure at the place of a message."""
+        return Figure(
             message.horizontal_distance,
             message.vertical_distance,
             message.width,
@@ -112,12 +121,33 @@ class TextOverlayDisplay(OverlayDisplay):
             _SIDES.get(message.horizontal_alignment, "left"),
             _HEIGHTS.get(message.vertical_alignment, "top"),
         )
-        return figure, message.text_size * POINTS_TO_PIXELS
 
     def _color(self, written: Any, switch: str, name: str) -> Rgba:
         if self.properties.flag(switch):
             return read_color(self.properties.text(f"{name} Color"), self.properties.number(f"{name} Alpha"))
         return written.r, written.g, written.b, written.a
+
+
+class JskOverlayTextDisplay(TextOverlayDisplay):
+    """A display of texts of an older package, whose places are distances from the upper left corner."""
+
+    CLASS = "jsk_rviz_plugin/OverlayText"
+    MESSAGE = "jsk_rviz_plugins/msg/OverlayText"
+    SCHEMA: ClassVar[Schema] = (
+        topic_spec(description=MESSAGE),
+        *_SWITCHES,
+        _pixels("top", 0, "Distance from the upper edge", minimum=0, when=((_POSITION,), True)),
+        _pixels("left", 0, "Distance from the left edge", minimum=0, when=((_POSITION,), True)),
+        *_SIZE_AND_COLORS,
+    )
+
+    def own_place(self, width: float, height: float) -> Figure:
+        """Return an empty figure at the place of the properties."""
+        return Figure(self.properties.number("left"), self.properties.number("top"), width, height)
+
+    def place_of(self, message: Any) -> Figure:
+        """Return an empty figure at the place of a message."""
+        return Figure(message.left, message.top, message.width, message.height)
 
 
 _FADE_PERIOD_S = 0.1
