@@ -92,9 +92,9 @@ export function createIcon(name: IconName, className = ""): SVGSVGElement {
   return svg;
 }
 
-/** Returns the icon of a display class, such as `rviz_default_plugins/Grid`. */
+/** Returns the icon of a display class, such as `rviz_default_plugins/Grid` or `rviz_plugins::PoseHistory`. */
 export function iconNameOf(cls: string): IconName {
-  const name = cls.split("/").pop() ?? cls;
+  const name = cls.split(/\/|::/).pop() ?? cls;
   return name in DISPLAY_ICON_PATHS ? (name as DisplayIcon) : "unknown";
 }
 

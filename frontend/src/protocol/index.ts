@@ -120,6 +120,7 @@ import type {
   SetQueryJoint,
 } from "./motion-planning";
 import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
+import type { OverlayFigure } from "./overlays";
 import type { CellGrid, CloudPoints, PointFields, RequestPoint } from "./points";
 import type { RequestedPanels } from "./requested-panels";
 import type {
@@ -257,6 +258,7 @@ export * from "./message";
 export * from "./monitor";
 export * from "./motion-planning";
 export * from "./navigation";
+export * from "./overlays";
 export * from "./points";
 export * from "./requested-panels";
 export * from "./robot";
@@ -506,6 +508,7 @@ export type DataContent =
   | MarkersChanged
   | MotionPlanningState
   | OccupancyMap
+  | OverlayFigure
   | ParticleMarks
   | PointMarks
   | PolygonLine

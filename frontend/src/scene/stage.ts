@@ -64,7 +64,7 @@ export class Stage {
   readonly uncoveredArea: UncoveredArea;
 
   constructor(
-    container: HTMLElement,
+    private readonly container: HTMLElement,
     private readonly session: Session,
     private readonly panels: PanelHost,
     private readonly theme: ThemeState,
@@ -217,12 +217,12 @@ export class Stage {
       const Drawing = DRAWINGS.get(display.drawing);
       if (existing) this.onPropertiesChanged(existing.display);
       else if (Drawing && display.isSupported) {
-        const { session, meshes, panels } = this;
+        const { session, meshes, panels, container: overScene } = this;
         const invalidate = (): void => this.loop.invalidate();
         const showWithFrame = (show: () => void): void => this.loop.schedule(show);
         const getCamera = (): Camera => this.viewport.camera;
         const canAffordStudio = (): boolean => this.viewport.canAffordStudio;
-        const drawing = new Drawing({ display, session, meshes, panels, invalidate, showWithFrame, getCamera, canAffordStudio });
+        const drawing = new Drawing({ display, session, meshes, panels, overScene, invalidate, showWithFrame, getCamera, canAffordStudio });
         this.drawings.set(display.id, { display, drawing, pacing: new Pacing(invalidate) });
         this.viewport.scene.add(drawing.root);
         drawing.onInteractionChanged?.(this.interaction);

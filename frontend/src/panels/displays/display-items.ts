@@ -1,4 +1,4 @@
-import { iconNameOf } from "../../icons";
+import { iconNameOf, type IconName } from "../../icons";
 import type { PropertyValue, StatusRow } from "../../protocol";
 import { DRAWINGS } from "../../scene/displays/registry";
 import type { DisplayState, ShownLevel } from "../../state/displays";
@@ -54,7 +54,7 @@ function createDisplayItem(
     kind: "bool",
     value: display.isChecked,
     description: describeDisplay(display, hasDrawing),
-    icon: hasDrawing ? iconNameOf(display.drawing) : "unknown",
+    icon: hasDrawing ? chooseIcon(display) : "unknown",
     isStrong: true,
     isMultiSelectable: true,
     isMuted: !hasDrawing || !display.isEnabled,
@@ -99,9 +99,15 @@ export function formatStatusRow({ name, text }: StatusRow): string {
   return `${name}: ${text}`;
 }
 
+/** Returns the icon of a display's class, or of the class that draws it. */
+function chooseIcon({ cls, drawing }: DisplayState): IconName {
+  const icon = iconNameOf(cls);
+  return icon === "unknown" ? iconNameOf(drawing) : icon;
+}
+
 /** Returns a description of a display, in a sentence or two. */
 export function describeDisplay(display: DisplayState, hasDrawing = isDrawn(display)): string {
-  const name = display.cls.split("/").pop() ?? "";
+  const name = shortNameOf(display.cls);
   const summary = (strings.displays.about as Readonly<Record<string, string | undefined>>)[name];
   const details = hasDrawing ? (summary ?? strings.tree.enabledHelp) : strings.tree.notDrawnHelp;
   return `${display.cls}. ${details}`;

@@ -14,6 +14,8 @@ export interface DrawingContext {
   readonly meshes: MeshLibrary;
   /** The host for the display's own panels. */
   readonly panels: PanelHost;
+  /** The element over the canvas for what drawings show in front of the scene. */
+  readonly overScene: HTMLElement;
   /** Requests a frame. */
   readonly invalidate: () => void;
   /** Shows something outside the scene in step with the next frame, see `FrameLoop.schedule`. */

@@ -13,6 +13,7 @@ import { GridMapDrawing } from "./grid-map";
 import { InteractiveMarkersDrawing } from "./interactive-markers";
 import { MarkersDrawing } from "./markers";
 import { MotionPlanningDrawing } from "./motion-planning";
+import { OverlayDrawing } from "./overlay";
 import { ParticleCloudDrawing } from "./particle-cloud";
 import { PathDrawing } from "./path";
 import { PointStampedDrawing } from "./point-stamped";
@@ -66,5 +67,6 @@ export const DRAWINGS: ReadonlyMap<string, DrawingClass> = new Map<string, Drawi
   ["vision_msgs_rviz_plugins/Detection3DArray", BoxesDrawing],
   ["moveit_rviz_plugin/MotionPlanning", MotionPlanningDrawing],
   ["linkwright/Detections", DetectionImageDrawing],
+  ["rviz_2d_overlay_plugins/TextOverlay", OverlayDrawing],
   ["linkwright/World", WorldDrawing],
 ]);

@@ -21,5 +21,5 @@ export function controllerOf(cls: string): ViewController {
 
 /** Returns the name without the package: XYOrbit for `rviz_default_plugins/XYOrbit`. */
 export function shortNameOf(cls: string): string {
-  return cls.slice(cls.lastIndexOf("/") + 1);
+  return cls.slice(Math.max(cls.lastIndexOf("/"), cls.lastIndexOf(":")) + 1);
 }

@@ -10,9 +10,8 @@ import numpy as np
 from linkwright.geometry.arrays import Array, quaternion_multiply, rotate
 from linkwright.geometry.single import IDENTITY
 from linkwright.rviz.config.schema import FIXED_FRAME, PropertySpec, topic_spec
-from linkwright.rviz.displays.base.display import Pose
-from linkwright.rviz.displays.marker import MessageMarkersDisplay
 from linkwright.rviz.displays.message_drawing import Marker, make_marker, make_pose, read_color
+from linkwright.rviz.displays.placed_markers import PlacedMarkersDisplay
 
 _BOX, _AXES, _ACCELERATION = "Box properties", "Axes properties", "Acceleration properties"
 _FIXED_ORIENTATION = "fixed_frame_orientation"
@@ -24,12 +23,11 @@ _UNKNOWN_ORIENTATION = -1.0
 """The first element of the covariance, if a sensor does not measure its orientation."""
 
 
-class ImuDisplay(MessageMarkersDisplay):
+class ImuDisplay(PlacedMarkersDisplay):
     """A display of an IMU's orientation as a box and as axes, and of its acceleration as an arrow."""
 
     CLASS = "rviz_imu_plugin/Imu"
     MESSAGE = "sensor_msgs/msg/Imu"
-    TRANSFORMED = True
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
         PropertySpec(
@@ -75,26 +73,6 @@ class ImuDisplay(MessageMarkersDisplay):
             ),
         ),
     )
-    _frame_pose: Pose = np.array(IDENTITY)
-
-    def process_message(self, message: Any, pose: Pose | None) -> None:
-        """Draw a message at the pose that its frame had."""
-        assert pose is not None
-        self._frame_pose = pose
-        super().process_message(message, pose)
-
-    def on_transforms_received(self) -> None:
-        """Draw the queued messages that can be placed now."""
-        self._show_placeable()
-        super().on_transforms_received()
-
-    def on_frames_changed(self) -> None:
-        """Draw the last message in the new Fixed Frame."""
-        if self._check_fixed_frame_change():
-            self._waiting.clear()
-            self.reset()
-            self.show_again()
-        self._show_placeable()
 
     def markers(self, message: Any) -> Iterator[Any]:
         """Return the box, the axes and the arrow that are switched on."""
@@ -106,9 +84,9 @@ class ImuDisplay(MessageMarkersDisplay):
         length = float(np.linalg.norm(orientation))
         is_unknown = message.orientation_covariance[0] == _UNKNOWN_ORIENTATION or length == 0.0
         orientation = np.array(IDENTITY[3:]) if is_unknown else orientation / length
-        frame = np.array(IDENTITY[3:]) if self.properties.flag(_FIXED_ORIENTATION) else self._frame_pose[3:]
+        frame = np.array(IDENTITY[3:]) if self.properties.flag(_FIXED_ORIENTATION) else self.frame_pose[3:]
         turned = quaternion_multiply(frame, orientation)
-        origin = self._frame_pose[:3]
+        origin = self.frame_pose[:3]
         is_derotated = self.properties.flag(_ACCELERATION, "Derotate acceleration")
         arrow = rotate(turned if is_derotated else frame, acceleration)
         for marker in (

@@ -1,0 +1,1 @@
+"""The displays that draw over the scene: texts, gauges, plots and images."""
