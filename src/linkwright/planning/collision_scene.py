@@ -107,6 +107,7 @@ class CollisionScene:
         objects: the objects in the world and those that are attached to links.
         allowed: the pairs that may collide.
         margins: the margins of links, by link name.
+        range_m: the distance in m up to which `clearances` measures.
     """
 
     def __init__(
@@ -116,6 +117,7 @@ class CollisionScene:
         objects: Iterable[SceneObject],
         allowed: AllowedCollisions,
         margins: Mapping[str, LinkMargin] | None = None,
+        range_m: float = 0.0,
     ) -> None:
         objects = tuple(objects)
         parts = [
@@ -131,7 +133,11 @@ class CollisionScene:
                 _add_object(spec, scene_object, (margins or {}).get(scene_object.link, _NO_MARGIN))
             for first, second in _allowed_pairs(parts, objects, allowed):
                 spec.add_exclude(bodyname1=first, bodyname2=second)
+            for geom in spec.geoms:  # MuJoCo adds the margins of two geoms.
+                geom.margin += range_m / 2.0
 
+        self._range = range_m
+        self._world = {item.name for item in objects if not item.link}
         self._model = RobotModel(robot, shapes, complete)
         mujoco_model = self._model.mujoco_model
         names_by_body = {mujoco_model.body(body).id: name for body, name in parts}
@@ -140,7 +146,25 @@ class CollisionScene:
     def is_free(self, positions: Array) -> bool:
         """Return whether nothing collides at the positions of all joints."""
         self._move(positions)
-        return not self._model.data.ncon
+        return not self._model.data.ncon if not self._range else min(self._measure()) > 0.0
+
+    def clearances(self, positions: Array) -> tuple[float, float]:
+        """Return the distances in m of the robot to itself and to objects of the world, at most the range.
+
+        A distance is 0 if there is a collision.
+        """
+        self._move(positions)
+        return self._measure()
+
+    def _measure(self) -> tuple[float, float]:
+        to_self = to_world = self._range
+        for contact in self._model.data.contact:
+            distance = max(0.0, float(contact.dist - contact.includemargin) + self._range)
+            if self._world.isdisjoint(self._names_by_geom[geom] for geom in contact.geom):
+                to_self = min(to_self, distance)
+            else:
+                to_world = min(to_world, distance)
+        return to_self, to_world
 
     def contacts(self, positions: Array) -> list[Contact]:
         """Return what collides at the positions of all joints."""
@@ -148,7 +172,9 @@ class CollisionScene:
         contacts = []
         for contact in self._model.data.contact:
             first, second = (self._names_by_geom[geom] for geom in contact.geom)
-            depth = float(contact.includemargin - contact.dist)
+            depth = float(contact.includemargin - contact.dist) - self._range
+            if depth < 0.0:
+                continue
             contacts.append(Contact(first, second, contact.pos.copy(), contact.frame[:3].copy(), depth))
         return contacts
 
