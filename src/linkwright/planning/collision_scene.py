@@ -79,6 +79,8 @@ class LinkMargin:
 
 
 _NO_MARGIN = LinkMargin()
+_TOUCH_M = 1e-5
+"""The distance in m up to which a path may collide with an object between two checked configurations."""
 _WORLD = 2
 """The bit of MuJoCo's contype and conaffinity for contacts with objects of the world; 1 is for those of the robot."""
 
@@ -107,7 +109,7 @@ class CollisionScene:
         objects: the objects in the world and those that are attached to links.
         allowed: the pairs that may collide.
         margins: the margins of links, by link name.
-        range_m: the distance in m up to which `clearances` measures.
+        range_m: the distance in m up to which `clearances` measures, and which `is_clear` requires.
     """
 
     def __init__(
@@ -117,7 +119,7 @@ class CollisionScene:
         objects: Iterable[SceneObject],
         allowed: AllowedCollisions,
         margins: Mapping[str, LinkMargin] | None = None,
-        range_m: float = 0.0,
+        range_m: float = _TOUCH_M,
     ) -> None:
         objects = tuple(objects)
         parts = [
@@ -146,7 +148,13 @@ class CollisionScene:
     def is_free(self, positions: Array) -> bool:
         """Return whether nothing collides at the positions of all joints."""
         self._move(positions)
-        return not self._model.data.ncon if not self._range else min(self._measure()) > 0.0
+        data = self._model.data
+        return not data.ncon or all(contact.dist >= contact.includemargin - self._range for contact in data.contact)
+
+    def is_clear(self, positions: Array) -> bool:
+        """Return whether nothing collides and everything is farther apart than the range."""
+        self._move(positions)
+        return not self._model.data.ncon
 
     def clearances(self, positions: Array) -> tuple[float, float]:
         """Return the distances in m of the robot to itself and to objects of the world, at most the range.
