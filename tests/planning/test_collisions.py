@@ -112,3 +112,16 @@ class TestMargins:
         scaled = scale_shape(PlacedShape(corners, IDENTITY), 2.0).shape
         assert isinstance(scaled, np.ndarray)
         np.testing.assert_allclose((scaled.min(axis=0), scaled.max(axis=0)), ((0.0, -1.0, -2.0), (4.0, 3.0, 2.0)))
+
+
+@pytest.mark.parametrize(("gap", "expected"), [(0.01, 0.01), (0.03, 0.03), (0.06, 0.05), (-0.01, 0.0)])
+@pytest.mark.parametrize("padding", [0.0, 0.02])
+def test_clearances_are_measured_within_the_range(gap: float, expected: float, padding: float) -> None:
+    near = ball("ball", 0.1, at=pose(0.14 + padding + gap, 0.0, 0.35))
+    margins = {"upper_arm": LinkMargin(padding)}
+    checked = CollisionScene(arm().robot, arm().shapes, [near], arm().allowed(), margins, range_m=0.05)
+    to_self, to_world = checked.clearances(arm().positions())
+    assert to_world == pytest.approx(expected, abs=1e-5)
+    assert to_self == pytest.approx(0.05, abs=0.05)
+    assert checked.is_free(arm().positions()) is (gap > 0.0)
+    assert len(checked.contacts(arm().positions())) == (gap < 0.0)

@@ -116,6 +116,33 @@ class TestSampling:
             MotionPlanner(arm().model, scene()).time_path(plan_request, arm().positions(), corners)
 
 
+class TestTouches:
+    """A path of the straight arm that turns about its base beside a ball."""
+
+    def time_path(self, gap: float, end: float) -> None:
+        start = {"lift": pi / 2}
+        arm().model.move(arm().positions(**start))
+        # The wrist is the thickest part there: a cylinder of 0.03 m about the forearm's axis.
+        wrist = arm().model.link_pose("wrist")
+        ball = SceneObject(
+            "ball",
+            (PlacedShape(Sphere(0.05), IDENTITY),),
+            np.array((wrist[0] + 0.02, 0.0, wrist[2] - 0.03 - 0.05 - gap, 0, 0, 0, 1.0)),
+        )
+        path = np.array(([0.3, pi / 2, 0, 0, 0, 0], [end, pi / 2, 0, 0, 0, 0]))
+        plan_request = request(start=start)
+        planner = MotionPlanner(arm().model, scene(ball))
+        planner.time_path(plan_request, arm().positions(**start, pan=0.3), path)
+
+    @pytest.mark.parametrize(("gap", "end"), [(1e-4, -0.3), (5e-6, 0.0)])
+    def test_distant_objects_and_touches_at_the_end_are_accepted(self, gap: float, end: float) -> None:
+        self.time_path(gap, end)
+
+    def test_touch_on_the_way_is_refused(self) -> None:
+        with pytest.raises(PlanError):
+            self.time_path(5e-6, -0.3)
+
+
 class TestFailures:
     def failure(self, plan_request: PlanRequest, *objects: SceneObject) -> PlanError:
         with pytest.raises(PlanError) as error:

@@ -79,6 +79,8 @@ class LinkMargin:
 
 
 _NO_MARGIN = LinkMargin()
+_TOUCH_M = 1e-5
+"""The distance in m up to which a path may collide with an object between two checked configurations."""
 _WORLD = 2
 """The bit of MuJoCo's contype and conaffinity for contacts with objects of the world; 1 is for those of the robot."""
 
@@ -107,6 +109,7 @@ class CollisionScene:
         objects: the objects in the world and those that are attached to links.
         allowed: the pairs that may collide.
         margins: the margins of links, by link name.
+        range_m: the distance in m up to which `clearances` measures, and which `is_clear` requires.
     """
 
     def __init__(
@@ -116,6 +119,7 @@ class CollisionScene:
         objects: Iterable[SceneObject],
         allowed: AllowedCollisions,
         margins: Mapping[str, LinkMargin] | None = None,
+        range_m: float = _TOUCH_M,
     ) -> None:
         objects = tuple(objects)
         parts = [
@@ -131,7 +135,11 @@ class CollisionScene:
                 _add_object(spec, scene_object, (margins or {}).get(scene_object.link, _NO_MARGIN))
             for first, second in _allowed_pairs(parts, objects, allowed):
                 spec.add_exclude(bodyname1=first, bodyname2=second)
+            for geom in spec.geoms:  # MuJoCo adds the margins of two geoms.
+                geom.margin += range_m / 2.0
 
+        self._range = range_m
+        self._world = {item.name for item in objects if not item.link}
         self._model = RobotModel(robot, shapes, complete)
         mujoco_model = self._model.mujoco_model
         names_by_body = {mujoco_model.body(body).id: name for body, name in parts}
@@ -140,14 +148,37 @@ class CollisionScene:
     def is_free(self, positions: Array) -> bool:
         """Return whether nothing collides at the positions of all joints."""
         self._move(positions)
+        data = self._model.data
+        return not data.ncon or all(contact.dist >= contact.includemargin - self._range for contact in data.contact)
+
+    def is_clear(self, positions: Array) -> bool:
+        """Return whether nothing collides and everything is farther apart than the range."""
+        self._move(positions)
         return not self._model.data.ncon
 
     def colliding_pairs(self, positions: Array) -> set[frozenset[str]]:
         """Return the pairs of links or objects that collide at the positions of all joints."""
         self._move(positions)
-        geoms = self._model.data.contact.geom
-        names = self._names_by_geom
-        return {frozenset((names[first], names[second])) for first, second in geoms.tolist()}
+        contact, names = self._model.data.contact, self._names_by_geom
+        colliding = contact.geom[contact.dist < contact.includemargin - self._range]
+        return {frozenset((names[first], names[second])) for first, second in colliding.tolist()}
+
+    def clearances(self, positions: Array) -> tuple[float, float]:
+        """Return the distances in m of the robot to itself and to objects of the world, at most the range.
+
+        A distance is 0 if there is a collision.
+        """
+        return self._measure()
+
+    def _measure(self) -> tuple[float, float]:
+        to_self = to_world = self._range
+        for contact in self._model.data.contact:
+            distance = max(0.0, float(contact.dist - contact.includemargin) + self._range)
+            if self._world.isdisjoint(self._names_by_geom[geom] for geom in contact.geom):
+                to_self = min(to_self, distance)
+            else:
+                to_world = min(to_world, distance)
+        return to_self, to_world
 
     def contacts(self, positions: Array) -> list[Contact]:
         """Return what collides at the positions of all joints."""
@@ -155,7 +186,9 @@ class CollisionScene:
         contacts = []
         for contact in self._model.data.contact:
             first, second = (self._names_by_geom[geom] for geom in contact.geom)
-            depth = float(contact.includemargin - contact.dist)
+            depth = float(contact.includemargin - contact.dist) - self._range
+            if depth < 0.0:
+                continue
             contacts.append(Contact(first, second, contact.pos.copy(), contact.frame[:3].copy(), depth))
         return contacts
 

@@ -227,17 +227,30 @@ class MotionPlanner:
             )
             if request.max_link_speeds:
                 trajectory = speed_limits.slow(trajectory)
-            positions = start.copy()
-            for configuration in self._motion(trajectory):
-                positions[indexes] = configuration
-                if not self._is_valid(request, positions):
-                    break
-            else:
+            if all(self._is_motion_free(request, start, indexes, motion) for motion in self._motions(trajectory)):
                 return trajectory
         return None
 
+    def _is_motion_free(self, request: PlanRequest, start: Array, indexes: Any, motion: Array) -> bool:
+        """Return whether configurations are valid, and touch nothing except at the start and at the end.
+
+        A motion that only touches an object may collide with it between two configurations.
+        """
+        positions, was_clear, touches = start.copy(), False, False
+        for configuration in motion:
+            positions[indexes] = configuration
+            if self._scene.is_clear(positions):
+                if touches or not self._fulfills_constraint(request, positions):
+                    return False
+                was_clear = True
+            elif not self._is_valid(request, positions):
+                return False
+            else:
+                touches = was_clear
+        return True
+
     @staticmethod
-    def _motion(trajectory: Trajectory) -> Array:
+    def _motions(trajectory: Trajectory) -> tuple[Array, Array]:
         """Return the configurations between the points of a trajectory, in steps that are fine enough to check.
 
         Controllers execute splines between the points, and other programs draw straight lines.
@@ -246,7 +259,7 @@ class MotionPlanner:
         count = max(1, int(np.ceil(float(pieces.max(initial=0.0)) / _CHECK_STEP)))
         splits = [np.linspace(*ends, count, endpoint=False) for ends in pairwise(trajectory.times)]
         executed = trajectory.interpolate(np.concatenate((*splits, trajectory.times[-1:])))[0]
-        return np.concatenate((executed, subdivide(trajectory.positions, _CHECK_STEP)))
+        return executed, subdivide(trajectory.positions, _CHECK_STEP)
 
     def _checked_start(self, request: PlanRequest, indexes: Any) -> Array:
         """Return the start, moved to the bounds of the group's joints."""
@@ -335,8 +348,11 @@ class MotionPlanner:
         return path[:, indexes] if fraction == 1.0 else None
 
     def _is_valid(self, request: PlanRequest, positions: Array) -> bool:
+        return self._scene.is_free(positions) and self._fulfills_constraint(request, positions)
+
+    def _fulfills_constraint(self, request: PlanRequest, positions: Array) -> bool:
         constraint = request.path_constraint
-        return self._scene.is_free(positions) and (constraint is None or constraint.is_met(self._model, positions))
+        return constraint is None or constraint.is_met(self._model, positions)
 
 
 def _explain_turns(group: JointGroup, start: Array, goals: Sequence[Array], indexes: Any) -> str:

@@ -53,7 +53,14 @@ WELL_KNOWN_PACKAGES = frozenset(
             "ros_ign_bridge",
             "nav2_bringup",
         ),
-        *("robot_localization", "teleop_twist_joy", "teleop_twist_keyboard", "joy", "moveit_ros_move_group"),
+        *(
+            "robot_localization",
+            "teleop_twist_joy",
+            "teleop_twist_keyboard",
+            "joy",
+            "moveit_ros_move_group",
+            "moveit_servo",
+        ),
         *("diff_drive_controller", "joint_state_broadcaster", "launch_ros", "image_transport"),
         *("rqt_controller_manager", "rqt_joint_trajectory_controller", "rqt_publisher", "rqt_service_caller"),
     }

@@ -43,6 +43,7 @@ class RobotContext:
         urdf: the text of the robot description.
         srdf: the text of the semantic description.
         parameters: the parameters of the node by name, among them those of MoveIt's ``joint_limits.yaml``.
+        joint_topic: the topic of the joint states.
 
     Attributes:
         model: the robot, moved by whoever uses it on the event loop.
@@ -57,7 +58,9 @@ class RobotContext:
         LinkwrightError: the URDF or the SRDF has errors.
     """
 
-    def __init__(self, node: Node, urdf: str, srdf: str, parameters: Mapping[str, Any]) -> None:
+    def __init__(
+        self, node: Node, urdf: str, srdf: str, parameters: Mapping[str, Any], *, joint_topic: str = "joint_states"
+    ) -> None:
         self.robot = load(urdf)
         self.semantics = read_semantics(srdf)
         self.model = RobotModel(self.robot)
@@ -78,7 +81,7 @@ class RobotContext:
         }
         self._transforms = TransformBuffer()
         TransformListener(self._transforms, node)
-        node.create_subscription("sensor_msgs/msg/JointState", "joint_states", self._on_joint_state, 10)
+        node.create_subscription("sensor_msgs/msg/JointState", joint_topic, self._on_joint_state, 10)
 
     def allowed_collisions(self) -> AllowedCollisions:
         """Return the pairs of links that may collide by the SRDF."""
