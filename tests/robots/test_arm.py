@@ -25,7 +25,7 @@ from linkwright.planning.groups import resolve_groups
 from linkwright.planning.inverse_kinematics import ChainSolver
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.semantics import Semantics, read_semantics
-from linkwright.planning.setup.collision_pairs import find_collision_pairs
+from linkwright.planning.setup.collision_pairs import ClosedGripper, find_collision_pairs
 from linkwright.planning.setup.link_surfaces import LinkSurfaces
 from linkwright.planning.shapes import robot_shapes
 from linkwright.testing import SteppedSimulation
@@ -68,8 +68,9 @@ def test_description_has_no_findings(simulator: str) -> None:
 def test_disabled_collisions_are_those_of_arm_init() -> None:
     description, meshes = robot(), MeshLibrary(PackageFinder(), Path())
     shapes, _ = robot_shapes(description, meshes)
-    grippers = [frozenset(("hand_link", "left_finger_link", "right_finger_link"))]
-    pairs = find_collision_pairs(description, shapes, LinkSurfaces(description, meshes), grippers)
+    closed = np.zeros(len(RobotModel(description).joint_names))
+    gripper = ClosedGripper(frozenset(("hand_link", "left_finger_link", "right_finger_link")), closed)
+    pairs = find_collision_pairs(description, shapes, LinkSurfaces(description, meshes), [gripper])
     assert dict(semantics().disabled_collisions) == {frozenset(pair): reason for pair, reason in pairs.disabled.items()}
 
 
