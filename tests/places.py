@@ -14,6 +14,7 @@ VOICE_PACKAGE = REPOSITORY / "robots" / "my_robot_voice"
 CONTROL_PACKAGE = REPOSITORY / "robots" / "my_robot_control"
 NAVIGATION_PACKAGE = REPOSITORY / "robots" / "my_robot_navigation"
 VISION_PACKAGE = REPOSITORY / "robots" / "my_robot_vision"
+ARM_PACKAGE = REPOSITORY / "robots" / "my_robot_arm"
 PUBLISHED = (REPOSITORY.parent / "shared" / "tutorial" / "my_robot_description").resolve()
 """The folder of the tutorial's published package, which is not part of the repository and may not exist."""
 TUTORIAL_PACKAGES = [PACKAGE, *([PUBLISHED] if PUBLISHED.is_dir() else [])]

@@ -309,6 +309,27 @@ def line_track(steps: int = 120) -> list[Model | Include]:
     ]
 
 
+def table() -> list[Model | Include]:
+    """Return a table before the robot, with three cubes to grasp and a tray to put them on."""
+    top = box("top", (0.5, 1.1, 0.3), Pose(0.75, 0, 0.15), WOOD)
+    tray = box("tray", (0.2, 0.2, 0.004), Pose(0.62, 0.3, 0.302), WHITE, solid=False)
+    inertia = 0.06 * 0.04**2 / 6
+    cubes = [
+        Model(
+            f"{word}_cube",
+            [box("cube", (0.04, 0.04, 0.04), Pose(), color)],
+            Pose(x, y, 0.32, yaw),
+            Body(0.06, (inertia,) * 3),
+        )
+        for word, color, x, y, yaw in (
+            ("red", RED, 0.6, 0.12, 0.3),
+            ("green", GREEN, 0.65, -0.02, -0.5),
+            ("blue", BLUE, 0.58, -0.15, 0.1),
+        )
+    ]
+    return [Model("table", [top, tray]), *cubes]
+
+
 WORLDS = {
     "empty": list,
     "obstacles": obstacles,
@@ -316,6 +337,7 @@ WORLDS = {
     "maze": maze,
     "playground": playground,
     "line_track": line_track,
+    "table": table,
 }
 
 

@@ -11,7 +11,7 @@ import pytest
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.packages import PackageFinder
 from linkwright.planning.collision_scene import AllowedCollisions, CollisionScene
-from linkwright.planning.setup.collision_pairs import CollisionPairs, find_collision_pairs, link_pair
+from linkwright.planning.setup.collision_pairs import ClosedGripper, CollisionPairs, find_collision_pairs, link_pair
 from linkwright.planning.setup.link_surfaces import LinkSurfaces, do_triangles_intersect
 from linkwright.planning.setup.position_sampler import PositionSampler
 from linkwright.planning.shapes import robot_shapes
@@ -22,7 +22,7 @@ from tests.planning.setup.robots import chain, joint, link, robot, two_arms
 pytestmark = pytest.mark.extra("arm")
 
 
-def find(description: Robot, *grippers: frozenset[str], samples: int = 2000) -> CollisionPairs:
+def find(description: Robot, *grippers: ClosedGripper, samples: int = 2000) -> CollisionPairs:
     meshes = MeshLibrary(PackageFinder(), Path())
     shapes, errors = robot_shapes(description, meshes)
     assert not errors
@@ -85,7 +85,18 @@ def test_links_that_touch_by_default_but_seldom_are_checked() -> None:
     text += link("b", 0.1) + joint("second", "base", "b", kind="prismatic", axis="1 0 0")
     text += link("c", 0.001) + joint("third", "base", "c", kind="prismatic", axis="1 0 0", xyz="0 3 0")
     assert ("a", "b") not in find(robot(text)).disabled
-    assert find(robot(text), frozenset(("a", "b"))).disabled["a", "b"] == "Default"
+    assert find(robot(text), ClosedGripper(frozenset(("a", "b")), np.zeros(3))).disabled["a", "b"] == "Default"
+
+
+def test_fingers_that_touch_when_closed_are_disabled() -> None:
+    text = link("base", 0.01)
+    for name, sign in (("a", 1), ("b", -1)):
+        text += link(name, 0.1) + joint(
+            name, "base", name, kind="prismatic", axis=f"0 {sign} 0", xyz=f"0 {sign * 0.05} 0.3", limits=(0.0, 0.5)
+        )
+    assert ("a", "b") not in find(robot(text)).disabled
+    gripper = ClosedGripper(frozenset(("a", "b")), np.zeros(2))
+    assert find(robot(text), gripper).disabled["a", "b"] == "Default"
 
 
 def test_links_that_nearly_always_touch_are_disabled() -> None:

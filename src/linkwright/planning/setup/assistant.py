@@ -11,11 +11,13 @@ from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.packages import PackageFinder
 from linkwright.packages.creation.request import Maintainer
 from linkwright.packages.manifest import enclosing_package
-from linkwright.planning.setup.collision_pairs import find_collision_pairs
+from linkwright.planning.setup.collision_pairs import ClosedGripper, find_collision_pairs
+from linkwright.planning.setup.gripper_states import open_and_close
 from linkwright.planning.setup.groups import GroupRequests, find_groups
 from linkwright.planning.setup.link_surfaces import LinkSurfaces
 from linkwright.planning.setup.named_states import choose_states, start_positions
 from linkwright.planning.setup.package import DescriptionSource, PackageSettings
+from linkwright.planning.setup.position_sampler import PositionSampler
 from linkwright.planning.setup.srdf import choose_virtual_joint
 from linkwright.planning.shapes import robot_shapes
 from linkwright.urdf import Robot
@@ -65,7 +67,12 @@ def set_up(
     shapes, errors = robot_shapes(robot, meshes)
     if errors:
         raise errors[0]
-    grippers = [group.moved_links(robot) for group in groups.groups if group.is_end_effector]
+    sampler = PositionSampler(robot)
+    grippers = [
+        ClosedGripper(group.moved_links(robot), open_and_close(robot, shapes, group, sampler, sampler.default())[1])
+        for group in groups.groups
+        if group.is_end_effector
+    ]
     pairs = find_collision_pairs(robot, shapes, LinkSurfaces(robot, meshes), grippers)
     states = choose_states(robot, shapes, groups, pairs)
     controlled = joints_with_hardware(robot)

@@ -12,6 +12,7 @@ from itertools import combinations
 
 import numpy as np
 
+from linkwright.geometry.arrays import Array
 from linkwright.planning.collision_scene import AllowedCollisions, CollisionScene
 from linkwright.planning.robot_model import Shapes
 from linkwright.planning.setup.bodies import find_bodies
@@ -32,6 +33,8 @@ _ALWAYS_SHARE = 0.95
 _DEFAULT_SHARE = 0.5
 _SAMPLES = 10_000
 _MESH_SAMPLES = 20
+_TOUCH_M = 0.001
+"""The distance in m at which links of a closed gripper touch."""
 _SEED = 0
 
 
@@ -52,6 +55,19 @@ class CollisionPairs:
         return AllowedCollisions({frozenset(pair): True for pair in self.disabled})
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class ClosedGripper:
+    """A gripper in its closed state, in which its links may touch.
+
+    Attributes:
+        links: the links of the gripper.
+        positions: the positions of all joints of the robot, shape (joints,).
+    """
+
+    links: frozenset[str]
+    positions: Array
+
+
 def link_pair(links: Iterable[str]) -> LinkPair:
     """Return two links in alphabetical order."""
     first, second = sorted(links)
@@ -62,7 +78,7 @@ def find_collision_pairs(
     robot: Robot,
     shapes: Shapes,
     surfaces: LinkSurfaces,
-    grippers: Collection[Collection[str]] = (),
+    grippers: Collection[ClosedGripper] = (),
     samples: int = _SAMPLES,
 ) -> CollisionPairs:
     """Return the pairs of links whose collisions need no checks.
@@ -72,14 +88,14 @@ def find_collision_pairs(
     positions and in none that a search finds. Where the convex hulls of meshes collide, the meshes decide.
 
     Unlike the Setup Assistant, links that collide in the default positions are left out only if they also collide in
-    half of the random positions, or belong to the same gripper, whose fingers touch when it is closed. Otherwise a
-    robot whose hand reaches its forearm in the default positions would never be kept from it.
+    half of the random positions, or belong to the same gripper. Otherwise a robot whose hand reaches its forearm in the
+    default positions would never be kept from it. Links of a gripper that touch when it is closed are left out as well.
 
     Args:
         robot: the robot.
         shapes: the collision shapes of its links.
         surfaces: the surfaces of its links.
-        grippers: the links of each gripper.
+        grippers: the grippers in their closed states.
         samples: the number of random positions.
     """
     sampler, random = PositionSampler(robot), np.random.default_rng(_SEED)
@@ -120,11 +136,13 @@ class _PairFinder:
         self._search = ContactSearch(robot, shapes, sampler)
         self._fixed = set(_pairs_of_bodies(robot, shapes, self.disabled))
 
-    def disable_default(self, grippers: Collection[Collection[str]]) -> set[LinkPair]:
+    def disable_default(self, grippers: Collection[ClosedGripper]) -> set[LinkPair]:
         """Disable pairs that collide in the default positions, and those that do not move but touch.
 
+        Links of a gripper that touch in its closed state are disabled, too.
+
         Args:
-            grippers: the links of each gripper.
+            grippers: the grippers in their closed states.
 
         Returns:
             The pairs that collide in the default positions.
@@ -138,12 +156,24 @@ class _PairFinder:
             pair
             for pair in touching
             if counts[pair] >= _DEFAULT_SHARE * _ALWAYS_SAMPLES
-            or any(pair[0] in links and pair[1] in links for links in grippers)
+            or any(gripper.links.issuperset(pair) for gripper in grippers)
         ]
         self._search.model.move(positions)
         meshes = [pair for pair in (*fixed, *often) if self._surfaces.touch(*pair, self._search.model)]
         self.disabled.update(dict.fromkeys(meshes, DEFAULT))
+        for gripper in grippers:
+            self._disable_closed(gripper)
         return touching
+
+    def _disable_closed(self, gripper: ClosedGripper) -> None:
+        self._search.model.move(gripper.positions)
+        links = [name for name in self.links if name in gripper.links]
+        for pair in map(link_pair, combinations(links, 2)):
+            if pair in self.disabled:
+                continue
+            distance = self._search.distance(*pair)
+            if abs(distance) < _TOUCH_M or (distance < 0.0 and self._surfaces.touch(*pair, self._search.model)):
+                self.disabled[pair] = DEFAULT
 
     def disable_always(self) -> Counter[LinkPair]:
         """Disable the pairs that nearly always collide.

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Show the robot and its motions in RViz."""
+
+from moveit_configs_utils import MoveItConfigsBuilder
+from moveit_configs_utils.launches import generate_moveit_rviz_launch
+
+
+def generate_launch_description():
+    """Return what MoveIt starts for a package like this one."""
+    moveit_config = MoveItConfigsBuilder('mbot_arm', package_name='my_robot_arm').to_moveit_configs()
+    return generate_moveit_rviz_launch(moveit_config)

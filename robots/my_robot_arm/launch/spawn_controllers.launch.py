@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Start the controllers of the arm and the gripper."""
+
+from moveit_configs_utils import MoveItConfigsBuilder
+from moveit_configs_utils.launches import generate_spawn_controllers_launch
+
+
+def generate_launch_description():
+    """Return what MoveIt starts for a package like this one."""
+    moveit_config = MoveItConfigsBuilder('mbot_arm', package_name='my_robot_arm').to_moveit_configs()
+    return generate_spawn_controllers_launch(moveit_config)
