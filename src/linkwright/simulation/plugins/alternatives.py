@@ -11,10 +11,16 @@ _AUTOPILOT_ALTERNATIVE = phrase(
     "a ROS node in place of the autopilot: commands on the topics of the motors and joints, "
     "such as /MODEL/gazebo/command/motor_speed, and the topics of the sensors"
 )
+_TASK_ALTERNATIVE = phrase(
+    "`ros2 topic pub --once /vrx/release std_msgs/msg/Empty` to release the boat, and a ROS node that computes "
+    "the score"
+)
+_TASKS = ("AcousticPerception", "AcousticTracking", "Gymkhana", "Navigation", "Perception", "ScanDock", "Wildlife")
 
 _ALTERNATIVES = {
     "air_speed": _AIR_SPEED_ALTERNATIVE,
     "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
+    **dict.fromkeys((f"{task}ScoringPlugin" for task in _TASKS), _TASK_ALTERNATIVE),
     "ArduPilotPlugin": _AUTOPILOT_ALTERNATIVE,
     "gazebo_mavlink_interface": _AUTOPILOT_ALTERNATIVE,
     "gz-sim-air-speed-system": _AIR_SPEED_ALTERNATIVE,

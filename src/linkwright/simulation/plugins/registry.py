@@ -52,7 +52,10 @@ _BUILT_IN = frozenset(
 
 
 _OTHER_GZ_LIBRARIES = frozenset(
-    ("PolyhedraBuoyancyDrag", "PublisherPlugin", "SimpleHydrodynamics", "Surface", "USVWind"),
+    (
+        *("PolyhedraBuoyancyDrag", "PublisherPlugin", "SimpleHydrodynamics", "Surface", "USVWind"),
+        *("StationkeepingScoringPlugin", "WayfindingScoringPlugin"),
+    )
 )
 """Libraries for gz that are not part of gz, by name."""
 

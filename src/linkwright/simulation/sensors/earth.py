@@ -77,6 +77,15 @@ class Globe:
         )
         return degrees(latitude), degrees(atan2(y, x)), altitude
 
+    def from_geodetic(self, latitude: float, longitude: float, altitude: float) -> Array:
+        """Return the point in the world, in m, at a latitude and longitude (degrees) and an altitude (m).
+
+        The altitude is measured from the ellipsoid.
+        """
+        position = _from_geodetic(radians(latitude), radians(longitude), altitude)
+        point: Array = self._heading.T @ self._axes.T @ (position - self._origin)
+        return point
+
 
 def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
     """Return a position in earth-centered coordinates, in m.

@@ -20,6 +20,7 @@ import numpy as np
 from linkwright.diagnostics import LinkwrightError, Severity, phrase
 from linkwright.geometry.arrays import Array, rotation_matrix
 from linkwright.geometry.shapes import Box, Cylinder, Sphere
+from linkwright.geometry.single import cross
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.frames import transform_of
 from linkwright.sdf.poses import AT_ORIGIN, POSE
@@ -137,7 +138,8 @@ class PolyhedraBuoyancyDrag(WavePlugin[BuoyancyParameters]):
         force = -parameters.fluid_density * volume.size * model.opt.gravity
         force = force + parameters.linear_drag * wet_mass * (np.array((0.0, 0.0, water_speed)) - linear)
         force[2] = max(force[2], 0.0)
-        torque = np.cross(volume.center - data.xipos[body], force)
+        (x, y, z), (fx, fy, fz) = (volume.center - data.xipos[body]).tolist(), force.tolist()
+        torque = np.array(cross((x, y, z), (fx, fy, fz)))
         torque -= parameters.angular_drag * wet_mass * item.mean_length**2 * angular
         return np.concatenate([force, torque])
 

@@ -37,7 +37,6 @@ class SimpleHydrodynamics(Hydrodynamics[SimpleHydrodynamicsParameters]):
 
     PARAMETERS = SimpleHydrodynamicsParameters
     IGNORED = tuple(name for axis in _AXES for name in _list_derivative_names(axis))  # read by read_derivatives
-    has_coriolis = False
 
     def start(self) -> None:
         """Find the link, and read the derivatives.
@@ -49,9 +48,10 @@ class SimpleHydrodynamics(Hydrodynamics[SimpleHydrodynamicsParameters]):
 
     def read_derivatives(self) -> None:
         """Read the entries of the added mass and of the damping on the diagonals."""
-        element = self.context.element
+        element, body = self.context.element, self.body
+        body.has_coriolis = False
         for index, axis in enumerate(_AXES):
             added_mass, linear, quadratic = _list_derivative_names(axis)
-            self.added_mass[index, index] = self.number_in(element, added_mass, _DEFAULT_ADDED_MASSES[index])
-            self.linear[index, index] = self.number_in(element, linear, _DEFAULT_LINEAR_DRAG)
-            self.absolute[index, index, index] = self.number_in(element, quadratic, 0.0)
+            body.added_mass[index, index] = self.number_in(element, added_mass, _DEFAULT_ADDED_MASSES[index])
+            body.linear[index, index] = self.number_in(element, linear, _DEFAULT_LINEAR_DRAG)
+            body.absolute[index, index, index] = self.number_in(element, quadratic, 0.0)

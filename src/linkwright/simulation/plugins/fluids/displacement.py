@@ -1,13 +1,14 @@
 """The volume of a link's collisions below a level surface.
 
 A closed surface of triangles is cut at the plane, and the part below it is the sum of tetrahedra whose common apex is
-in the plane. The cut face contains the apex, so its tetrahedra are empty, and the face need not be built. Source:
-B. Mirtich, "Fast and accurate computation of polyhedral mass properties", 1996 (the divergence theorem).
+in the plane. The cut face contains the apex, so its tetrahedra are empty, and the face need not be built. The tip of a
+triangle that the plane cuts off is similar to a part of the triangle, so its tetrahedron is a share of the whole one.
+Source: B. Mirtich, "Fast and accurate computation of polyhedral mass properties", 1996 (the divergence theorem).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import pi
 from typing import Any
 
@@ -56,6 +57,16 @@ class Solid:
     corners: Array
     total: Volume
     radius: float
+    _products: Array = field(init=False, repr=False, compare=False)
+    _areas: Array = field(init=False, repr=False, compare=False)
+    _sums: Array = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        first, second, third = np.moveaxis(self.corners, 1, 0)
+        areas = np.cross(first, second) + np.cross(second, third) + np.cross(third, first)
+        object.__setattr__(self, "_areas", areas)  # twice the areas, as vectors
+        object.__setattr__(self, "_products", (first * np.cross(second, third)).sum(axis=1))
+        object.__setattr__(self, "_sums", self.corners.sum(axis=1))
 
     @classmethod
     def from_link(cls, simulation: Simulation, link: str) -> Solid | None:
@@ -93,10 +104,42 @@ class Solid:
             return Volume(self.total.size, center)
         if center[2] - self.radius >= height:
             return Volume(0.0, center)
-        heights = self.corners @ rotation[2] + (position[2] - height)
-        corners = _cut_triangles(self.corners @ rotation.T + position, heights)
-        apex = np.array((*position[:2], height))
-        return _compute_volume(corners, apex)
+        normal, offset = rotation[2], position[2] - height  # of the surface, in the frame of the link
+        heights = self.corners @ normal + offset
+        apex = -offset * normal
+        volumes = (self._products - self._areas @ apex) / 6.0
+        counts = (heights < 0.0).sum(axis=1)
+        is_included, is_cut = counts >= 2, (counts == 1) | (counts == 2)
+        tips, tip_sums = self._cut_tips(heights, counts, is_cut, volumes)
+        size = float(volumes[is_included].sum() + tips.sum())
+        if size <= 0.0:
+            return Volume(0.0, center)
+        moment = volumes[is_included] @ self._sums[is_included] + tips @ tip_sums
+        return Volume(size, rotation @ ((moment / size + apex) / 4.0) + position)
+
+    def _cut_tips(
+        self, heights: Array, counts: NDArray[np.int_], is_cut: NDArray[np.bool_], volumes: Array
+    ) -> tuple[Array, Array]:
+        """Return the volumes of the tetrahedra of tips, shape (m,), and the sums of the tips' corners, shape (m, 3).
+
+        A tip has one corner of its triangle. Volumes of tips above the plane are negative, because the whole triangle
+        is counted for them.
+        """
+        has_one_below = counts[is_cut] == 1
+        corners, heights = self.corners[is_cut], heights[is_cut]
+        rows = np.arange(len(corners))
+        lone = np.where(has_one_below, heights.argmin(axis=1), heights.argmax(axis=1))
+        second, third = (lone + 1) % 3, (lone + 2) % 3
+        lone_heights, lone_corners = heights[rows, lone], corners[rows, lone]
+        to_second = lone_heights / (lone_heights - heights[rows, second])
+        to_third = lone_heights / (lone_heights - heights[rows, third])
+        tips = volumes[is_cut] * to_second * to_third
+        sums: Array = (
+            3.0 * lone_corners
+            + to_second[:, np.newaxis] * (corners[rows, second] - lone_corners)
+            + to_third[:, np.newaxis] * (corners[rows, third] - lone_corners)
+        )
+        return np.where(has_one_below, tips, -tips), sums
 
 
 def _create_geom_triangles(model: Any, geom: int) -> Array | None:
@@ -169,52 +212,6 @@ def _read_mesh_triangles(model: Any, mesh: int) -> Array:
     corners: Array = vertices[faces].astype(float)
     is_inside_out = _compute_signed_volumes(corners, np.zeros(3)).sum() < 0.0
     return corners[:, ::-1] if is_inside_out else corners
-
-
-def _cut_triangles(corners: Array, heights: Array) -> Array:
-    """Return triangles cut off at a plane.
-
-    Args:
-        corners: the corners of the triangles, shape (n, 3, 3).
-        heights: the signed distance of each corner above the plane, shape (n, 3).
-    """
-    counts = (heights < 0.0).sum(axis=1)
-    has_one_below, has_two_below = counts == 1, counts == 2
-    lone, second, third = _rotate_corners(
-        corners[has_one_below], heights[has_one_below], np.argmin(heights[has_one_below], axis=1)
-    )
-    tips = np.stack([lone[0], _intersect_edges(lone, second), _intersect_edges(lone, third)], axis=1)
-    lone, second, third = _rotate_corners(
-        corners[has_two_below], heights[has_two_below], np.argmax(heights[has_two_below], axis=1)
-    )
-    left, right = _intersect_edges(lone, second), _intersect_edges(lone, third)
-    halves = np.stack([left, second[0], third[0]], axis=1), np.stack([left, third[0], right], axis=1)
-    return np.concatenate([corners[counts == 3], tips, *halves])
-
-
-_Corner = tuple[Array, Array]
-"""One corner of each triangle: positions of shape (n, 3), and heights of shape (n,)."""
-
-
-def _rotate_corners(corners: Array, heights: Array, first_index: NDArray[np.intp]) -> tuple[_Corner, _Corner, _Corner]:
-    """Return the corners of triangles, starting with a given corner.
-
-    The direction of rotation does not change.
-    """
-    triangle_indices = np.arange(len(corners))
-    first_corner, second_corner, third_corner = (
-        (corners[triangle_indices, (first_index + offset) % 3], heights[triangle_indices, (first_index + offset) % 3])
-        for offset in range(3)
-    )
-    return first_corner, second_corner, third_corner
-
-
-def _intersect_edges(start: _Corner, end: _Corner) -> Array:
-    """Return the points in which edges intersect the plane."""
-    (start_position, start_height), (end_position, end_height) = start, end
-    fraction = start_height / (start_height - end_height)
-    points: Array = start_position + fraction[:, np.newaxis] * (end_position - start_position)
-    return points
 
 
 def _compute_signed_volumes(corners: Array, apex: Array) -> Array:

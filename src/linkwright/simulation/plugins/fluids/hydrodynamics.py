@@ -4,10 +4,7 @@ The system applies the damping, the added mass and the Coriolis forces of the ad
 in the notation of SNAME: ``xDotU`` is the force along x for each m/s2 along x, ``xU`` the force for each m/s, and
 ``xUabsU`` the force for each (m/s)2. Forces have the sign of the derivative, so those of a real body are negative.
 
-Forces of added mass that follow the measured acceleration are unstable for bodies lighter than the water that they
-move. Here, the acceleration in which added mass and damping would result is computed first, and gives the forces.
-
-Source: gz-sim (parameters, topics, defaults); T. I. Fossen, *Guidance and Control of Ocean Vehicles*, 1994, 2.4.
+Source: gz-sim (parameters, topics, defaults).
 """
 
 from __future__ import annotations
@@ -19,10 +16,10 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from linkwright.geometry.arrays import Array, rotation_matrix
-from linkwright.geometry.single import Vector3, add_vectors, cross
-from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+from linkwright.geometry.arrays import Array
+from linkwright.geometry.single import Vector3
 from linkwright.simulation.plugins.entities import vector_components
+from linkwright.simulation.plugins.fluids.body_in_water import BodyInWater
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -55,45 +52,33 @@ class HydrodynamicsParameters:
 
 
 class Hydrodynamics(SimulatedPlugin[P], ABC, Generic[P]):
-    """A plugin that applies damping, added mass and its Coriolis forces to a link.
-
-    Subclasses set the attributes in `start`, and then call `start_forces`.
+    """A plugin that applies the forces of water to a link.
 
     Attributes:
-        link_name: the full name of the link.
-        added_mass: the added mass and inertia, shape (6, 6); all entries of real bodies are positive on the diagonal.
-        linear: the force per velocity, shape (6, 6).
-        quadratic: the force per product of two velocities, shape (6, 6, 6).
-        absolute: the force per product of a velocity and the magnitude of another one, shape (6, 6, 6).
-        has_coriolis: whether the Coriolis forces of the added mass act.
+        body: the link, and the coefficients of the forces.
         current: the velocity of the water in m/s, in world axes, shape (3,).
     """
 
     CARRIED = ("current",)
 
-    link_name: str
+    body: BodyInWater
     current: Array
-    has_coriolis = True
 
     def start_forces(self, link_name: str) -> None:
         """Apply the forces to a link, named without the model, after every step.
 
         Raises:
-            LinkwrightError: SIM133, there is no such link.
+            LinkwrightError: SIM133, there is no such link; SIM160, a derivative is not a number.
         """
-        self.link_name = self.link(link_name)
-        self.added_mass, self.linear = np.zeros((6, 6)), np.zeros((6, 6))
-        self.quadratic, self.absolute = np.zeros((6, 6, 6)), np.zeros((6, 6, 6))
+        self.body = BodyInWater(self.simulation, self.link(link_name))
         self.read_derivatives()
-        self._revision = -1
         self.reset()
-        self.simulation.keep_awake(self.link_name)
         self.every(0.0, self._apply_forces)
         self._apply_forces()
 
     @abstractmethod
     def read_derivatives(self) -> None:
-        """Set the entries of the added mass and of the damping, which are zero.
+        """Set the coefficients of the body.
 
         Raises:
             LinkwrightError: SIM160, a derivative is not a number.
@@ -102,40 +87,12 @@ class Hydrodynamics(SimulatedPlugin[P], ABC, Generic[P]):
     def reset(self) -> None:
         """Restore still water."""
         self.current = np.zeros(3)
-        self._previous: tuple[Array, Array] | None = None
+        self.body.reset()
 
     def _apply_forces(self) -> None:
-        simulation, seconds = self.simulation, self.simulation.step / NANOSECONDS_PER_SECOND
-        body = simulation.body(self.link_name)
-        if self._revision != simulation.revision:
-            self._revision, self._inertia = simulation.revision, _compute_spatial_inertia(simulation.model, body)
-        rotation = simulation.data.xmat[body].reshape(3, 3)
-        linear, angular = simulation.link_velocity(self.link_name)
-        velocity = np.concatenate([(linear - self.current) @ rotation, angular @ rotation])
-        damping = self.linear + self.absolute @ np.abs(velocity) + self.quadratic @ velocity
-        other_forces = np.zeros(6)
-        if self._previous is not None:
-            previous_velocity, previous_forces = self._previous
-            other_forces = self._inertia @ (velocity - previous_velocity) / seconds - previous_forces
-        resistance = damping @ velocity
-        if self.has_coriolis:
-            resistance += self._compute_coriolis_forces(velocity)
-        implicit_inertia = self.added_mass + damping * seconds
-        acceleration = np.linalg.solve(self._inertia + implicit_inertia, other_forces - resistance)
-        forces: Array = -resistance - implicit_inertia @ acceleration
-        self._previous = velocity, forces
-        self.push(self.link_name, rotation @ forces[:3], rotation @ forces[3:], at=simulation.data.xpos[body])
-
-    def _compute_coriolis_forces(self, velocity: Array) -> Array:
-        """Return the Coriolis and centripetal forces and torques of the added mass.
-
-        gz computes them with the opposite sign.
-        """
-        px, py, pz, hx, hy, hz = (self.added_mass @ velocity).tolist()
-        u, v, w, p, q, r = velocity.tolist()
-        x, y, z = cross((p, q, r), (px, py, pz))
-        k, m, n = add_vectors(cross((u, v, w), (px, py, pz)), cross((p, q, r), (hx, hy, hz)))
-        return np.array((x, y, z, k, m, n))
+        self.simulation.refresh()
+        force, torque, point = self.body.compute_forces(self.current)
+        self.push(self.body.link, force, torque, at=point)
 
 
 class GzHydrodynamics(Hydrodynamics[HydrodynamicsParameters]):
@@ -154,7 +111,6 @@ class GzHydrodynamics(Hydrodynamics[HydrodynamicsParameters]):
             LinkwrightError: SIM133, there is no such link; SIM160, a derivative is not a number.
         """
         parameters = self.parameters
-        self.has_coriolis = not parameters.disable_coriolis
         self.start_forces(parameters.link_name)
         namespace = parameters.namespace
         topic = f"/model/{namespace}/ocean_current" if namespace else "/ocean_current"
@@ -167,29 +123,17 @@ class GzHydrodynamics(Hydrodynamics[HydrodynamicsParameters]):
 
     def read_derivatives(self) -> None:
         """Read the derivatives, whose sign is that of the force."""
-        element = self.context.element
+        element, body = self.context.element, self.body
         for row, force in enumerate(_FORCES):
             for column, first in enumerate(_VELOCITIES):
-                self.added_mass[row, column] = -self.number_in(element, f"{force}Dot{first}", 0.0)
-                self.linear[row, column] = -self.number_in(element, f"{force}{first}", 0.0)
+                body.added_mass[row, column] = -self.number_in(element, f"{force}Dot{first}", 0.0)
+                body.linear[row, column] = -self.number_in(element, f"{force}{first}", 0.0)
                 for depth, second in enumerate(_VELOCITIES):
-                    self.absolute[row, column, depth] = -self.number_in(element, f"{force}{first}abs{second}", 0.0)
-                    self.quadratic[row, column, depth] = -self.number_in(element, f"{force}{first}{second}", 0.0)
+                    body.absolute[row, column, depth] = -self.number_in(element, f"{force}{first}abs{second}", 0.0)
+                    body.quadratic[row, column, depth] = -self.number_in(element, f"{force}{first}{second}", 0.0)
         if self.parameters.disable_added_mass:
-            self.added_mass[:] = 0.0
+            body.added_mass[:] = 0.0
+        body.has_coriolis = not self.parameters.disable_coriolis
 
     def _on_current(self, message: Any) -> None:
         self.current = np.array(vector_components(message))
-
-
-def _compute_spatial_inertia(model: Any, body: int) -> Array:
-    """Return a body's spatial inertia about its origin, in its axes, shape (6, 6)."""
-    mass, (x, y, z) = float(model.body_mass[body]), model.body_ipos[body].tolist()
-    qw, qx, qy, qz = model.body_iquat[body].tolist()
-    axes = rotation_matrix((qx, qy, qz, qw))
-    offset = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    inertia = np.zeros((6, 6))
-    inertia[:3, :3] = mass * np.eye(3)
-    inertia[:3, 3:], inertia[3:, :3] = -mass * offset, mass * offset
-    inertia[3:, 3:] = axes @ np.diag(model.body_inertia[body]) @ axes.T - mass * offset @ offset
-    return inertia

@@ -1,0 +1,1 @@
+"""Plugins of uuv_simulator: vehicles under water, their thrusters, and currents."""
