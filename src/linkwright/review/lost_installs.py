@@ -60,8 +60,8 @@ class _LostInstall:
 def find_lost_installs(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the files that still read files which are no longer installed, each with a change.
 
-    Tests are left out, because a build may install files only for them. A launch file that names a removed file is left out, and so is a file of the same package that does:
-    `find_lost_references` and `find_lost_data` find them.
+    Tests are left out, because a build may install files only for them. So are a launch file that names a removed file,
+    and a file of the same package that does: `find_lost_references` and `find_lost_data` find them.
     """
     lost = {package.name: package for package in _find_lost_packages(versions, changed_files)}
     if not lost:
