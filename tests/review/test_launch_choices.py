@@ -164,3 +164,50 @@ def generate_launch_description():
     repository.write({path: changed.replace("    print(name)", "    open(name, 'w').write(name)")})
     (line,) = [line for found in compare(repository).subjects for line in sentences(found)]
     assert line.startswith("other code changed in 'read()', 'write()', such as ")
+
+
+RETURNING = """from launch import LaunchDescription
+from launch.actions import OpaqueFunction
+from launch_ros.actions import Node
+
+def setup(context):
+    first = Node(package='arm', executable='first')
+RETURN    return [first, Node(package='arm', executable='second')]
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=setup)])
+"""
+
+
+@pytest.mark.parametrize(
+    ("statement", "expected"),
+    [
+        ("    if not context.ready:\n        return []\n",
+         ["node 'arm/first', node 'arm/second': condition unless `not context.ready` added"]),
+        ("    if not context.ready:\n        context.ready = 1\n", []),
+        ("    if not context.ready:\n        return []\n    else:\n        context.ready = 1\n", []),
+    ],
+)  # fmt: skip
+def test_actions_behind_a_return_have_its_condition(repository, compare, statement, expected):
+    path = "arm/launch/arm.launch.py"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: RETURNING.replace("RETURN", "")})
+    repository.write({path: RETURNING.replace("RETURN", statement)})
+    result = compare(repository)
+    lines = [line for found in result.subjects for line in sentences(found)]
+    assert [line for line in lines if line.startswith("node")] == expected
+    assert breaking(result) == []
+
+
+def test_long_condition_is_compared_by_its_terms(repository, compare):
+    path = "arm/launch/arm.launch.py"
+    known = "    if not context.is_known_robot_with_a_long_name(first_argument, second_argument):\n        return []\n"
+    added = "    if context.find_planning_variant_of_robot('planning_urdf_variant') != 'xacro':\n        return []\n"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: RETURNING.replace("RETURN", known)})
+    repository.write({path: RETURNING.replace("RETURN", known + added + known.replace("known", "good"))})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    (line,) = [line for line in lines if line.startswith("node")]
+    assert line == (
+        "node 'arm/first', node 'arm/second': condition: "
+        "unless `context.find_planning_variant_of_robot('planning_urdf_variant') != 'xacro'`, "
+        "unless `not context.is_good_robot_with_a_long_name(first_argument, second_argument)` added"
+    )

@@ -90,6 +90,7 @@ def test_file_that_names_an_uninstalled_file_is_reported(repository, compare, pa
         ("cell/node.py", "share = get_package_share_directory('arm')\n"),
         ("cell/node.py", "# 'package://arm/config/gains.yaml'\n"),
         ("cell/node.py", "def broken(:\n    'package://arm/config/gains.yaml'\n"),
+        ("test/node.py", "FILE = 'package://arm/config/gains.yaml'\n"),
         ("src/node.cpp", '// "package://arm/config/gains.yaml"\n'),
         ("src/node.cpp", '#include <arm/driver.hpp>\n'),
     ],

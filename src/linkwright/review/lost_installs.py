@@ -16,7 +16,7 @@ from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.installed_readers import READER_SUFFIXES, NamedPath, find_named_paths
 from linkwright.review.references import LAUNCH_SUFFIXES
 from linkwright.review.renamed_packages import find_renamed_packages
-from linkwright.review.versions import Versions
+from linkwright.review.versions import TEST_FOLDERS, Versions
 from linkwright.xacro.cache import read_document
 
 _HEADERS = "include/"
@@ -60,8 +60,8 @@ class _LostInstall:
 def find_lost_installs(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the files that still read files which are no longer installed, each with a change.
 
-    A launch file that names a removed file is left out, and so is a file of the same package that does:
-    `find_lost_references` and `find_lost_data` find them.
+    Tests are left out, because a build may install files only for them. So are a launch file that names a removed file,
+    and a file of the same package that does: `find_lost_references` and `find_lost_data` find them.
     """
     lost = {package.name: package for package in _find_lost_packages(versions, changed_files)}
     if not lost:
@@ -69,7 +69,7 @@ def find_lost_installs(versions: Versions, changed_files: Sequence[ChangedFile])
     words = _list_words(lost.values())
     for path in versions.new.paths(READER_SUFFIXES):
         text = versions.new.text(path)
-        if not any(word in text for word in words):
+        if not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) or not any(word in text for word in words):
             continue
         source = SourceText(str(versions.new.file(path)), text)
         yield from ((path, change) for change in _compare_reader(versions, path, source, lost))

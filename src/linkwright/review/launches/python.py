@@ -252,6 +252,8 @@ class _Reader:
         for statement in function.body:
             scope = scope.with_namespace(self._find_pushed_namespace(_find_added_action(statement)))
             self.visit(statement, scope)
+            if isinstance(statement, ast.If) and isinstance(statement.body[-1], ast.Return) and not statement.orelse:
+                scope = scope.with_condition(_format_conditions(statement.test)[1])  # the rest runs otherwise
 
     def visit_function(self, function: ast.FunctionDef) -> None:
         """Find the actions of a function."""

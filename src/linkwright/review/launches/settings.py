@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
+from linkwright.diagnostics import Phrase, joined, joined_first, phrase, quoted_names
 from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES, Location
-from linkwright.review.excerpts import shorten_middle
+from linkwright.review.excerpts import LONG_VALUE, differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditional_settings import find_changed_settings
 from linkwright.review.launches.default_names import find_default_name
@@ -33,6 +34,8 @@ from linkwright.review.merging import name_edit
 _MIN_GROUP_SIZE = 3
 """The minimum number of added or removed parameters or remappings of a node that are reported as one change."""
 _MAX_VALUE_CHARACTERS = 60
+_TERM_END = re.compile(r" and (?=(?:if|unless|after) )")
+"""The text between the terms of a condition."""
 _PASSED_ARGUMENTS = "passed"
 """The group of arguments that an action passes to an included file."""
 
@@ -72,7 +75,23 @@ class _Setting:
             return phrase("{parameter} {value} added", parameter=self.name, value=new or "")
         if new is None:
             return phrase("{parameter} {value} removed", parameter=self.name, value=old)
+        if self.name == CONDITION and max(len(old), len(new)) > LONG_VALUE:
+            return _format_condition_change(old, new)
         return change_text(self.name, old, new)
+
+
+def _format_condition_change(old: str, new: str) -> Phrase:
+    """Return the change to a long condition: its added or removed terms if the others are equal."""
+    old_terms, new_terms = _TERM_END.split(old), _TERM_END.split(new)
+    added = [term for term in new_terms if term not in old_terms]
+    removed = [term for term in old_terms if term not in new_terms]
+    if added and removed:
+        before, after = differing_excerpts(old, new)
+        return phrase("{parameter} {old} -> {new}", parameter=CONDITION, old=before, new=after)
+    items = joined(added or removed)
+    if added:
+        return phrase("{parameter}: {items} added", parameter=CONDITION, items=items)
+    return phrase("{parameter}: {items} removed", parameter=CONDITION, items=items)
 
 
 class SettingChanges:
