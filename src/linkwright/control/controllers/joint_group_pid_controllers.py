@@ -19,7 +19,6 @@ from linkwright.control.motion.trajectory import shortest_turn
 from linkwright.diagnostics import phrase
 from linkwright.nodes.parameter_tables import for_each, not_empty, parameter
 
-
 _NO_GAINS = ClassicPid()
 
 
