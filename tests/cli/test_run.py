@@ -118,10 +118,10 @@ def test_run_opens_panel_of_rqt_program(run_node: Run) -> None:
 
 
 def test_missing_program_of_rqt_names_replacement(run_node: Run) -> None:
-    process = run_node("rqt_publisher", "rqt_publisher")
+    process = run_node("rqt_action", "rqt_action")
     _, err = process.communicate(timeout=60)
     assert process.returncode == 1
-    assert "the page has no panel that replaces 'rqt_publisher'; run `ros2 topic pub TOPIC TYPE VALUES`" in err
+    assert "the page has no panel that replaces 'rqt_action'; run `ros2 action list -t`" in err
 
 
 def test_run_starts_viewer(run_node: Run) -> None:

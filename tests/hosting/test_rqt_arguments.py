@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import pytest
 
 from linkwright.graph import Graph
@@ -43,6 +46,12 @@ async def make_node(program: str, *arguments: str, namespace: str = "/", **param
         ("rqt_plot /odom/x:y pose/z", PanelRequest("plot", fields=("/odom/x:y", "/pose/z"))),
         ("rqt", None),
         ("rqt_gui", None),
+        ("rqt_bag", None),
+        ("rqt_controller_manager", PanelRequest("controllers")),
+        ("rqt_joint_trajectory_controller", PanelRequest("trajectories")),
+        ("rqt_publisher", PanelRequest("publishers")),
+        ("rqt_service_caller", PanelRequest("services")),
+        ("rqt -s rqt_publisher/Publisher --force-discover", PanelRequest("publishers")),
         ("rqt --standalone rqt_graph.ros_graph.RosGraph", PanelRequest("graph")),
         ("rqt_gui -s rqt_image_view/ImageView --args /a", PanelRequest("image", IMAGE, topic="/a")),
         ("rqt -s rqt_plot --clear-config -e --args /a/x", PanelRequest("plot", fields=("/a/x",))),
@@ -52,21 +61,21 @@ async def make_node(program: str, *arguments: str, namespace: str = "/", **param
 )
 async def test_program_opens_panel_with_its_arguments(words: str, request_: PanelRequest | None) -> None:
     node = await make_node(*words.split())
-    assert node.request == request_
+    assert node.requests == (() if request_ is None else (request_,))
     assert node.findings == []
 
 
 async def test_topics_have_the_namespace_of_the_node() -> None:
     node = await make_node("rqt_image_view", "image_raw", namespace="/front")
-    assert node.request == PanelRequest("image", IMAGE, topic="/front/image_raw")
+    assert node.requests == (PanelRequest("image", IMAGE, topic="/front/image_raw"),)
     node = await make_node("rqt_plot", "odom/x", namespace="/front")
-    assert node.request == PanelRequest("plot", fields=("/front/odom/x",))
+    assert node.requests == (PanelRequest("plot", fields=("/front/odom/x",)),)
 
 
 async def test_parameters_of_rqt_robot_steering_configure_the_panel() -> None:
     limits = {"default_vx_max": 1, "default_vw_max": 1.5, "default_vx_min": -1.0}
     node = await make_node("rqt_robot_steering", default_topic="drive", default_stamped=True, **limits)
-    assert node.request == PanelRequest("teleop", topic="/drive", stamped=True, linear=1.0, angular=1.5)
+    assert node.requests == (PanelRequest("teleop", topic="/drive", stamped=True, linear=1.0, angular=1.5),)
 
 
 @pytest.mark.parametrize(
@@ -76,14 +85,59 @@ async def test_parameters_of_rqt_robot_steering_configure_the_panel() -> None:
         ("rqt_topic /a", "rqt_topic has no argument '/a'"),
         ("rqt_image_view /a /b", "rqt_image_view has no argument '/b'"),
         ("rqt -s", "argument '-s' of rqt needs a value"),
-        ("rqt -s rqt_publisher", "the page has no panel for the rqt plugin 'rqt_publisher'"),
-        ("rqt --perspective-file my.perspective", "rqt ignores the perspective 'my.perspective'"),
+        ("rqt -s rqt_shell", "the page has no panel for the rqt plugin 'rqt_shell'"),
+        ("rqt --perspective mine", "rqt ignores the perspective 'mine'"),
+        ("rqt --perspective-file no.perspective", "cannot read the perspective 'no.perspective': No such file"),
+        ("rqt_bag walk.mcap", "rqt_bag ignores 'walk.mcap'"),
     ],
 )
 async def test_argument_without_effect_is_named(words: str, message: str) -> None:
     node = await make_node(*words.split())
-    assert node.findings[0].message == message
+    assert str(node.findings[0].message).startswith(message)
     assert {finding.code for finding in node.findings} == {"LAUNCH144"}
+
+
+PERSPECTIVE = {
+    "groups": {
+        "pluginmanager": {
+            "keys": {
+                "running-plugins": {
+                    "repr": "{u'rqt_plot/Plot': [1, 2], 'rqt_image_view/ImageView': [1], 'rqt_shell/Shell': [1]}"
+                }
+            },
+            "groups": {
+                "plugin__rqt_plot__Plot__1": {
+                    "groups": {"plugin": {"keys": {"topics": {"repr": "['/odom/x', '/a/y']"}}}}
+                },
+                "plugin__rqt_image_view__ImageView__1": {
+                    "groups": {"plugin": {"keys": {"topic": {"repr": "u'/camera/image'"}}}}
+                },
+            },
+        }
+    }
+}
+
+
+async def test_perspective_file_opens_panels_of_its_plugins(tmp_path: Path) -> None:
+    file = tmp_path / "robot.perspective"
+    file.write_text(json.dumps(PERSPECTIVE))
+    node = await make_node("rqt", "--perspective-file", str(file))
+    assert node.requests == (
+        PanelRequest("plot", fields=("/odom/x", "/a/y")),
+        PanelRequest("plot"),
+        PanelRequest("image", IMAGE, topic="/camera/image"),
+    )
+    assert [str(finding.message) for finding in node.findings] == [
+        "the page has no panel for the rqt plugin 'rqt_shell/Shell'"
+    ]
+
+
+@pytest.mark.parametrize("text", ["[", "{}", '{"groups": 3}'])
+async def test_file_that_is_no_perspective_is_named(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "robot.perspective"
+    file.write_text(text)
+    (finding,) = (await make_node("rqt", "--perspective-file", str(file))).findings
+    assert str(finding.message).startswith(f"cannot read the perspective '{file}'")
 
 
 def test_misspelled_option_has_a_suggestion() -> None:
@@ -93,8 +147,7 @@ def test_misspelled_option_has_a_suggestion() -> None:
 
 
 def test_missing_programs_have_a_replacement() -> None:
-    assert "ros2 topic pub" in (find_replacement("rqt_publisher") or "")
-    assert "ros2 control list_controllers" in (find_replacement("rqt_controller_manager") or "")
+    assert "ros2 action list" in (find_replacement("rqt_action") or "")
     assert "Panels" in (find_replacement("rqt_something_else") or "")
     assert find_replacement("plotjuggler") is None
 
@@ -102,7 +155,7 @@ def test_missing_programs_have_a_replacement() -> None:
 def test_page_replaces_rviz_and_the_programs_of_the_table() -> None:
     assert opens_page("rviz2", "rviz2")
     assert all(opens_page(*program) for program in PANEL_PROGRAMS)
-    assert not opens_page("rqt_publisher", "rqt_publisher")
+    assert not opens_page("rqt_shell", "rqt_shell")
     assert find_panel_program(None, "rqt") is None
 
 

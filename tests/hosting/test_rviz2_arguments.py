@@ -26,6 +26,16 @@ def test_display_config_option_loads_file(tmp_path: Path) -> None:
         assert findings == []
 
 
+def test_values_may_be_joined_to_options(tmp_path: Path) -> None:
+    path = tmp_path / "a.rviz"
+    path.write_text(CONFIG)
+    for option in (f"-d{path}", f"--display-config={path}"):
+        config, findings = read_viewer_config([option])
+        assert config.options.text("Fixed Frame") == "base_link"
+        assert findings == []
+    assert read_viewer_config(["-fodom"])[0].options.text("Fixed Frame") == "odom"
+
+
 def test_fixed_frame_option_sets_frame() -> None:
     config, findings = read_viewer_config(["-f", "odom"])
     assert config.options.text("Fixed Frame") == "odom"

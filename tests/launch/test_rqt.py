@@ -129,10 +129,8 @@ async def test_programs_end_with_the_page_of_rviz(launch) -> None:
 @pytest.mark.parametrize(
     ("name", "replacement"),
     [
-        ("rqt_publisher", "ros2 topic pub"),
-        ("rqt_service_caller", "ros2 service call"),
-        ("rqt_controller_manager", "ros2 control list_controllers"),
-        ("rqt_joint_trajectory_controller", "ros2 action send_goal"),
+        ("rqt_action", "ros2 action list"),
+        ("rqt_srv", "ros2 interface show"),
     ],
 )
 async def test_program_without_panel_is_skipped_with_its_replacement(launch, name: str, replacement: str) -> None:

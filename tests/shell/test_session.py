@@ -103,9 +103,9 @@ def test_programs_of_rqt_are_commands() -> None:
 
 def test_missing_ros_program_suggests_alternative() -> None:
     with pytest.raises(LinkwrightError) as caught:
-        run_shell(["rqt_publisher"], {"PATH": BARE_PATH})
+        run_shell(["rqt_action"], {"PATH": BARE_PATH})
     (diagnostic,) = caught.value.diagnostics
-    assert "ros2 topic pub" in (diagnostic.hint or "")
+    assert "ros2 action list" in (diagnostic.hint or "")
 
 
 def type_in_bash(home: Path, lines: str) -> subprocess.CompletedProcess[str]:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import count
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, phrase
 from linkwright.graph import Graph
 from linkwright.hosting.plans import HostedPlan, NodeWithPanel
-from linkwright.hosting.rqt_arguments import RqtArguments, read_rqt_arguments
+from linkwright.hosting.rqt_arguments import read_rqt_arguments
+from linkwright.hosting.rqt_programs import PanelProgram
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 from linkwright.panels.panel_request import PanelRequest
 
@@ -28,7 +29,7 @@ class PanelNode(SingleNode, NodeWithPanel):
         options: the options of the node.
 
     Attributes:
-        request: the panel to open; None if the page opens as it is.
+        requests: the panels to open; empty if the page opens as it is.
         findings: the findings about arguments without an effect.
 
     Raises:
@@ -42,10 +43,16 @@ class PanelNode(SingleNode, NodeWithPanel):
         self._node, own_arguments = create_node(graph, options, default_name, any_parameters=True)
         arguments = read_rqt_arguments(plan.executable, program, own_arguments)
         self.findings: list[Diagnostic] = arguments.findings
-        self.request = self._create_panel_request(arguments)
+        if arguments.program.positional_kind == "recordings" and arguments.values:
+            arguments.warn(
+                phrase("{program} ignores '{value}'", program=plan.executable, value=arguments.values[0]),
+                phrase("open a recording with `linkwright view FILE`"),
+            )
+        panels = [(arguments.program, arguments.values), *arguments.perspective]
+        requests = (self._create_panel_request(*panel) for panel in panels)
+        self.requests = tuple(request for request in requests if request is not None)
 
-    def _create_panel_request(self, arguments: RqtArguments) -> PanelRequest | None:
-        program, values = arguments.program, arguments.values
+    def _create_panel_request(self, program: PanelProgram, values: Sequence[str]) -> PanelRequest | None:
         if program.panel == "teleop":
             topic = self._read_parameter("default_topic", str, str) or _DEFAULT_VELOCITY_TOPIC
             return PanelRequest(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -144,10 +144,10 @@ class NodeWithPanel:
     """A node whose window is a panel of the page.
 
     Attributes:
-        request: the panel to open; None if the page opens as it is.
+        requests: the panels to open; empty if the page opens as it is.
     """
 
-    request: PanelRequest | None
+    requests: Sequence[PanelRequest]
 
 
 def is_viewer(package: str | None, executable: str) -> bool:

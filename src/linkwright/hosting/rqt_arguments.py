@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase
+from linkwright.hosting.rqt_perspectives import read_perspective
 from linkwright.hosting.rqt_programs import PanelProgram, find_program_of_plugin, find_replacement
 
 _IGNORED_OPTIONS: Mapping[str, int] = {
@@ -29,11 +30,19 @@ _IGNORED_OPTIONS: Mapping[str, int] = {
 }
 """The options of all programs of rqt that have no effect here, each with the number of its values."""
 
-_PERSPECTIVE_OPTIONS = ("-p", "--perspective", "--perspective-file")
+_PERSPECTIVE_OPTIONS = ("-p", "--perspective")
+_PERSPECTIVE_FILE_OPTION = "--perspective-file"
 _STANDALONE_OPTIONS = ("-s", "--standalone")
+_OPTIONS_WITH_VALUE = (*_STANDALONE_OPTIONS, *_PERSPECTIVE_OPTIONS, _PERSPECTIVE_FILE_OPTION)
 _PLUGIN_ARGUMENTS = "--args"
 
-_POSITIONAL_ARGUMENTS = {"": "", "topic": " [TOPIC]", "fields": " [TOPIC/FIELD[:FIELD ...] ...]", "node": " [NODE]"}
+_POSITIONAL_ARGUMENTS = {
+    "": "",
+    "topic": " [TOPIC]",
+    "fields": " [TOPIC/FIELD[:FIELD ...] ...]",
+    "node": " [NODE]",
+    "recordings": " [FILE ...]",
+}
 
 
 @dataclass
@@ -42,12 +51,14 @@ class RqtArguments:
 
     Attributes:
         program: the program whose panel opens, which an option may select.
-        values: the positional arguments: a topic, fields to plot, or a node.
+        values: the positional arguments: a topic, fields to plot, a node, or recordings.
+        perspective: the programs of the plugins in a perspective file, with their topics or fields.
         findings: the findings about arguments without an effect.
     """
 
     program: PanelProgram
     values: list[str] = field(default_factory=list)
+    perspective: list[tuple[PanelProgram, list[str]]] = field(default_factory=list)
     findings: list[Diagnostic] = field(default_factory=list)
 
     def warn(self, message: Phrase, hint: Phrase | None = None) -> None:
@@ -85,13 +96,13 @@ def read_rqt_arguments(executable: str, program: PanelProgram, arguments: Sequen
     remaining_arguments = iter(arguments)
     for argument in remaining_arguments:
         ignored_options = {**_IGNORED_OPTIONS, **parsed.program.ignored_options}
-        known_options = (*_STANDALONE_OPTIONS, *_PERSPECTIVE_OPTIONS, *ignored_options)
+        known_options = (*_OPTIONS_WITH_VALUE, *ignored_options)
         if argument == _PLUGIN_ARGUMENTS and not is_for_plugin:
             is_for_plugin = True
         elif argument in ignored_options:
             for _ in range(ignored_options[argument]):
                 next(remaining_arguments, None)
-        elif argument in _STANDALONE_OPTIONS or argument in _PERSPECTIVE_OPTIONS:
+        elif argument in _OPTIONS_WITH_VALUE:
             value = next(remaining_arguments, None)
             if value is None:
                 parsed.warn(
@@ -99,6 +110,8 @@ def read_rqt_arguments(executable: str, program: PanelProgram, arguments: Sequen
                 )
             elif argument in _STANDALONE_OPTIONS:
                 _select_plugin(parsed, value)
+            elif argument == _PERSPECTIVE_FILE_OPTION:
+                _add_perspective(parsed, value)
             else:
                 parsed.warn(
                     phrase("{program} ignores the perspective '{value}'", program=executable, value=value),
@@ -115,14 +128,33 @@ def read_rqt_arguments(executable: str, program: PanelProgram, arguments: Sequen
 
 
 def _accepts_another_value(parsed: RqtArguments) -> bool:
-    return parsed.program.positional_kind == "fields" or (parsed.program.positional_kind != "" and not parsed.values)
+    return parsed.program.positional_kind in ("fields", "recordings") or (
+        parsed.program.positional_kind != "" and not parsed.values
+    )
 
 
 def _select_plugin(parsed: RqtArguments, plugin: str) -> None:
     program = find_program_of_plugin(plugin)
     if program is None:
-        parsed.warn(
-            phrase("the page has no panel for the rqt plugin '{plugin}'", plugin=plugin), find_replacement(plugin)
-        )
+        _warn_of_plugin(parsed, plugin)
     else:
         parsed.program = program
+
+
+def _add_perspective(parsed: RqtArguments, path: str) -> None:
+    """Add the plugins of a perspective file whose panels the page has."""
+    try:
+        plugins = read_perspective(path)
+    except LinkwrightError as error:
+        parsed.findings.extend(diagnostic.with_changes(severity=Severity.WARNING) for diagnostic in error.diagnostics)
+        return
+    for plugin, values in plugins:
+        program = find_program_of_plugin(plugin)
+        if program is None:
+            _warn_of_plugin(parsed, plugin)
+        else:
+            parsed.perspective.append((program, values))
+
+
+def _warn_of_plugin(parsed: RqtArguments, plugin: str) -> None:
+    parsed.warn(phrase("the page has no panel for the rqt plugin '{plugin}'", plugin=plugin), find_replacement(plugin))

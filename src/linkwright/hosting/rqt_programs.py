@@ -17,28 +17,33 @@ class PanelProgram:
     Attributes:
         panel: the name of the panel in the page; empty if the page opens as it is.
         display_class: the class of the display that the panel needs; empty if it needs none.
-        positional_kind: the meaning of the positional arguments: a topic, fields to plot, a node, or none.
+        positional_kind: the meaning of the positional arguments: a topic, fields to plot, a node, recordings, or none.
         ignored_options: the options that are accepted without an effect, each with the number of its values.
     """
 
     panel: str
     display_class: str = ""
-    positional_kind: Literal["", "topic", "fields", "node"] = ""
+    positional_kind: Literal["", "topic", "fields", "node", "recordings"] = ""
     ignored_options: Mapping[str, int] = field(default_factory=dict)
 
 
 PANEL_PROGRAMS: Mapping[tuple[str, str], PanelProgram] = MappingProxyType(
     {
         ("rqt", "rqt"): PanelProgram(""),
+        ("rqt_bag", "rqt_bag"): PanelProgram("", positional_kind="recordings", ignored_options={"--clock": 0}),
         ("rqt_console", "rqt_console"): PanelProgram("log"),
+        ("rqt_controller_manager", "rqt_controller_manager"): PanelProgram("controllers"),
         ("rqt_graph", "rqt_graph"): PanelProgram("graph"),
         ("rqt_gui", "rqt_gui"): PanelProgram(""),
         ("rqt_image_view", "rqt_image_view"): PanelProgram("image", "rviz_default_plugins/Image", "topic"),
+        ("rqt_joint_trajectory_controller", "rqt_joint_trajectory_controller"): PanelProgram("trajectories"),
         ("rqt_plot", "rqt_plot"): PanelProgram(
             "plot", positional_kind="fields", ignored_options={"-P": 0, "--pause": 0, "-e": 0, "--empty": 0, "-b": 1}
         ),
+        ("rqt_publisher", "rqt_publisher"): PanelProgram("publishers"),
         ("rqt_reconfigure", "rqt_reconfigure"): PanelProgram("parameters", positional_kind="node"),
         ("rqt_robot_steering", "rqt_robot_steering"): PanelProgram("teleop"),
+        ("rqt_service_caller", "rqt_service_caller"): PanelProgram("services"),
         ("rqt_tf_tree", "rqt_tf_tree"): PanelProgram("displays", "rviz_default_plugins/TF"),
         ("rqt_topic", "rqt_topic"): PanelProgram("topics"),
     }
@@ -48,20 +53,9 @@ PANEL_PROGRAMS: Mapping[tuple[str, str], PanelProgram] = MappingProxyType(
 MISSING_PROGRAMS: Mapping[str, Phrase] = MappingProxyType(
     {
         "rqt_action": phrase("run `ros2 action list -t` and `ros2 interface show TYPE`"),
-        "rqt_bag": phrase(
-            "record with the button in the page's time line or with `ros2 bag record`, "
-            "and open a recording with `linkwright view FILE`"
-        ),
-        "rqt_controller_manager": phrase("run `ros2 control list_controllers` and `ros2 control switch_controllers`"),
-        "rqt_joint_trajectory_controller": phrase(
-            "run `ros2 action send_goal CONTROLLER/follow_joint_trajectory "
-            "control_msgs/action/FollowJointTrajectory GOAL`"
-        ),
         "rqt_msg": phrase("run `ros2 interface show TYPE`"),
-        "rqt_publisher": phrase("run `ros2 topic pub TOPIC TYPE VALUES`"),
         "rqt_robot_monitor": phrase("open the panel Topics of the page, or run `ros2 topic echo /diagnostics_agg`"),
         "rqt_runtime_monitor": phrase("open the panel Topics of the page, or run `ros2 topic echo /diagnostics`"),
-        "rqt_service_caller": phrase("run `ros2 service call SERVICE TYPE VALUES`"),
         "rqt_shell": phrase("add `--terminal` to the command that opens the page, which then has a terminal"),
         "rqt_srv": phrase("run `ros2 interface show TYPE`"),
     }

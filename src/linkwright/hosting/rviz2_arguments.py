@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase
@@ -69,7 +69,7 @@ def _parse_arguments(arguments: Sequence[str]) -> tuple[str | None, str | None, 
     path: str | None = None
     fixed_frame: str | None = None
     findings: list[Diagnostic] = []
-    remaining_arguments = iter(arguments)
+    remaining_arguments = iter(_split_values(arguments))
     for argument in remaining_arguments:
         if argument == "--ros-args":
             for option in remaining_arguments:  # ROS arguments have no effect on the configuration
@@ -97,6 +97,19 @@ def _parse_arguments(arguments: Sequence[str]) -> tuple[str | None, str | None, 
                 )
             )
     return path, fixed_frame, findings
+
+
+def _split_values(arguments: Sequence[str]) -> Iterator[str]:
+    """Yield the arguments, with ``-dVALUE`` and ``--display-config=VALUE`` split as Qt does."""
+    for argument in arguments:
+        for option in (*_CONFIG_OPTIONS, *_FIXED_FRAME_OPTIONS):
+            prefix = f"{option}=" if option.startswith("--") else option
+            if argument.startswith(prefix) and len(argument) > len(prefix):
+                yield option
+                yield argument[len(prefix) :]
+                break
+        else:
+            yield argument
 
 
 def _argument_warning(message: Phrase, hint: Phrase | None = None) -> Diagnostic:

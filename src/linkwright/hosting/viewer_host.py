@@ -253,10 +253,12 @@ def _attach_panel(viewer: Viewer, node: RunningNode) -> None:
 
 
 def _open_panel(viewer: Viewer, node: RunningNode) -> None:
-    if isinstance(node, NodeWithPanel) and node.request is not None:
+    if isinstance(node, NodeWithPanel) and node.requests:
         from linkwright.panels.requested_panels import RequestedPanelsFeature  # few launches open panels
 
-        viewer.add_feature(RequestedPanelsFeature).add(node.request)
+        feature = viewer.add_feature(RequestedPanelsFeature)
+        for request in node.requests:
+            feature.add(request)
 
 
 def _open_in_browser(url: str) -> None:

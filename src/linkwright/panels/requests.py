@@ -3,6 +3,8 @@
 from linkwright.page.protocol.time import NOTHING_RECORDED
 from linkwright.panels.page_feature import OnDemand, list_message_paths
 
+_CALLS = "linkwright.page.protocol.calls"
+_CONTROLLERS = "linkwright.page.protocol.controllers"
 _EDITING = "linkwright.page.protocol.editing"
 _MOTIONS = "linkwright.page.protocol.motion_planning"
 _MONITOR = "linkwright.page.protocol.monitor"
@@ -37,6 +39,10 @@ ON_DEMAND = (
         list_message_paths(_EDITING, "ApplyEdit", "PreviewEdit", "RedoEdit", "RequestEditableParts", "UndoEdit"),
     ),
     OnDemand("linkwright.panels.export.feature:ExportFeature", ("linkwright.page.protocol.export:RequestExport",)),
+    OnDemand(
+        "linkwright.panels.monitor.controllers:ControllersFeature",
+        list_message_paths(_CONTROLLERS, "ChangeController", "ChangeHardware", "WatchControllers"),
+    ),
     OnDemand("linkwright.panels.monitor.log:LogFeature", list_message_paths(_MONITOR, "WatchLog"), ("/rosout",)),
     OnDemand("linkwright.panels.monitor.node_graph:NodeGraphFeature", list_message_paths(_MONITOR, "WatchNodeGraph")),
     OnDemand(
@@ -46,8 +52,20 @@ ON_DEMAND = (
     OnDemand(
         "linkwright.panels.monitor.plots:PlotsFeature", list_message_paths(_MONITOR, "RequestFields", "WatchSeries")
     ),
+    OnDemand(
+        "linkwright.panels.monitor.publishers:PublishersFeature",
+        list_message_paths(_CALLS, "PublishOnce", "RequestTemplate", "RequestTypes", "SetPublishers"),
+    ),
+    OnDemand(
+        "linkwright.panels.monitor.services:ServicesFeature",
+        list_message_paths(_CALLS, "CallService", "ChooseService", "WatchServices"),
+    ),
     OnDemand("linkwright.panels.monitor.teleop:TeleopFeature", list_message_paths(_MONITOR, "AimTeleop", "Drive")),
     OnDemand("linkwright.panels.monitor.topics:TopicsFeature", list_message_paths(_MONITOR, "WatchTopics")),
+    OnDemand(
+        "linkwright.panels.monitor.trajectories:TrajectoriesFeature",
+        list_message_paths(_CONTROLLERS, "MoveJoints", "WatchTrajectory"),
+    ),
     OnDemand(
         "linkwright.panels.source_editor.feature:SourceEditorFeature",
         list_message_paths(

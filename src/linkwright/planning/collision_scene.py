@@ -168,6 +168,7 @@ class CollisionScene:
 
         A distance is 0 if there is a collision.
         """
+        self._move(positions)
         return self._measure()
 
     def _measure(self) -> tuple[float, float]:

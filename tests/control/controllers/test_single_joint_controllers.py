@@ -159,7 +159,6 @@ def test_joint_state_controller_is_the_broadcaster():
 @pytest.mark.parametrize(
     ("old", "new"),
     [
-        ("effort_controllers/JointGroupPositionController", "pid_controller/PidController"),
         ("imu_sensor_controller/ImuSensorController", "imu_sensor_broadcaster/IMUSensorBroadcaster"),
         ("four_wheel_steering_controller/FourWheelSteeringController", "ackermann_steering_controller/Ackermann"),
     ],

@@ -10,8 +10,12 @@ from typing import Any
 
 import pytest
 
+from linkwright.control.manager.services import ManagerServices
 from linkwright.control.manager.switching import STRICT
 from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
+from linkwright.graph.stepped.exchange import Exchange
+from linkwright.graph.stepped.node import SteppedNode
+from linkwright.messages import get_service
 from tests.control.controllers.driving import stamped_twist
 from tests.control.robots import joint, make_manager, robot
 
@@ -74,6 +78,20 @@ async def test_drive_commands_pid_controllers_in_chained_mode(graph):
     position, yaw = base.odometry[-1].pose.pose.position, 0.5 * 3.0
     assert (position.x, position.y) == pytest.approx((2.0 * sin(yaw), 2.0 * (1.0 - cos(yaw))), abs=0.05)
     assert base.manager.controllers["pid_left"].controller.is_chained
+    exchange = Exchange()
+    ManagerServices(base.manager, SteppedNode(base.manager.node, exchange, owned=False))
+    service = get_service("controller_manager_msgs/srv/ListControllers")
+    future = base.node.create_client(service, "/controller_manager/list_controllers").call_async(service.Request())
+    await graph.settle()
+    exchange.run_commands()
+    exchange.deliver()
+    await graph.settle()
+    listed = {controller.name: controller for controller in future.result().controller}
+    assert [(chain.name, list(chain.reference_interfaces)) for chain in listed["base"].chain_connections] == [
+        ("pid_left", ["left/velocity"]),
+        ("pid_right", ["right/velocity"]),
+    ]
+    assert list(listed["pid_left"].chain_connections) == []
 
 
 async def test_drive_is_deactivated_if_wheel_state_is_not_a_number(graph, log):

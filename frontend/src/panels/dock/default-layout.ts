@@ -21,7 +21,7 @@ const RIGHT_NEIGHBORS: Placement["neighbors"] = [
 ];
 
 /** Wide panels that are read line by line share one place below the scene. */
-const BOTTOM_PANELS: readonly PanelId[] = ["terminal", "checks", "source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log"];
+const BOTTOM_PANELS: readonly PanelId[] = ["terminal", "checks", "source", "diagram", "joint-table", "editing", "plot", "topics", "graph", "parameters", "log", "services", "publishers", "controllers", "trajectories"];
 const BELOW_SCENE: Placement = { neighbors: [...BOTTOM_PANELS.map((id) => [id, "within"] as const), ["scene", "below"]], height: 300 };
 /** The largest share of the dock's height that a panel requests. */
 const MAX_HEIGHT_SHARE = 0.4;
@@ -82,6 +82,10 @@ const PLACEMENTS: Readonly<Record<PanelId, Placement>> = {
   graph: BELOW_SCENE,
   parameters: BELOW_SCENE,
   log: BELOW_SCENE,
+  services: BELOW_SCENE,
+  publishers: BELOW_SCENE,
+  controllers: BELOW_SCENE,
+  trajectories: BELOW_SCENE,
   voice: {
     neighbors: [
       ["teleop", "within"],

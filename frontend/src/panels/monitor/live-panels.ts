@@ -1,12 +1,16 @@
 import type { MonitorState } from "../../state/monitor/monitor";
 import type { Panel, PanelId } from "../panel";
+import { ControllersPanel } from "./controllers-panel";
 import { LogPanel } from "./log-panel";
 import { NavigationPanel } from "./navigation-panel";
 import { NodeGraphPanel } from "./node-graph-panel";
 import { ParametersPanel } from "./parameters-panel";
 import { PlotPanel } from "./plot-panel";
+import { PublishersPanel } from "./publishers-panel";
+import { ServicesPanel } from "./services-panel";
 import { TeleopPanel } from "./teleop-panel";
 import { TopicsPanel } from "./topics-panel";
+import { TrajectoriesPanel } from "./trajectories-panel";
 
 /** Creates the panels for live data; `open` brings one to the front, `showTopic` adds the display of a topic. */
 export function createLivePanels(monitor: MonitorState, open: (id: PanelId) => void, showTopic: (topic: string) => void): Panel[] {
@@ -21,6 +25,10 @@ export function createLivePanels(monitor: MonitorState, open: (id: PanelId) => v
     new NodeGraphPanel(monitor.graph),
     new ParametersPanel(monitor.parameters),
     new LogPanel(monitor.log),
+    new ServicesPanel(monitor.services),
+    new PublishersPanel(monitor.publishers, topics),
+    new ControllersPanel(monitor.controllers),
+    new TrajectoriesPanel(monitor.trajectories),
     new TeleopPanel(monitor.teleop),
     new NavigationPanel(monitor.navigation),
   ];

@@ -19,8 +19,8 @@ export class MessageTree {
   private readonly openPaths = new Set<string>();
   private fields: readonly MessageField[] = [];
 
-  /** @param onPlotField - called with the path of a numeric field whose plot button is clicked. */
-  constructor(private readonly onPlotField: (path: string) => void) {}
+  /** @param onPlotField - called with the path of a numeric field whose plot button is clicked; null for no buttons. */
+  constructor(private readonly onPlotField: ((path: string) => void) | null) {}
 
   show(fields: readonly MessageField[]): void {
     // Short messages are unfolded from the start.
@@ -56,7 +56,8 @@ export class MessageTree {
     const value = h("span", { class: "message-value" });
     const children = h("div", { class: "message-children" });
     const toggle = hasChildren ? createButton(field.name, () => this.toggle(path), "expander", createIcon("chevron")) : null;
-    const isNumber = !hasChildren && isNumeric(field);
+    const { onPlotField } = this;
+    const isPlottable = onPlotField !== null && !hasChildren && isNumeric(field);
     const head = h(
       "div",
       { class: "message-row", title: field.kind },
@@ -64,7 +65,7 @@ export class MessageTree {
       h("span", { class: "message-name" }, field.name),
       value,
       h("span", { class: "note kind" }, field.kind),
-      isNumber ? createButton(strings.monitor.topics.plot, () => this.onPlotField(path), "tool bare", createIcon("plot")) : null,
+      isPlottable ? createButton(strings.monitor.topics.plot, () => onPlotField(path), "tool bare", createIcon("plot")) : null,
     );
     const omittedNote = h("div", { class: "note" });
     const row = { element: h("div", {}, head, children), value, children, toggle, omittedNote };

@@ -1,13 +1,17 @@
 import type { Connection } from "../../connection/connection";
 import type { TextStorage } from "../../storage";
+import { ControllersState } from "./controllers";
 import { formatField } from "./field-text";
 import { LogState } from "./log";
 import { NavigationState } from "./navigation";
 import { NodeGraphState } from "./node-graph";
 import { ParametersState } from "./parameters";
 import { PlotsState } from "./plots";
+import { PublishersState } from "./publishers";
+import { ServicesState } from "./services";
 import { TeleopState } from "./teleop";
 import { TopicsState } from "./topics";
+import { TrajectoriesState } from "./trajectories";
 
 /** The state of the live panels. */
 export class MonitorState {
@@ -18,6 +22,10 @@ export class MonitorState {
   readonly log: LogState;
   readonly teleop: TeleopState;
   readonly navigation: NavigationState;
+  readonly services: ServicesState;
+  readonly publishers: PublishersState;
+  readonly controllers: ControllersState;
+  readonly trajectories: TrajectoriesState;
 
   constructor(connection: Connection, storage: TextStorage) {
     this.topics = new TopicsState(connection);
@@ -27,6 +35,10 @@ export class MonitorState {
     this.log = new LogState(connection, storage);
     this.teleop = new TeleopState(connection, storage);
     this.navigation = new NavigationState(connection);
+    this.services = new ServicesState(connection);
+    this.publishers = new PublishersState(connection, storage);
+    this.controllers = new ControllersState(connection);
+    this.trajectories = new TrajectoriesState(connection);
   }
 
   /** Returns the state of all live panels for `window.linkwright`. */

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
+from pathlib import Path
 
 from linkwright.cli.command import main as linkwright
 from linkwright.cli.exit_status import FINDINGS, FINE, run_command
@@ -74,6 +75,12 @@ def _run(package: str, executable: str, words: Sequence[str]) -> int:
     return linkwright(["run", package, executable, *words])
 
 
+def _run_rqt_bag(words: Sequence[str]) -> int:
+    """Show a recording, or open the page, which can record, if no recording is given."""
+    recordings = [word for word in words if not word.startswith("-") and Path(word).exists()]
+    return linkwright(["view", recordings[0]]) if recordings else _run("rqt_bag", "rqt_bag", words)
+
+
 def _run_launch_test(words: Sequence[str]) -> int:
     return linkwright(["test", *words], program="launch_test")
 
@@ -98,6 +105,7 @@ TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "urdf_to_graphviz": _run_urdf_to_graphviz,
     "rviz2": partial(_run, "rviz2", "rviz2"),
     **{executable: partial(_run, package, executable) for package, executable in PANEL_PROGRAMS},
+    "rqt_bag": _run_rqt_bag,
     "launch_test": _run_launch_test,
     "colcon": _run_colcon,
 }

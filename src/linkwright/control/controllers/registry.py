@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 GROUP = "linkwright.controllers"
 
 _REPLACEMENTS = {
-    "effort_controllers/JointGroupPositionController": "pid_controller/PidController",
     "force_torque_sensor_controller/ForceTorqueSensorController": (
         "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster"
     ),
@@ -27,7 +26,6 @@ _REPLACEMENTS = {
         "ackermann_steering_controller/AckermannSteeringController"
     ),
     "imu_sensor_controller/ImuSensorController": "imu_sensor_broadcaster/IMUSensorBroadcaster",
-    "velocity_controllers/JointGroupPositionController": "pid_controller/PidController",
 }
 """For each controller of ROS 1 with other parameters in ROS 2, the type that replaces it."""
 

@@ -122,7 +122,9 @@ class ManagerServices:
             if name in self._manager.controllers:
                 chains.setdefault(name, []).append(kind)
         connection = get_message(f"{_PACKAGE}/msg/ChainConnection")
-        message.chain_connections = [connection(name, kinds) for name, kinds in chains.items()]
+        message.chain_connections = [
+            connection(name=name, reference_interfaces=kinds) for name, kinds in chains.items()
+        ]
         return message
 
     def _switch(self, request: Any, response: Any) -> Any:

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 _RQT_PACKAGES = (
     *("rqt_console", "rqt_graph", "rqt_gui", "rqt_image_view", "rqt_plot", "rqt_reconfigure", "rqt_robot_steering"),
-    *("rqt_tf_tree", "rqt_topic"),
+    *("rqt_tf_tree", "rqt_topic", "rqt_bag", "rqt_controller_manager", "rqt_joint_trajectory_controller"),
+    *("rqt_publisher", "rqt_service_caller"),
 )
 """The packages of rqt that each have one executable, which has the name of the package."""
 
@@ -62,7 +63,6 @@ WELL_KNOWN_PACKAGES = frozenset(
             "moveit_servo",
         ),
         *("diff_drive_controller", "joint_state_broadcaster", "launch_ros", "image_transport"),
-        *("rqt_controller_manager", "rqt_joint_trajectory_controller", "rqt_publisher", "rqt_service_caller"),
     }
 )
 _PYTHON_PACKAGES = frozenset({"launch", "launch_ros", "ament_index_python", "launch_xml", "launch_yaml", "xacro"})

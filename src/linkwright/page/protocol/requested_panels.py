@@ -6,7 +6,20 @@ from typing import Literal
 
 from linkwright.page.protocol.message import Record, ServerMessage
 
-RequestedPanelName = Literal["displays", "graph", "image", "log", "parameters", "plot", "teleop", "topics"]
+RequestedPanelName = Literal[
+    "controllers",
+    "displays",
+    "graph",
+    "image",
+    "log",
+    "parameters",
+    "plot",
+    "publishers",
+    "services",
+    "teleop",
+    "topics",
+    "trajectories",
+]
 """The panels that programs can open. An ``image`` is the panel of an Image display."""
 
 
