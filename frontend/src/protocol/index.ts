@@ -452,8 +452,8 @@ export type PageMessage =
   | MarkerFeedback
   | MeshStatus
   | MoveDisplays
-  | MoveSceneObject
   | MoveJoints
+  | MoveSceneObject
   | NewConfiguration
   | OpenConfiguration
   | OpenEditor
@@ -514,8 +514,8 @@ export type PageMessage =
   | SetParameter
   | SetPlayback
   | SetProperty
-  | SetQueryJoint
   | SetPublishers
+  | SetQueryJoint
   | SetTime
   | SetToolProperty
   | ShowPanels
