@@ -96,6 +96,16 @@ def test_load_and_unload_controller_report_result(run_manager, capsys):
     assert "Error reloading" in run_command(capsys, "reload_controller_libraries", status=1)
 
 
+def test_controller_of_parameter_file_is_loaded(run_manager, capsys, tmp_path):
+    run_manager()
+    path = tmp_path / "extra.yaml"
+    kind = "forward_command_controller/ForwardCommandController"
+    path.write_text(f"extra: {{ros__parameters: {{type: {kind}, joints: [hip], interface_name: position}}}}")
+    output = run_command(capsys, "load_controller", "extra", str(path), "--set-state", "inactive")
+    assert output == "Successfully loaded controller extra into state inactive\n"
+    assert "no.yaml" in run_command(capsys, "load_controller", "other", str(tmp_path / "no.yaml"), status=1)
+
+
 def test_controller_state_names_before_humble_are_accepted(run_manager, capsys):
     run_manager()
     assert run_command(capsys, "load_controller", "positions", "--set-state", "start").endswith("into state active\n")

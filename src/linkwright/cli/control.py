@@ -67,7 +67,8 @@ def _run(
         manager = f"/{arguments.controller_manager.strip('/')}"
 
         async def call_manager(service: str, **fields: Any) -> Any:
-            service_type = "controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_"))
+            package = "rcl_interfaces" if service == "set_parameters" else "controller_manager_msgs"
+            service_type = f"{package}/srv/" + "".join(word.capitalize() for word in service.split("_"))
             name, request = f"{manager}/{service}", get_service(service_type).Request(**fields)
             return await call(session, service_type, name, request, extra_wait=MANAGER_EXTRA_WAIT_S)
 
@@ -220,8 +221,19 @@ def _to_current_state_name(state: str) -> str:
     return _OLD_STATES.get(state, state)
 
 
+def _to_absolute_path(text: str) -> Path:
+    return Path(text).absolute()  # the manager may run in another folder
+
+
 def _configure_load(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("controller_name", metavar="CONTROLLER", help="the name of the controller")
+    parser.add_argument(
+        "param_file",
+        metavar="FILE",
+        nargs="?",
+        type=_to_absolute_path,
+        help="the parameter file with the controller's type",
+    )
     parser.add_argument(
         "--set-state",
         type=_to_current_state_name,
@@ -233,6 +245,10 @@ def _configure_load(parser: argparse.ArgumentParser) -> None:
 
 async def _load_controller(arguments: argparse.Namespace, call_manager: ManagerCall) -> int:
     name, state = arguments.controller_name, arguments.set_state
+    if arguments.param_file is not None:
+        failure = await _set_manager_parameters(name, arguments.param_file, call_manager)
+        if failure:
+            return _report_failure(failure)
     if not (await call_manager("load_controller", name=name)).ok:
         return _report_failure(f"Error loading controller, {_LOGS_HINT}")
     if state in (None, "unconfigured"):
@@ -244,6 +260,19 @@ async def _load_controller(arguments: argparse.Namespace, call_manager: ManagerC
         return _report_failure(f"Error activating controller, {_LOGS_HINT}")
     print(f"Successfully loaded controller {name} into state {'active' if state == 'active' else 'inactive'}")
     return 0
+
+
+async def _set_manager_parameters(name: str, file: Path, call_manager: ManagerCall) -> str:
+    """Tell the manager the parameter file and the type of a controller, and return why that failed, or ""."""
+    from linkwright.graph import Parameter
+    from linkwright.graph.parameters.files import read_parameter_file
+
+    kind = read_parameter_file(str(file)).for_node(f"/{name.lstrip('/')}").get("type")
+    values = {"params_file": [str(file)]} | ({} if kind is None else {"type": kind})
+    parameters = [Parameter(f"{name}.{key}", value=value).to_parameter_msg() for key, value in values.items()]
+    response = await call_manager("set_parameters", parameters=parameters)
+    reasons = [result.reason for result in response.results if not result.successful]
+    return f"Error setting the parameters of {name}: {', '.join(reasons)}" if reasons else ""
 
 
 async def _request_switch(

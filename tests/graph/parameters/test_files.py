@@ -132,13 +132,20 @@ def test_patterns_apply_in_order_of_appearance():
     ],
 )
 def test_unsupported_list_is_skipped_and_rest_is_read(value, message):
-    """rcl has no type for lists of mappings, which the example of gpio_controllers contains."""
     any_node = f"/**:\n  ros__parameters:\n    first: 1\n    a:\n      b: {value}\n      c: [2]\n"
     rules = read_rules(f"{any_node}x:\n  ros__parameters: {{y: 3}}\n")
     assert rules.for_node("/x") == {"first": 1, "a.c": [2], "y": 3}
     (finding,) = rules.skipped_findings_for("/x")
     assert (finding.message, finding.severity) == (message, Severity.WARNING)
     assert str(finding.span).startswith("params.yaml:5:")
+
+
+def test_entries_of_the_only_mapping_of_a_list_are_parameters():
+    """rcl reads them so, and the example of gpio_controllers contains them."""
+    text = "n:\n  ros__parameters:\n    a:\n      b:\n        - interfaces: [p, q]\n          other: [1]\n      c: 2\n"
+    rules = read_rules(text)
+    assert rules.for_node("/n") == {"a.b.interfaces": ["p", "q"], "a.b.other": [1], "a.c": 2}
+    assert not list(rules.skipped_findings_for("/n"))
 
 
 @pytest.mark.parametrize("text", ["", "# only a comment\n", "node:\n  ros__parameters:\n"])

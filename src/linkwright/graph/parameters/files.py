@@ -11,8 +11,9 @@ mappings is omitted, because the files of real robots have such lists.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -213,8 +214,17 @@ class _Reader:
     def _read_list_parameter(self, name: str, pattern: str) -> None:
         """Read a list and set the parameter to it.
 
-        If the list contains lists or mappings, the parameter is left out.
+        As in rcl, the entries of a mapping that is the only item, such as ``- interfaces: [...]`` of gpio_controllers,
+        are parameters below the name. If the list contains other lists or mappings, the parameter is left out.
         """
+        start, events = self._event, self._buffer_list()
+        self._events = chain(events, self._events)
+        if _is_mapping_of_lists([type(event).__name__.removesuffix("Event") for event in events]):
+            self._advance()
+            self._read_parameters(f"{name}.", pattern)
+            self._advance()
+            return
+        self._event = start
         try:
             self._rules.set(pattern, name, self._read_list(name))
         except _NestedListError as error:
@@ -223,6 +233,17 @@ class _Reader:
             warning = finding.with_changes(severity=Severity.WARNING, notes=(note,))
             self._rules.skipped_findings.append((pattern, warning))
             self._skip_rest_of_list()
+
+    def _buffer_list(self) -> list[Any]:
+        """Return the events after the start of a list, up to its end."""
+        events: list[Any] = []
+        depth = 1
+        while depth:
+            event = next(self._events)
+            kind = type(event).__name__
+            depth += (kind == "SequenceStartEvent") - (kind == "SequenceEndEvent")
+            events.append(event)
+        return events
 
     def _skip_rest_of_list(self) -> None:
         """Advance to the end of a list.
@@ -431,3 +452,12 @@ def _insert(tree: dict[str, Any], path: list[str], value: Any) -> None:
             return
         tree = subtree
     tree[path[-1]] = value
+
+
+def _is_mapping_of_lists(kinds: Sequence[str]) -> bool:
+    """Return whether the events of a list are those of one mapping from names to lists of plain values."""
+    text = " ".join(kinds)
+    return (
+        re.fullmatch(r"MappingStart( Scalar SequenceStart( Scalar)* SequenceEnd)+ MappingEnd SequenceEnd", text)
+        is not None
+    )
