@@ -160,7 +160,7 @@ class CollisionScene:
         """Return the pairs of links or objects that collide at the positions of all joints."""
         self._move(positions)
         contact, names = self._model.data.contact, self._names_by_geom
-        colliding = contact.geom[contact.dist < contact.includemargin - self._range]
+        colliding = contact.geom[contact.dist <= contact.includemargin - self._range]
         return {frozenset((names[first], names[second])) for first, second in colliding.tolist()}
 
     def clearances(self, positions: Array) -> tuple[float, float]:

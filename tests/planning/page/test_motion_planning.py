@@ -293,6 +293,7 @@ async def test_pipelines_are_offered_and_chosen():
         assert [(pipeline["id"], pipeline["planners"]) for pipeline in bench.panel()["pipelines"]] == [
             ("ompl", ["RRTConnectkConfigDefault", "Unknown"]),
             ("pilz_industrial_motion_planner", ["PTP", "LIN", "CIRC"]),
+            ("chomp", ["RRTConnect"]),
         ]
 
 
