@@ -30,7 +30,7 @@ from linkwright.planning.setup.link_surfaces import LinkSurfaces
 from linkwright.planning.shapes import robot_shapes
 from linkwright.testing import SteppedSimulation
 from linkwright.urdf import Robot
-from tests.places import ARM_PACKAGE, GAZEBO_PACKAGE
+from tests.places import ARM_PACKAGE, GAZEBO_PACKAGE, PACKAGE, REPOSITORY
 
 pytestmark = pytest.mark.extra("arm")
 
@@ -187,3 +187,11 @@ def test_cube_is_held_by_friction(x: float, y: float, yaw: float) -> None:
     assert pose[2] == pytest.approx(lifted, abs=0.003)
     assert math.dist(pose[:2], (x, y)) > 0.3
     assert matrix_from_pose(np.array(pose))[2, 2] > 0.99
+
+
+def test_course_has_the_same_macros() -> None:
+    """The lesson adds the macros to the learner's my_robot_description, which hides the shipped package."""
+    start = REPOSITORY / "courses" / "robot" / "13-picking" / "start" / "src" / "my_robot_description" / "urdf"
+    for name in ("base/mbot_base_gazebo.xacro", "base/inertia.xacro", "sensor/camera_gazebo.xacro"):
+        shipped = PACKAGE / "urdf" / name
+        assert (start / name).read_text(encoding="utf-8") == shipped.read_text(encoding="utf-8")
