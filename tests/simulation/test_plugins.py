@@ -77,6 +77,8 @@ def test_library_name_normalizes_spellings(filename, name):
 def test_built_in_systems_are_recognized():
     assert is_built_in("libignition-gazebo-physics-system.so")
     assert is_built_in("libgazebo_ros_factory.so")
+    assert is_built_in("libRayPlugin.so")
+    assert is_built_in("dummyfile")
     assert not is_built_in("gz-sim-diff-drive-system")
     assert is_gz_library("gz-sim7-diff-drive-system")
     assert not is_gz_library("libgazebo_ros_camera.so")
