@@ -1,9 +1,10 @@
 """Publishers of joint states in simulations of Gazebo classic and gz.
 
-The libraries are ``libgazebo_ros_joint_state_publisher.so`` and ``gz-sim-joint-state-publisher-system``.
+The libraries are ``libgazebo_ros_joint_state_publisher.so``, ``gz-sim-joint-state-publisher-system`` and
+``libuuv_joint_state_publisher.so``.
 
-Source: gazebo_ros_pkgs for ROS 2 and gz-sim (parameters, topics, defaults). gz sends its message Model, which a bridge
-converts to the message published here.
+Source: gazebo_ros_pkgs for ROS 2, gz-sim and uuv_simulator (parameters, topics, defaults). gz sends its message
+Model, which a bridge converts to the message published here.
 """
 
 from __future__ import annotations
@@ -100,3 +101,29 @@ class GzJointStates(_JointStates[GzParameters]):
         names = [joint.removeprefix(prefix) for joint in joints]
         topic = self.parameters.topic or f"/world/{self.context.world.name}/model/{self.context.path}/joint_state"
         self._publish_joints(names, joints, self.parameters.update_rate, topic, "/joint_states")
+
+
+@dataclass(frozen=True, kw_only=True)
+class UuvParameters:
+    """Parameters of ``libuuv_joint_state_publisher.so``."""
+
+    update_rate: float = parameter(50.0, aliases=("updateRate",))
+
+
+class UuvJointStates(_JointStates[UuvParameters]):
+    """The substitute for ``libuuv_joint_state_publisher.so``, which publishes the states of all joints of a model.
+
+    The topic is in the namespace of the plugin, by default the name of the model.
+    """
+
+    PARAMETERS = UuvParameters
+
+    def start(self) -> None:
+        """Start to publish the states of all joints with an axis."""
+        prefix = f"{self.context.path}::"
+        joints = [
+            name for name, joint in self.simulation.scene.joints.items() if name.startswith(prefix) and joint.axes
+        ]
+        namespace = self.text_in(self.context.element, "robotNamespace").strip("/") or self.context.path
+        names = [joint.removeprefix(prefix) for joint in joints]
+        self._publish_joints(names, joints, self.parameters.update_rate, f"/{namespace}/joint_states")

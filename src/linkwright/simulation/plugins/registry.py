@@ -40,12 +40,15 @@ _SENSORS_BY_SYSTEM = {
 """The systems of gz that publish measurements, and the types of their sensors."""
 _OWN_SYSTEMS = ("physics", "user-commands", "label")
 """The systems of gz whose features the simulation itself provides: moving, spawning and deleting models, labels."""
-_NO_LIBRARY = ("", "__default__", "dummy")
+_NO_LIBRARY = ("", "__default__", "dummy", "dummyfile")
 """The values of ``filename`` that mean "no library": in generated files, and in the settings of gz for a world."""
+_LIBRARIES_WITHOUT_EFFECT = ("RayPlugin",)
+"""Libraries that do nothing but show how such a plugin is written."""
 _BUILT_IN = frozenset(
     (
         *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM)),
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
+        *_LIBRARIES_WITHOUT_EFFECT,
     )
 )
 """Plugins of other simulators whose work the simulation does itself, so they are not reported as unsupported."""

@@ -44,7 +44,7 @@ _COVARIANCE_TYPE_UNKNOWN, _STATUS_FIX, _SERVICE_GPS = 0, 0, 1
 """Constants of ``sensor_msgs/msg/NavSatFix`` and ``NavSatStatus``."""
 
 
-class _ModelSensor(SensorPlugin[P], ABC, Generic[P]):
+class ModelSensor(SensorPlugin[P], ABC, Generic[P]):
     """A sensor of a whole model, on its first link."""
 
     @property
@@ -78,6 +78,11 @@ class _ModelSensor(SensorPlugin[P], ABC, Generic[P]):
         model, _, _ = self.context.path.partition(SEPARATOR)
         return f"/{self.text_in(self.context.element, 'robotNamespace').strip('/') or model}/{name.lstrip('/')}"
 
+    def sensor_topic(self, name: str) -> str:
+        """Return the topic of a sensor plugin, with the name of the sensor's model if `name` is empty."""
+        *_, parent, _, _ = ("", *self.sensor.name.split(SEPARATOR))
+        return self.topic(f"link/{name or parent}")
+
 
 # --- IMU and magnetometer ---------------------------------------------------------------------------------------------
 
@@ -98,7 +103,7 @@ class Px4ImuParameters:
     accelerometer_turn_on_bias_sigma: float = parameter(0.0, aliases=("accelerometerTurnOnBiasSigma",))
 
 
-class Px4Imu(_ModelSensor[Px4ImuParameters], SingleTopicSensor[Px4ImuParameters]):
+class Px4Imu(ModelSensor[Px4ImuParameters], SingleTopicSensor[Px4ImuParameters]):
     """The substitute for ``libgazebo_imu_plugin.so``, which measures after each step."""
 
     PARAMETERS = Px4ImuParameters
@@ -150,7 +155,7 @@ class Px4MagnetometerParameters:
     bias_correlation_time: float = parameter(600.0, aliases=("biasCorrelationTime",))
 
 
-class Px4Magnetometer(_ModelSensor[Px4MagnetometerParameters], SingleTopicSensor[Px4MagnetometerParameters]):
+class Px4Magnetometer(ModelSensor[Px4MagnetometerParameters], SingleTopicSensor[Px4MagnetometerParameters]):
     """The substitute for ``libgazebo_magnetometer_plugin.so``."""
 
     PARAMETERS = Px4MagnetometerParameters
@@ -192,7 +197,7 @@ class Px4BarometerParameters:
     drift_per_second: float = parameter(0.0, aliases=("baroDriftPaPerSec",))
 
 
-class Px4Barometer(_ModelSensor[Px4BarometerParameters], SingleTopicSensor[Px4BarometerParameters]):
+class Px4Barometer(ModelSensor[Px4BarometerParameters], SingleTopicSensor[Px4BarometerParameters]):
     """The substitute for ``libgazebo_barometer_plugin.so``.
 
     The initial height of the model is the altitude of home.
@@ -245,7 +250,7 @@ class HomeParameters:
         )
 
 
-class Px4Groundtruth(_ModelSensor[HomeParameters]):
+class Px4Groundtruth(ModelSensor[HomeParameters]):
     """The substitute for ``libgazebo_groundtruth_plugin.so``: the true pose and velocity of a model.
 
     They are published as ``nav_msgs/msg/Odometry``, and the position as ``sensor_msgs/msg/NavSatFix``.
@@ -296,7 +301,7 @@ class Px4GpsParameters(HomeParameters):
     vz_noise_density: float = parameter(0.4, aliases=("gpsVZNoiseDensity",))
 
 
-class Px4Gps(_ModelSensor[Px4GpsParameters]):
+class Px4Gps(ModelSensor[Px4GpsParameters]):
     """The substitute for ``libgazebo_gps_plugin.so``: a receiver whose measurements are 0.12 s old.
 
     It publishes the position, and the velocity in m/s towards east, north and up.
@@ -318,8 +323,7 @@ class Px4Gps(_ModelSensor[Px4GpsParameters]):
 
     def create_publishers(self) -> None:
         """Create the publishers of the position and the velocity."""
-        *_, parent, _, _ = ("", *self.sensor.name.split(SEPARATOR))
-        topic = self.topic(f"link/{self.parameters.topic_name or parent}")
+        topic = self.sensor_topic(self.parameters.topic_name)
         self._fix_output = self.node.publisher("sensor_msgs/msg/NavSatFix", topic, SENSOR_QOS)
         self._velocity_output = self.node.publisher("geometry_msgs/msg/Vector3Stamped", f"{topic}/vel", SENSOR_QOS)
 
@@ -359,7 +363,7 @@ class Px4Gps(_ModelSensor[Px4GpsParameters]):
         self._velocity_output.publish(message)
 
 
-def _create_fix(sensor: _ModelSensor[Any], globe: Globe, position: Array) -> Any:
+def _create_fix(sensor: ModelSensor[Any], globe: Globe, position: Array) -> Any:
     """Return a position in the world as a NavSatFix."""
     fix = sensor.message("sensor_msgs/msg/NavSatFix", sensor.frame)
     fix.latitude, fix.longitude, fix.altitude = globe.to_geodetic(position)

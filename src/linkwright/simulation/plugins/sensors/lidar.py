@@ -132,7 +132,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return message
 
 
-class _SingleTopicLidar(_LidarPlugin[P], SingleTopicSensor[P], Generic[P]):
+class SingleTopicLidar(_LidarPlugin[P], SingleTopicSensor[P], Generic[P]):
     """A lidar with one topic."""
 
 
@@ -145,7 +145,7 @@ class RayParameters(FrameNameParameter):
     radiation_type: str = "infrared"
 
 
-class ClassicRaySensor(_SingleTopicLidar[RayParameters]):
+class ClassicRaySensor(SingleTopicLidar[RayParameters]):
     """The substitute for ``libgazebo_ros_ray_sensor.so``."""
 
     PARAMETERS = RayParameters
@@ -200,7 +200,7 @@ class LaserParameters(FrameNameParameter):
     update_rate: float = parameter(0.0, aliases=("updateRate", "updateRateHZ"))
 
 
-class OldLaser(_SingleTopicLidar[LaserParameters]):
+class OldLaser(SingleTopicLidar[LaserParameters]):
     """The substitute for ROS 1's ``libgazebo_ros_laser.so`` and ``libgazebo_ros_gpu_laser.so``."""
 
     PARAMETERS = LaserParameters
@@ -269,7 +269,7 @@ class VelodyneParameters(LaserParameters):
     organize_cloud: bool = False
 
 
-class Velodyne(_SingleTopicLidar[VelodyneParameters]):
+class Velodyne(SingleTopicLidar[VelodyneParameters]):
     """The substitute for ``libgazebo_ros_velodyne_laser.so`` of velodyne_simulator.
 
     Points have an intensity, a ring and a time. They are ordered by firing; all lasers measure in each firing. In an
