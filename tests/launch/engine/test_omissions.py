@@ -85,7 +85,7 @@ class TestMissingPackagesByDefault:
 
     async def test_nodes_of_missing_packages_are_skipped(self, launch) -> None:
         result = await launch(
-            Node(package="moveit_servo", executable="servo_node"),
+            Node(package="moveit_hybrid_planning", executable="hybrid_planning_manager"),
             Node(package="nav2_route", executable="route_server"),
             Node(package="robot_localization", executable="estimate_all"),
             ExecuteProcess(cmd=[sys.executable, "-c", "print('the rest runs')"], output="screen"),
@@ -97,7 +97,7 @@ class TestMissingPackagesByDefault:
         assert result.succeeded
 
     async def test_launch_with_only_missing_parts_fails(self, launch) -> None:
-        result = await launch(Node(package="moveit_servo", executable="servo_node"))
+        result = await launch(Node(package="moveit_hybrid_planning", executable="hybrid_planning_manager"))
         assert "one part of the launch is skipped" in result.err
         assert not result.succeeded
 

@@ -28,7 +28,7 @@ arm:
 ARM = """arm:
   ros__parameters:
     type: joint_trajectory_controller/JointTrajectoryController
-    gpios: [{interfaces: [a, b]}]"""
+    gpios: [{interfaces: [a, b]}, {interfaces: [c]}]"""
 
 
 async def test_controller_log_messages_have_manager_process_prefix(launch: Any, write: Callable[[str, str], Path]):
