@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import threading
 
+import numpy as np
 import pytest
 
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, DurabilityPolicy, QoSProfile
-from linkwright.messages import String, TFMessage, get_message, get_service
+from linkwright.messages import String, TFMessage, Time, get_message, get_service
 from linkwright.page.protocol.simulation import ModelChoices
 from linkwright.simulation.page.modeling import entities
+from linkwright.simulation.plugins.boats.waves import WaveField, WaveParameters
+from linkwright.simulation.plugins.water import WaterSurface, create_water_message
 from tests.browser.conftest import TIMEOUT_S, state, until, wait_until_equal
 from tests.browser.live import configuration
 from tests.waiting import wait_until
@@ -50,9 +53,10 @@ def publish_world(start_viewer, extra=""):
     return viewer
 
 
-def move_model(viewer, x: float) -> None:
+def move_model(viewer, x: float, seconds: float = 0.0) -> None:
     transform = get_message("geometry_msgs/msg/TransformStamped")()
     transform.header.frame_id, transform.child_frame_id = "world", "crate::link"
+    transform.header.stamp = Time.from_nanoseconds(round(seconds * 1e9))
     transform.transform.translation.x, transform.transform.rotation.w = x, 1.0
     viewer.publish("/world_poses", TFMessage(transforms=[transform]), TF_QOS)
 
@@ -283,3 +287,25 @@ def test_sensor_rays_and_frustums_follow_display_properties(start_viewer, open_p
     wait_until_equal(lambda: drawn(page)["frustums"], ["tower::top::camera"])
     choose("Lidar Rays", "None")
     wait_until_equal(lambda: drawn(page)["rays"], {})
+
+
+def test_water_moves_with_time_of_poses(start_viewer, open_page):
+    field = WaveField(WaveParameters(period=4.0, steepness=0.7, tau=2.0))
+    viewer = publish_world(start_viewer)
+    page = open_page(viewer)
+    viewer.settle(page)
+
+    def drawn() -> dict | None:
+        return page.evaluate("() => window.linkwright.displays[0].drawn.water")
+
+    assert drawn() is None
+    viewer.publish("/world_water", create_water_message(WaterSurface(0.5, 2.0, field.wave_rows())), DESCRIPTION_QOS)
+    for seconds in (3.0, 7.5):
+        move_model(viewer, seconds, seconds=seconds)
+        wait_until_equal(lambda: (drawn() or {}).get("seconds"), seconds)
+        points = np.array(drawn()["samples"])
+        heights = 0.5 + field.heights(points[:, :2], seconds)
+        assert points[:, 2] == pytest.approx(heights, abs=1e-4)
+        assert np.ptp(heights) > 0.01
+    viewer.publish("/world_water", get_message("std_msgs/msg/Float64MultiArray")(), DESCRIPTION_QOS)
+    wait_until_equal(drawn, None)

@@ -269,7 +269,7 @@ import type {
   VoiceWordsFile,
   WatchWords,
 } from "./voice-words";
-import type { WorldPoses, WorldRays, WorldScene } from "./worlds";
+import type { WorldPoses, WorldRays, WorldScene, WorldWater } from "./worlds";
 
 export * from "./calls";
 export * from "./comparison";
@@ -570,4 +570,5 @@ export type DataContent =
   | SolidBoxes
   | WorldPoses
   | WorldRays
-  | WorldScene;
+  | WorldScene
+  | WorldWater;

@@ -89,3 +89,11 @@ export interface WorldRays {
   ranges: Float32Array;
   kind: "world_rays";
 }
+
+/** The surface of the water in a world. */
+export interface WorldWater {
+  level: number;
+  growth_time: number;
+  waves: number[];
+  kind: "world_water";
+}

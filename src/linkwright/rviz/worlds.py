@@ -17,6 +17,7 @@ from linkwright.page.protocol.robot import LinkScene, Shape, Submesh, Surface
 from linkwright.sdf.frames import Frames, PlacedLink, place_links
 from linkwright.sdf.links import Collision, Visual
 from linkwright.sdf.materials import Workflow
+from linkwright.sdf.plugins import library_name
 from linkwright.sdf.poses import RawPose
 from linkwright.sdf.scripts import find_appearance
 from linkwright.sdf.shapes import (
@@ -36,6 +37,7 @@ _DEFAULT_COLOR = (0.7, 0.7, 0.7, 1.0)
 """The color of shapes without a material: gray, as in Gazebo."""
 _MAX_HEIGHTS = 257
 """The largest number of heights along a side of a heightmap."""
+_WAVE_VISUAL = "WaveVisual"
 _COLLISION_COLOR = [1.0, 0.55, 0.1, 0.6]
 
 _PoseInLink = Callable[[RawPose], Transform]
@@ -104,6 +106,8 @@ class _Builder:
         self, link: str, elements: Sequence[Visual | Collision], pose_in_link: _PoseInLink
     ) -> Iterator[Shape]:
         for element in elements:
+            if isinstance(element, Visual) and _is_water(element):
+                continue
             shape = self._make_shape(link, element, pose_in_link(element.pose))
             if shape is not None:
                 yield shape
@@ -231,3 +235,8 @@ def _has_surface(workflow: Workflow) -> bool:
         default.roughness,
         default.metalness,
     )
+
+
+def _is_water(visual: Visual) -> bool:
+    """Return whether a visual is the water of VRX, whose shape a shader moves: the moving surface is drawn instead."""
+    return any(library_name(plugin.filename) == _WAVE_VISUAL for plugin in visual.plugins)

@@ -11,6 +11,7 @@ from PIL import Image
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS
 from linkwright.messages import Header, String, TFMessage, TransformBatch, get_message
 from linkwright.rviz import RvizConfig
+from linkwright.rviz.water import convert_water
 from tests.viewer.contents import unpack_contents
 from tests.viewer.scene import IDENTITY, open_page, open_world
 from tests.waiting import eventually
@@ -405,6 +406,55 @@ async def test_lidar_scans_are_subscribed_while_rays_are_drawn():
         world.display("World").set_property(("Lidar Rays",), "None")
         assert subscribed_topics(world) == set()
         assert sent_message(world, "world_rays") is None
+
+
+WATER = get_message("std_msgs/msg/Float64MultiArray")
+
+
+async def test_water_is_sent_until_it_disappears():
+    async with open_world(make_config("world")) as world:
+        await Simulation(world).describe(WORLD)
+        water = world.graph.create_node("water").create_publisher(WATER, "/world_water", DESCRIPTION_QOS)
+        water.publish(WATER(data=[0.5, 2.0, 0.3, 1.0, 0.1, 0.0, 1.0, 0.0]))
+        await eventually(lambda: sent_message(world, "world_water") is not None)
+        fields = sent_message(world, "world_water").fields
+        assert (fields["level"], fields["growth_time"]) == (0.5, 2.0)
+        assert fields["waves"] == [0.3, 1.0, 0.1, 0.0, 1.0, 0.0]
+        water.publish(WATER())
+        await eventually(lambda: sent_message(world, "world_water") is None)
+
+
+def sent_stamp(world) -> float:
+    """Return the time of the poses, from the header of their content."""
+    (data,) = (data for data in world.display("World").data() if b'"world_poses"' in data)
+    return float(data.split(b'"stamp":')[1].split(b",")[0])
+
+
+async def test_time_of_waves_follows_poses_that_do_not_change():
+    async with open_world(make_config("world")) as world:
+        simulation = Simulation(world)
+        await simulation.describe(WORLD)
+        water = world.graph.create_node("water").create_publisher(WATER, "/world_water", DESCRIPTION_QOS)
+        water.publish(WATER(data=[0.5, 2.0, 0.3, 1.0, 0.1, 0.0, 1.0, 0.0]))
+        await eventually(lambda: sent_message(world, "world_water") is not None)
+        await simulation.move(robot__base=(1, 1, 1, 0, 0, 0, 1))
+        before = sent_stamp(world)
+        await simulation.move(robot__base=(1, 1, 1, 0, 0, 0, 1))
+        assert sent_stamp(world) > before
+
+
+@pytest.mark.parametrize("data", [[0.5], [0.5, 2.0, 0.3], [float("nan"), 0.0]])
+def test_invalid_water_is_not_shown(data):
+    assert convert_water(WATER(data=data)) is None
+
+
+async def test_visual_of_waves_is_not_drawn_itself():
+    plugin = '<plugin name="vrx::WaveVisual" filename="libWaveVisual.so"/></visual>'
+    async with open_world(make_config("world")) as world:
+        await Simulation(world).describe(WORLD.replace("</visual>", plugin, 1))
+        ground, base, _ = sent_message(world, "world_scene").fields["links"]
+        assert ground["visuals"] == []
+        assert len(base["visuals"]) == 2
 
 
 async def test_cameras_are_sent_with_field_of_view():

@@ -7,6 +7,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
+from linkwright.simulation.plugins.water import WaterSurface
 from tests.simulation.fluids.server import running_server
 from tests.simulation.test_plugins import SECOND_NS
 from tests.simulation.worlds import box, model
@@ -168,3 +169,21 @@ async def test_classic_plugin_lifts_model_by_stated_volume():
 async def test_invalid_layer_is_reported(plugin, message):
     async with running_server(plugin) as (_, __, log):
         assert any(message in record.text for record in log), [record.text for record in log]
+
+
+UNIFORM = '<plugin name="gz::sim::systems::Buoyancy" filename="gz-sim-buoyancy-system"/>'
+OIL = "<density_change><above_depth>0.2</above_depth><density>800</density></density_change></graded_buoyancy>"
+
+
+@pytest.mark.parametrize(
+    ("plugin", "level"),
+    [
+        (buoyancy_plugin(surface=1.5), 1.5),
+        (buoyancy_plugin(surface=1.5).replace("</graded_buoyancy>", OIL), 1.5),
+        (UNIFORM, None),
+    ],
+)
+async def test_water_has_level_only_if_something_lighter_is_above(plugin, level):
+    async with running_server(plugin) as (server, _, __):
+        water = server.find_water()
+        assert water == (None if level is None else WaterSurface(level))

@@ -1,6 +1,6 @@
 import { Box3, Group, Matrix4, Vector3, type Object3D, type Raycaster } from "three";
 import type { DisplayData } from "../../connection/data";
-import type { WorldPoses, WorldScene } from "../../protocol";
+import type { WorldPoses, WorldScene, WorldWater } from "../../protocol";
 import type { DescriptionRow, Hit, SelectionBox } from "../picking";
 import { readDataPose, setPoseMatrix } from "../pose";
 import type { MovingView } from "../robot/moving-meshes";
@@ -12,9 +12,12 @@ import type { Drawing, DrawingContext } from "./drawing";
 import { findFreePosition } from "./free-position";
 import { Displacement, modelOf } from "./world-models";
 import { WorldSensors } from "./world-sensors";
+import type { WaterSurface } from "./world-water";
 
 /** The prefix of the keys of lidar rays. */
 const RAYS_KEY_PREFIX = "rays ";
+/** The key of the water. */
+const WATER_KEY = "water";
 
 /** A box flatter than this share of its width is taken for a ground. */
 const GROUND_FLATNESS = 0.02;
@@ -36,6 +39,10 @@ export class WorldDrawing implements Drawing {
   private shadowBox = new Box3();
   private readonly lights: WorldLights;
   private readonly sensors = new WorldSensors();
+  private water: WorldWater | null = null;
+  /** The drawing of the water, loaded with the first water; null while it is loading. */
+  private waterSurface: WaterSurface | null | undefined;
+  private isDisposed = false;
 
   constructor(private readonly context: DrawingContext) {
     this.root.matrixAutoUpdate = false;
@@ -53,17 +60,21 @@ export class WorldDrawing implements Drawing {
     } else if (content.kind === "world_rays") {
       this.sensors.setRanges(content);
       this.isPoseStale = true;
+    } else if (content.kind === "world_water") {
+      this.water = content;
+      if (this.waterSurface === undefined) void this.loadWaterSurface();
     }
   }
 
   onDataRemoved(key: string | null): void {
     if (key !== null) {
+      if (key === WATER_KEY) this.water = null;
       if (key.startsWith(RAYS_KEY_PREFIX)) this.sensors.forget(key.slice(RAYS_KEY_PREFIX.length));
       return;
     }
     this.sensors.dispose();
     this.drawing?.dispose();
-    this.drawing = this.scene = this.poses = null;
+    this.drawing = this.scene = this.poses = this.water = null;
   }
 
   onPropertiesChanged(): void {
@@ -72,6 +83,7 @@ export class WorldDrawing implements Drawing {
 
   update(): void {
     const { drawing, context } = this;
+    this.updateWater();
     if (!drawing) return;
     if (this.poses?.data.pose === null) this.isPoseStale = true; // it follows its frame
     if (this.isStyleStale && this.scene) {
@@ -117,7 +129,7 @@ export class WorldDrawing implements Drawing {
   }
 
   isSettled(): boolean {
-    return this.drawing?.isSettled ?? true;
+    return (this.drawing?.isSettled ?? true) && this.waterSurface !== null;
   }
 
   computeBounds(): Box3 {
@@ -236,10 +248,12 @@ export class WorldDrawing implements Drawing {
   }
 
   inspect(): object {
-    return { revision: this.scene?.revision ?? 0, ...this.drawing?.inspect(), light: this.lights.inspect(), sensors: this.sensors.inspect() };
+    return { revision: this.scene?.revision ?? 0, ...this.drawing?.inspect(), light: this.lights.inspect(), sensors: this.sensors.inspect(), water: this.water ? this.waterSurface?.inspect() ?? null : null };
   }
 
   dispose(): void {
+    this.isDisposed = true;
+    this.waterSurface?.dispose();
     this.drawing?.dispose();
     this.lights.dispose();
     this.sensors.dispose();
@@ -254,6 +268,23 @@ export class WorldDrawing implements Drawing {
       for (const origin of origins) this.shadowBox.expandByPoint(origin);
     }
     return this.visibleBox;
+  }
+
+  private async loadWaterSurface(): Promise<void> {
+    this.waterSurface = null;
+    const { WaterSurface } = await import("./world-water");
+    if (this.isDisposed) return;
+    this.waterSurface = new WaterSurface();
+    this.root.add(this.waterSurface.root);
+    this.context.invalidate();
+  }
+
+  /** Draws the water at the time of the poses, so that bodies float on it. */
+  private updateWater(): void {
+    const { water, waterSurface, poses } = this;
+    if (!waterSurface) return;
+    waterSurface.root.visible = water !== null && poses !== null;
+    if (water && poses) waterSurface.update(water, poses.data.stamp, this.context.getCamera(), this.computeWorldPose());
   }
 
   private placeLinks(drawing: RobotDrawing): void {

@@ -134,3 +134,16 @@ class WorldRays(DataContent):
 
     lidar: str
     ranges: Floats
+
+
+class WorldWater(DataContent):
+    """The surface of the water in a world.
+
+    `level` is the height of calm water in the world frame, in m. The waves grow from the time 0 with the time constant
+    `growth_time`, in s. `waves` are Gerstner waves, flat, six numbers each: amplitude in m, angular frequency in rad/s,
+    wavenumber in rad/m, steepness from 0 to 1, and x and y of the direction. Their time is that of `WorldPoses`.
+    """
+
+    level: float
+    growth_time: float
+    waves: list[float]

@@ -13,15 +13,21 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, joined, phrase
 from linkwright.geometry.single import Transform, compose, invert
-from linkwright.graph import TF_QOS, TransformException
+from linkwright.graph import LATCHED_QOS, TF_QOS, TransformException
 from linkwright.messages import TFMessage
 from linkwright.page.files import MeshIndex
 from linkwright.page.protocol.configuration import StatusLevel
 from linkwright.page.protocol.robot import MeshStatus
-from linkwright.page.protocol.worlds import CameraScene, WorldPoses, WorldRays, WorldScene
+from linkwright.page.protocol.worlds import CameraScene, WorldPoses, WorldRays, WorldScene, WorldWater
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec, alpha, topic_spec
-from linkwright.rviz.config.simulated_world import DESCRIPTION_TOPIC, POSES_TOPIC, RAYS_TOPIC, WORLD_DISPLAY
+from linkwright.rviz.config.simulated_world import (
+    DESCRIPTION_TOPIC,
+    POSES_TOPIC,
+    RAYS_TOPIC,
+    WATER_TOPIC,
+    WORLD_DISPLAY,
+)
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.base.topic_display import SideTopic, TopicDisplay
 from linkwright.rviz.displays.world_rays import RAY_CHOICES, LidarRays
@@ -30,6 +36,7 @@ from linkwright.rviz.lights import convert_lights
 from linkwright.rviz.sensors import DisplayedLidar, convert_sensors
 from linkwright.rviz.skies import compute_daylight, convert_fog
 from linkwright.rviz.viewpoints import find_camera, find_robots
+from linkwright.rviz.water import convert_water
 from linkwright.rviz.worlds import WorldContent, make_content
 from linkwright.sdf.frames import FrameError
 from linkwright.sdf.poses import SEPARATOR, WORLD
@@ -41,7 +48,7 @@ _POSES_PROPERTY = "Poses Topic"
 _RAYS_TOPIC_PROPERTY, _RAYS_PROPERTY, _FRUSTUMS_PROPERTY = "Rays Topic", "Lidar Rays", "Camera Frustums"
 _FRAME_ROW = "Frame"
 _WORLD_ROW = "World"
-_SCENE_KEY, _POSES_KEY = "scene", "poses"
+_SCENE_KEY, _POSES_KEY, _WATER_KEY = "scene", "poses", "water"
 _MAX_FINDINGS = 5
 _MOVE_TOLERANCE = 1e-6
 """The smallest change of a position in m, or of a quaternion, after which the frames of tf are placed again."""
@@ -104,6 +111,8 @@ class WorldDisplay(TopicDisplay):
         super().__init__(host, identity, config)
         self._poses_topic = SideTopic(host, "tf2_msgs/msg/TFMessage", self._on_poses)
         self._rays = LidarRays(host, self._show_rays, lambda lidar: self.remove_content(_rays_key(lidar)))
+        self._water_topic = SideTopic(host, "std_msgs/msg/Float64MultiArray", self._on_water)
+        self._water: WorldWater | None = None
         self._reading_task: asyncio.Task[None] | None = None
         self._revision = 0
         self._content = WorldContent()
@@ -124,11 +133,13 @@ class WorldDisplay(TopicDisplay):
         """Subscribe to the description and to the poses."""
         super().start()
         self._subscribe_poses()
+        self._subscribe_water()
 
     def stop(self) -> None:
         """Unsubscribe, and end the pages' access to the files of the world."""
         super().stop()
         self._poses_topic.close()
+        self._water_topic.close()
         self._rays.close()
         self.context.transforms.set_placed_frame(self.id, None)
         self.context.meshes.replace(self.id, {})
@@ -146,11 +157,13 @@ class WorldDisplay(TopicDisplay):
         super().on_enabled_changed()
         self._subscribe_poses()
         self._subscribe_rays()
+        self._subscribe_water()
 
     def on_time_changed(self) -> None:
         """Process the messages that were queued while time was paused."""
         super().on_time_changed()
         self._poses_topic.resume()
+        self._water_topic.resume()
         self._rays.resume()
 
     def on_time_reset(self) -> None:
@@ -168,6 +181,7 @@ class WorldDisplay(TopicDisplay):
         self._cancel_reading()
         self._content, self._link_indices, self._last_sent = WorldContent(), {}, ()
         self._page_problems.clear()
+        self._water = None
         self._rays.set_lidars(())
         self.context.meshes.replace(self.id, {})
         self.remove_content()
@@ -216,6 +230,18 @@ class WorldDisplay(TopicDisplay):
         problem = self._poses_topic.listen(topic, TF_QOS)
         if problem is not None:
             self.set_status_row(_POSES_PROPERTY, "error", problem)
+
+    def _subscribe_water(self) -> None:
+        self._water_topic.close()
+        if self.enabled:
+            self._water_topic.listen(WATER_TOPIC, LATCHED_QOS)
+
+    def _on_water(self, message: Any) -> None:
+        self._water = convert_water(message)
+        if self._water is None:
+            self.remove_content(_WATER_KEY)
+        else:
+            self.send(self._water, key=_WATER_KEY)
 
     def _subscribe_rays(self) -> None:
         problem = self._rays.subscribe(
@@ -333,7 +359,8 @@ class WorldDisplay(TopicDisplay):
         if not self._content.links:
             return
         frame, pose = self._world_pose
-        pose_state = (self._revision, self._poses.tobytes(), frame, None if pose is None else pose.tobytes())
+        time_ns = self._stamp_ns if self._water is not None and self._water.waves else 0
+        pose_state = (self._revision, self._poses.tobytes(), frame, None if pose is None else pose.tobytes(), time_ns)
         if pose_state == self._last_sent:
             return
         self._last_sent = pose_state

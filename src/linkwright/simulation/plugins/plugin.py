@@ -47,6 +47,7 @@ from linkwright.sdf.sensors import Sensor
 from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import NoParameters
+from linkwright.simulation.plugins.water import WaterSurface
 from linkwright.simulation.schedule import Task
 from linkwright.simulation.simulation import Simulation
 from linkwright.xmltree import Element
@@ -190,6 +191,11 @@ class SimulatedPlugin(Generic[P]):
     def stored_values(self) -> dict[str, Any]:
         """The values that previous instances stored by name before the model was changed."""
         return self._environment.stored_values
+
+    @property
+    def water(self) -> WaterSurface | None:
+        """The surface of the water on which the plugin floats bodies, or None."""
+        return None
 
     # --- methods for plugins to call ----------------------------------------------------------------------------------
 

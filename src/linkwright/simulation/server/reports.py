@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from linkwright.descriptions.conversion import with_changed_uris
 from linkwright.geometry.single import Transform
 from linkwright.graph import CLOCK_QOS, LATCHED_QOS
-from linkwright.graph.stepped.node import SteppedNode
+from linkwright.graph.stepped.node import Output, SteppedNode
 from linkwright.messages import Header, String, Time, get_message
 from linkwright.messages.tf_message import TFMessage, TransformBatch
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -23,6 +23,7 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.poses import WORLD, RawPose
 from linkwright.sdf.resources import Missing, ResourceFinder
 from linkwright.sdf.writer import WrittenModel, save_model_of_world, save_world
+from linkwright.simulation.plugins.water import WATER_TOPIC, WATER_TYPE, WaterSurface, create_water_message
 from linkwright.simulation.server.server import SimulationServer
 
 T = TypeVar("T")
@@ -50,6 +51,9 @@ class Reports:
         self._description = node.publisher("std_msgs/msg/String", "/world_description", LATCHED_QOS)
         self._poses = node.publisher("tf2_msgs/msg/TFMessage", "/world_poses", 10)
         self._metrics = node.publisher(_METRICS_TYPE, "/performance_metrics", 10)
+        self._node = node
+        self._water_output: Output | None = None
+        self._water: WaterSurface | None = None
         self._names: tuple[str, ...] = ()
         self._bodies: NDArray[np.intp] = np.zeros(0, dtype=np.intp)
         self._revision = -1
@@ -109,6 +113,7 @@ class Reports:
         now = time.monotonic()
         if now - self._last_poses >= _POSES_PERIOD_S and self._poses.is_wanted:
             self._last_poses = now
+            self.publish_water()
             self.publish_poses()
         if now - self._last_metrics >= _METRICS_PERIOD_S and self._metrics.is_wanted:
             self._last_metrics = now
@@ -130,6 +135,19 @@ class Reports:
         poses = np.hstack([data.xpos[bodies], data.xquat[bodies][:, [1, 2, 3, 0]]])
         batch = TransformBatch((WORLD,) * len(bodies), self._names, simulation.time, poses)
         self._poses.publish(TFMessage(batch=batch))
+
+    def publish_water(self) -> None:
+        """Publish the surface of the water if it has changed.
+
+        The topic exists only in worlds with water.
+        """
+        water = self._server.find_water()
+        if water == self._water:
+            return
+        self._water = water
+        if self._water_output is None:
+            self._water_output = self._node.publisher(WATER_TYPE, WATER_TOPIC, LATCHED_QOS)
+        self._water_output.publish(create_water_message(water))
 
     def _publish_time(self) -> None:
         self._clock.publish(get_message(_CLOCK_TYPE)(clock=Time.from_nanoseconds(self._server.simulation.time)))

@@ -36,6 +36,7 @@ from linkwright.simulation.plugins.registry import (
     is_gz_library,
 )
 from linkwright.simulation.plugins.ros_element import read_node_description
+from linkwright.simulation.plugins.water import WaterSurface
 from linkwright.simulation.scene.scene import SceneModel
 from linkwright.simulation.server.changes import (
     AddedModel,
@@ -152,6 +153,14 @@ class SimulationServer:
     def world_plugins(self) -> tuple[SimulatedPlugin[object], ...]:
         """The running plugins of the world."""
         return tuple(self._plugins.get(_WORLD_OWNER, ()))
+
+    def find_water(self) -> WaterSurface | None:
+        """Return the surface of the water on which plugins float bodies, or None.
+
+        If plugins differ, the surface has waves: some plugins may not have received them.
+        """
+        surfaces = [plugin.water for plugin in self._running_plugins() if plugin.water is not None]
+        return next((surface for surface in surfaces if surface.waves), surfaces[0] if surfaces else None)
 
     def spawn(self, model: Model, name: str, pose: Transform = IDENTITY, namespace: str = "") -> None:
         """Add a model to the world and start its plugins.

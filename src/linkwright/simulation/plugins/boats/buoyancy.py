@@ -90,6 +90,12 @@ class PolyhedraBuoyancyDrag(WavePlugin[BuoyancyParameters]):
         for item in self._floats:
             item.wave_height = None
 
+    @property
+    def fluid_level(self) -> float:
+        """The height of calm water in the world, in m."""
+        level = self.parameters.fluid_level
+        return 2.0 * level if self.gazebo_mistakes and not self.has_waves else level
+
     def _read_float(self, element: Element) -> _Float:
         link, report = self.link(self.text_in(element, "link_name")), SdfReport()
         geometry, pose_element = element.first("geometry"), element.first("pose")
@@ -127,10 +133,7 @@ class PolyhedraBuoyancyDrag(WavePlugin[BuoyancyParameters]):
         body, data, model = simulation.body(item.link), simulation.data, simulation.model
         rotation, position = data.xmat[body].reshape(3, 3), data.xpos[body]
         height, water_speed = self._measure_waves(item, rotation @ item.center + position)
-        level = height + parameters.fluid_level
-        if self.gazebo_mistakes and not self.has_waves:
-            level += parameters.fluid_level
-        volume = item.solid.volume_below(level, rotation, position)
+        volume = item.solid.volume_below(height + self.fluid_level, rotation, position)
         if volume.size <= _MIN_VOLUME_M3:
             return np.zeros(6)
         linear, angular = simulation.link_velocity(item.link)

@@ -48,6 +48,11 @@ class Surface(WavePlugin[SurfaceParameters]):
         self.every(0.0, self._apply_forces)
         self._apply_forces()
 
+    @property
+    def fluid_level(self) -> float:
+        """The height of calm water in the world, in m."""
+        return self.parameters.fluid_level
+
     def _read_points(self) -> Array:
         """Return the points in the frame of the link, shape (n, 3)."""
         element = self.context.element

@@ -8,7 +8,7 @@ Source: VRX (parameters, topics, defaults). There, waves of the default paramete
 
 from __future__ import annotations
 
-from abc import ABC
+from abc import ABC, abstractmethod
 from dataclasses import fields, replace
 from typing import Any, Generic, TypeVar
 
@@ -18,6 +18,7 @@ from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import Array
 from linkwright.simulation.plugins.boats.waves import WaveField, WaveParameters
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.plugins.water import WaterSurface
 
 P = TypeVar("P")
 
@@ -60,6 +61,19 @@ class WavePlugin(SimulatedPlugin[P], ABC, Generic[P]):
         if self._waves is None:
             return np.zeros(len(points))
         return self._waves.heights(points, self.simulation.seconds, sine=self.gazebo_mistakes)
+
+    @property
+    @abstractmethod
+    def fluid_level(self) -> float:
+        """The height of calm water in the world, in m."""
+
+    @property
+    def water(self) -> WaterSurface:
+        """The surface of the water."""
+        if self._waves is None:
+            return WaterSurface(self.fluid_level)
+        rows = self._waves.wave_rows(sine=self.gazebo_mistakes)
+        return WaterSurface(self.fluid_level, max(self._waves.parameters.tau, 0.0), rows)
 
     def _wavefield(self) -> Any:
         return None if self.context.element is None else self.context.element.first(WAVEFIELD)

@@ -114,6 +114,16 @@ class WaveField:
         heights: Array = growth * (np.cos(self._compute_phases(rest_points, seconds)) @ self.amplitudes)
         return heights
 
+    def wave_rows(self, *, sine: bool = False) -> tuple[tuple[float, float, float, float, float, float], ...]:
+        """Return the amplitude, frequency, wavenumber, steepness and direction of each wave.
+
+        Args:
+            sine: whether to ignore the steepness of the waves.
+        """
+        steepnesses = np.zeros_like(self.steepnesses) if sine else self.steepnesses
+        columns = (self.amplitudes, self.frequencies, self.wavenumbers, steepnesses, *self.directions.T)
+        return tuple(zip(*(column.tolist() for column in columns), strict=True))
+
     def _compute_growth(self, seconds: float) -> float:
         tau = self.parameters.tau
         return 1.0 - exp(-max(seconds, 0.0) / tau) if tau > 0.0 else 1.0

@@ -13,6 +13,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf
 from typing import Generic, TypeVar
 
@@ -23,6 +24,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.fluids.displacement import Solid, Volume
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.plugins.water import WaterSurface
 
 P = TypeVar("P")
 
@@ -106,6 +108,13 @@ class GzBuoyancy(_Buoyancy[GzBuoyancyParameters]):
         """
         self._layers = self._read_layers()
         super().start()
+
+    @property
+    def water(self) -> WaterSurface | None:
+        """The surface of the uppermost layer that has a lighter one above, or None."""
+        pairs = list(pairwise(self._layers))
+        levels = [upper.bottom for lower, upper in pairs if lower.density > upper.density]
+        return WaterSurface(levels[-1]) if levels else None
 
     def _read_layers(self) -> list[_Layer]:
         graded = None if self.context.element is None else self.context.element.first("graded_buoyancy")
