@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from linkwright.planning import smoothing
 from linkwright.planning.smoothing import parameterize_smoothly
 from linkwright.planning.splines import largest_accelerations, largest_velocities
 from linkwright.planning.timing import Trajectory, parameterize
@@ -71,6 +72,21 @@ def test_without_limits_of_jerk_little_time_is_lost() -> None:
     smooth = parameterize_smoothly(corners, np.ones(2), np.ones(2), np.full(2, np.inf))
     fastest = parameterize(corners, np.ones(2), np.ones(2))
     assert fastest.duration < smooth.duration < 1.06 * fastest.duration
+
+
+def test_loose_limit_of_jerk_needs_no_finer_points(monkeypatch) -> None:
+    counts = []
+
+    def count_points(*args, **options) -> Trajectory:
+        trajectory = parameterize(*args, **options)
+        counts.append(len(trajectory.times))
+        return trajectory
+
+    monkeypatch.setattr(smoothing, "parameterize", count_points)
+    slow = 0.1 * np.ones(2)
+    smooth = parameterize_smoothly(np.array([[0.0, 0.0], [1.0, 2.0]]), slow, slow, np.full(2, 300.0))
+    assert smooth.duration > 20.0
+    assert sum(counts) < 1000.0 * smooth.duration
 
 
 def test_path_without_length_is_a_point() -> None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -74,20 +75,25 @@ def parameterize_smoothly(
         ]
         return join(pieces)
     trials = []
-    for share in _ACCELERATION_SHARES if np.any(np.isfinite(max_jerks)) else (1.0,):
+    for share in _ACCELERATION_SHARES:
         accelerations = share * max_accelerations
         jerk_window_s = float(np.max(2.0 * accelerations / (_MARGIN * max_jerks), initial=0.0))
-        fine = parameterize(
+        parameterize_finely = partial(
+            parameterize,
             corners,
             max_velocities,
             accelerations,
             max_deviation=max_deviation,
-            interval_s=min(jerk_window_s / _FINE_STEPS or np.inf, _MAX_FINE_INTERVAL_S),
             max_path_speeds=max_path_speeds,
         )
+        fine = parameterize_finely(interval_s=_MAX_FINE_INTERVAL_S)
         window_s = max(jerk_window_s, float(np.clip(_WINDOW_SHARE * fine.duration, *_WINDOW_RANGE_S)))
-        trials.append((fine.duration + window_s, window_s, fine))
-    _, window_s, fine = min(trials, key=lambda trial: trial[0])
+        trials.append((fine.duration + window_s, window_s, fine, parameterize_finely))
+        if window_s > jerk_window_s:  # The limits of jerk cost no time.
+            break
+    _, window_s, fine, parameterize_finely = min(trials, key=lambda trial: trial[0])
+    if jerk_window_s and window_s / _FINE_STEPS < _MAX_FINE_INTERVAL_S:
+        fine = parameterize_finely(interval_s=window_s / _FINE_STEPS)
     if not fine.duration:
         return fine
     largest = (limits.max(axis=0) for limits in (max_velocities, max_accelerations))
