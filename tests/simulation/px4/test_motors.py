@@ -7,7 +7,9 @@ from math import exp
 import numpy as np
 import pytest
 
+from linkwright.loading.extensions import extensions
 from linkwright.messages import get_message
+from linkwright.simulation.plugins.registry import PLUGIN_GROUP
 from linkwright.testing import Recording
 from tests.simulation.test_plugins import SECOND_NS, running_server
 
@@ -155,6 +157,22 @@ async def test_base_plugin_publishes_speeds_in_order_of_rotors():
         assert list(recording.last.velocity) == pytest.approx([300.0, -500.0], rel=0.02)
         assert recording.last.header.stamp.sec == 2
         assert not log
+
+
+@pytest.mark.parametrize(
+    ("library", "alternative", "text"),
+    [
+        ("libAdvancedLiftDragPlugin.so", "LiftDragPlugin", "libLiftDragPlugin.so for each wing"),
+        ("librealsense_gazebo_plugin.so", "gazebo_ros_camera", "libgazebo_ros_camera.so in the <sensor>"),
+        ("libuuv_gazebo_ros_camera_plugin.so", "gazebo_ros_camera", "libgazebo_ros_camera.so in the <sensor>"),
+        ("librmagine_embree_ros_gzplugin.so", "gazebo_ros_ray_sensor", "libgazebo_ros_ray_sensor.so in a <sensor>"),
+    ],
+)
+async def test_libraries_with_simulated_alternative_are_told_of(library, alternative, text):
+    assert alternative in extensions(PLUGIN_GROUP)
+    plugin = f'<plugin name="a" filename="{library}"/>'
+    async with running_server(uav(extra=plugin)) as (_, __, log):
+        assert f"instead of {library}, use {text}" in log[1].text
 
 
 @pytest.mark.parametrize("library", ["libgazebo_mavlink_interface.so", "libArduPilotPlugin.so"])

@@ -15,12 +15,19 @@ _TASK_ALTERNATIVE = phrase(
     "`ros2 topic pub --once /vrx/release std_msgs/msg/Empty` to release the boat, and a ROS node that computes "
     "the score"
 )
+_CAMERA_ALTERNATIVE = phrase("libgazebo_ros_camera.so in the <sensor>")
+_LIDAR_ALTERNATIVE = phrase("libgazebo_ros_ray_sensor.so in a <sensor> of type ray")
+_CAMERAS = ("RealSensePlugin", "gazebo_gst_camera_plugin", "realsense_gazebo_plugin", "uuv_gazebo_ros_camera_plugin")
+_LIDARS = ("rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin")
 _TASKS = ("AcousticPerception", "AcousticTracking", "Gymkhana", "Navigation", "Perception", "ScanDock", "Wildlife")
 
 _ALTERNATIVES = {
     "air_speed": _AIR_SPEED_ALTERNATIVE,
     "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
     **dict.fromkeys((f"{task}ScoringPlugin" for task in _TASKS), _TASK_ALTERNATIVE),
+    **dict.fromkeys(_CAMERAS, _CAMERA_ALTERNATIVE),
+    **dict.fromkeys(_LIDARS, _LIDAR_ALTERNATIVE),
+    "AdvancedLiftDragPlugin": phrase("libLiftDragPlugin.so for each wing"),
     "ArduPilotPlugin": _AUTOPILOT_ALTERNATIVE,
     "gazebo_mavlink_interface": _AUTOPILOT_ALTERNATIVE,
     "gz-sim-air-speed-system": _AIR_SPEED_ALTERNATIVE,
