@@ -11,7 +11,7 @@ from tests.places import REPOSITORY
 
 UNTRANSLATED_VALUES = {"RGB", "RGB8", "RGBF32", "X", "XY", "XYZ", "XZ", "Y", "YZ", "Z", "compressed", "compressedDepth"}
 UNTRANSLATED_VALUES |= {"costmap", "map", "raw", "theora", "Float32", "Int32", "70%", "85%", "95%", "99%"}
-"""Names that are not translated: axes, types and fields of messages, transports, shares, and ROS's names of color schemes."""
+"""Names that are not translated: axes, types, fields of messages, transports, shares, and names of color schemes."""
 
 LIST_CHOICES = """
 import gc, importlib, json, pkgutil
