@@ -57,6 +57,30 @@ _REQUIRED_PARAMETERS: Mapping[str, dict[str, Any]] = {
     "mux": {"input_topics": ["a"]},
     "relay": {"input_topic": "a"},
     "throttle": {"input_topic": "a", "throttle_type": "messages"},
+    "aggregator_node": {
+        **{
+            f"{_ITEM}.{name}": value
+            for name, value in (
+                ("type", "GenericAnalyzer"),
+                ("path", "a"),
+                ("timeout", 5.0),
+                ("num_items", -1),
+                ("discard_stale", False),
+            )
+        },
+        **{
+            f"{_ITEM}.{name}": ["a"]
+            for name in (
+                "contains",
+                "startswith",
+                "name",
+                "expected",
+                "regex",
+                "find_and_remove_prefix",
+                "remove_prefix",
+            )
+        },
+    },
     "twist_mux": {
         f"{group}.{_ITEM}.{name}": value
         for group in ("topics", "locks")

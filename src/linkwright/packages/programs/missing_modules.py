@@ -12,7 +12,6 @@ _ROS_PACKAGES = {
     "clearpath_config": "clearpath_config",
     "clearpath_generator_common": "clearpath_common",
     "crazyflie_py": "Crazyswarm2",
-    "diagnostic_updater": "diagnostics",
     "interbotix_xs_modules": "interbotix_ros_toolboxes",
     "irobot_create_common_bringup": "create3_sim",
     "isaac_ros_launch_utils": "isaac_ros_common",

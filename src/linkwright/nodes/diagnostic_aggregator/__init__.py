@@ -1,0 +1,1 @@
+"""The node of ``diagnostic_aggregator``, which sorts diagnostics into groups."""

@@ -1,0 +1,1 @@
+"""Diagnostics of nodes on ``/diagnostics`` (API of ``diagnostic_updater``)."""

@@ -1,0 +1,1 @@
+"""Conversion between messages and numpy arrays (API of ``ros2_numpy``)."""
