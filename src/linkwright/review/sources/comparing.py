@@ -34,6 +34,7 @@ from linkwright.review.sources.namespaces import compare_namespaces
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.pairing import compute_similarity, pair_similar, take_pairs
 from linkwright.review.sources.protected_members import compare_protected
+from linkwright.review.sources.python_bases import select_methods
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.shared_constants import find_constant_users
@@ -246,14 +247,15 @@ class _SourcePair:
         if is_python:
             path = self.file.old_path or self.file.path
             is_installed = is_installed_module(self.old.version, self.old.find_package(path), path)
-            common = old_names.self_contained_classes & new_names.self_contained_classes if is_installed else set()
-            belongs = _is_method_of
-        else:
-            old_classes, new_classes = (
-                {item.name for item in names.of_kind(NameKind.CLASS)} for names in (old_names, new_names)
-            )
-            common, belongs = old_classes & new_classes, _has_class
-        return [item for item in removed if belongs(item, common)], [item for item in added if belongs(item, common)]
+            inherited = (old_names.inherited_names, new_names.inherited_names) if is_installed else ({}, {})
+            return select_methods(removed, *inherited), select_methods(added, *reversed(inherited))
+        old_classes, new_classes = (
+            {item.name for item in names.of_kind(NameKind.CLASS)} for names in (old_names, new_names)
+        )
+        common = old_classes & new_classes
+        return [item for item in removed if _has_class(item, common)], [
+            item for item in added if _has_class(item, common)
+        ]
 
     def _pair_names(
         self, kind: NameKind, old_items: Sequence[SourceName], new_items: Sequence[SourceName]
@@ -580,9 +582,3 @@ def _has_class(function: SourceName, classes: Collection[str]) -> bool:
     """Return whether a C++ function belongs to one of the given classes or to none."""
     names = function.name.split("::")[:-1]
     return not names or names[-1] in classes
-
-
-def _is_method_of(function: SourceName, classes: Collection[str]) -> bool:
-    """Return whether a Python function is a method of a given class or a plain function."""
-    class_name, _, _ = function.name.rpartition(".")
-    return not class_name or class_name in classes

@@ -13,6 +13,7 @@ from linkwright.review.sources.cpp_functions import (
     HIDDEN,
     PROTECTED,
     DeclaredFunction,
+    read_base_names,
     read_declared_functions,
     read_declared_members,
     read_scopes,
@@ -95,7 +96,7 @@ _ALIAS = re.compile(
 )
 _CLASS = re.compile(
     r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z]\w*_(?:PUBLIC|EXPORT|API|DECL)(?:_TYPE)?\s+)?"
-    r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)[^;{]*)?\{",
+    r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)(?P<bases>[^;{]*))?\{",
     re.MULTILINE,
 )
 _TEXT = re.compile(r'\s*(?:(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"\s*\)?\s*')
@@ -174,6 +175,7 @@ class _Reader:
         for match in _CLASS.finditer(self._text):
             end = match.end() - 1
             if end not in scopes:
+                self._names.bases.setdefault(match["name"], []).extend(read_base_names(match["bases"] or ""))
                 self._add(NameKind.CLASS, match["name"], match.start("name"), match.end("name"))
                 continue
             self._names.hidden_classes.add(match["name"])
@@ -197,7 +199,7 @@ class _Reader:
         overloads: dict[str, list[DeclaredFunction]] = {}
         for function in read_declared_functions(self._text):
             if function.is_override:
-                self._names.overrides.add(function.name.rpartition("::")[2])
+                self._names.overrides.add(function.name)
             else:
                 overloads.setdefault(function.name, []).append(function)
         for name, functions in overloads.items():

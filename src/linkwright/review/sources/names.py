@@ -6,7 +6,7 @@ Such names are topics, parameters, frames and options.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -121,7 +121,8 @@ class SourceNames:
         default_names: the names that parameters give by default.
         unknown_scopes: the parameters of ROS 1 that may be private, because a caller passes the node handle.
         rates: the texts of rates and periods, each with its location.
-        overrides: the names of functions that override a function of a base class.
+        overrides: the names of functions that override a function of a base class, qualified by their classes.
+        bases: the names of the base classes of each public class of a C++ source.
         is_program: whether the source is a program and not a library.
         makes_node: whether the source makes a node, even if the name of the node is computed.
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
@@ -129,7 +130,8 @@ class SourceNames:
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
         callbacks: the topic, service or action that calls a function, by the name of the function; its kind is None for
             a timer.
-        self_contained_classes: the classes of a Python source that certainly inherit no methods.
+        inherited_names: the names that each class of a Python source inherits. Classes with unknown base classes are
+            left out.
         bound_names: the names that a Python 3 source defines or imports.
         undefined_names: the undefined names that a source uses, each with the location of its first use.
         attributes: the attributes that a Python 3 source defines in classes or assigns to objects.
@@ -150,13 +152,14 @@ class SourceNames:
     unknown_scopes: set[str] = field(default_factory=set)
     rates: list[tuple[str, Span]] = field(default_factory=list)
     overrides: set[str] = field(default_factory=set)
+    bases: dict[str, list[str]] = field(default_factory=dict)
     is_program: bool = False
     makes_node: bool = False
     error_line: int = 0
     is_error_certain: bool = True
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)
     callbacks: dict[str, tuple[NameKind | None, str]] = field(default_factory=dict)
-    self_contained_classes: set[str] = field(default_factory=set)
+    inherited_names: dict[str, Collection[str]] = field(default_factory=dict)
     bound_names: frozenset[str] = frozenset()
     undefined_names: dict[str, Span] = field(default_factory=dict)
     attributes: frozenset[str] = frozenset()

@@ -18,10 +18,11 @@ from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_defaults import find_parameter_default
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python2 import as_python3
+from linkwright.review.sources.python_bases import find_inherited_names
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
 from linkwright.review.sources.required_parameters import is_required_parameter
 from linkwright.review.sources.shared_constants import read_imported_constants
-from linkwright.review.sources.signatures import is_self_contained, read_method_signatures, read_signature
+from linkwright.review.sources.signatures import read_method_signatures, read_signature
 from linkwright.review.sources.undefined_names import find_bound_names, find_undefined_names
 
 _RCLPY_METHODS = {
@@ -249,7 +250,7 @@ class _Reader:
                 signature = read_signature(statement)
                 details = () if signature is None else ((Detail.ARGUMENTS, signature.text),)
                 self._names.add(SourceName(kind, statement.name, "", self._python.span(statement), details))
-                if isinstance(statement, ast.ClassDef) and is_self_contained(statement):
+                if isinstance(statement, ast.ClassDef):
                     self._read_methods(statement)
             self._names.is_program |= isinstance(statement, ast.If) and "__main__" in ast.unparse(statement.test)
             self._names.is_program |= isinstance(statement, ast.FunctionDef) and statement.name == "main"
@@ -269,14 +270,17 @@ class _Reader:
                 self._names.callbacks[function.name] = (kind, text)
 
     def _read_methods(self, definition: ast.ClassDef) -> None:
-        """Add the public methods of a class.
+        """Add the public methods of a class whose base classes are known.
 
         Methods that the source passes on, such as callbacks, are left out.
         """
+        inherited = find_inherited_names(Path(self._python.source.name), self._python.tree, definition)
+        if inherited is None:
+            return
         nodes = list(ast.walk(definition))
         called_ids = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
         passed_on = {node.attr for node in nodes if isinstance(node, ast.Attribute) and id(node) not in called_ids}
-        self._names.self_contained_classes.add(definition.name)
+        self._names.inherited_names[definition.name] = inherited
         for method, signature in read_method_signatures(definition):
             if method.name not in passed_on:
                 name, details = f"{definition.name}.{method.name}", ((Detail.ARGUMENTS, signature.text),)
