@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Mapping
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.breaking import name_reason
+from linkwright.review.files.costmap_topics import CostmapTopics
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
 
@@ -66,6 +67,7 @@ class NameRules:
         self._new = new
         self._new_controllers = set(find_controllers(new))
         self._new_parts = {part for name in new for part in list_part_paths(name)}
+        self._topics = CostmapTopics(old, new)
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
 
     def find_change_reason(self, parameter: str, old_value: YamlValue, new_value: YamlValue) -> Phrase | None:
@@ -100,7 +102,8 @@ class NameRules:
             return _make_plugin_reason(removed)
         if removed and old_value.is_list and _CONTROLLER_LIST.search(parameter):
             return make_controller_reason(", ".join(sorted(removed)))
-        return find_type_reason(old_value, new_value) if is_parameter(parameter) else None
+        reason = self._topics.find_reason(parameter)
+        return find_type_reason(old_value, new_value) if reason is None and is_parameter(parameter) else reason
 
     def find_removal_reason(self, parameter: str, old: str) -> Phrase | None:
         """Return the reason why removing a parameter is breaking, or None if it is not.
@@ -117,6 +120,9 @@ class NameRules:
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         if _PLUGIN_LIST.search(parameter) and _find_name_items(old):
             return _make_plugin_reason(_find_name_items(old))
+        topic_reason = self._topics.find_reason(parameter)
+        if topic_reason is not None:
+            return topic_reason
         if node is not None and controller is None and self._is_in_lost_group(parameter, node[0].rstrip(".")):
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         ros1_controller = next(_find_ros1_controllers({parameter: old}), None)
