@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterator, Mapping
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.breaking import name_reason
 from linkwright.review.files.costmap_topics import CostmapTopics
+from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
 
@@ -58,9 +59,11 @@ class NameRules:
     Args:
         old: the old values by path.
         new: the new values by path.
+        readers: the programs that may read the values.
     """
 
-    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
+    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], readers: KeyReaders) -> None:
+        self._readers = readers
         self._new_nodes = {node for name in new if (node := find_node_name(name)) is not None}
         self._controllers = {*find_controllers(old), *find_controllers(new)}
         self._controllers |= {match["controller"] for name in old if (match := _CLAIM.fullmatch(name)) is not None}
@@ -129,12 +132,13 @@ class NameRules:
         return None if ros1_controller is None else make_controller_reason(_separate_by_slashes(ros1_controller))
 
     def _is_in_lost_group(self, parameter: str, root: str) -> bool:
-        """Return whether the group of a parameter was removed.
+        """Return whether the group of a parameter was removed, and a program may still read it.
 
         The node uses its default for a single removed value.
         """
         group = list_part_paths(parameter)[-2]
-        return root in self._new_parts and group not in self._new_parts
+        is_lost = root in self._new_parts and group not in self._new_parts
+        return is_lost and not self._readers.have_stopped_reading(group.rpartition(".")[2])
 
     def _is_lost_filter_frame(self, parameter: str, frame: str) -> bool:
         """Return whether no filter of robot_localization in the file publishes the transform of a frame any more."""
