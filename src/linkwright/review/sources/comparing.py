@@ -33,6 +33,7 @@ from linkwright.review.sources.names import (
 from linkwright.review.sources.namespaces import compare_namespaces
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.pairing import compute_similarity, pair_similar, take_pairs
+from linkwright.review.sources.parameter_uses import ParameterUses
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.python_bases import select_methods
 from linkwright.review.sources.reading import is_program_text
@@ -261,6 +262,8 @@ class _SourcePair:
         self, kind: NameKind, old_items: Sequence[SourceName], new_items: Sequence[SourceName]
     ) -> list[tuple[SourceName, SourceName]]:
         """Return the pairs of an old and a new name of the same thing."""
+        if kind is NameKind.PARAMETER and old_items and new_items:
+            return pair_similar(old_items, new_items, self._read_uses(old_items, new_items).differ)
         if kind is NameKind.FUNCTION:
             pairs = list(self._pair_by_code(old_items, new_items))
         else:
@@ -271,6 +274,11 @@ class _SourcePair:
             [item for item in items if item not in paired] for items in (old_items, new_items)
         )
         return [*pairs, *pair_similar(unpaired_old, unpaired_new)]
+
+    def _read_uses(self, old_items: Sequence[SourceName], new_items: Sequence[SourceName]) -> ParameterUses:
+        sides = ((self.old.version, self.file.old_path), (self.new.version, self.file.new_path))
+        texts = ("" if path is None else version.text(path) for version, path in sides)
+        return ParameterUses(*texts, [item.name for item in old_items], [item.name for item in new_items])
 
     def _pair_by_code(
         self, removed: Sequence[SourceName], added: Sequence[SourceName]
