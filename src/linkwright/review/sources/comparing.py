@@ -20,6 +20,7 @@ from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import compare_details, format_name, format_names, make_required_reason
+from linkwright.review.sources.enumerators import compare_enumerations
 from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
@@ -277,8 +278,8 @@ class _SourcePair:
 
     def _read_uses(self, old_items: Sequence[SourceName], new_items: Sequence[SourceName]) -> ParameterUses:
         sides = ((self.old.version, self.file.old_path), (self.new.version, self.file.new_path))
-        texts = ("" if path is None else version.text(path) for version, path in sides)
-        return ParameterUses(*texts, [item.name for item in old_items], [item.name for item in new_items])
+        old_text, new_text = ("" if path is None else version.text(path) for version, path in sides)
+        return ParameterUses(old_text, new_text, [item.name for item in old_items], [item.name for item in new_items])
 
     def _pair_by_code(
         self, removed: Sequence[SourceName], added: Sequence[SourceName]
@@ -533,10 +534,14 @@ class _SourcePair:
             yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, None)
 
     def _compare_header(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changes to namespaces of an installed header, and to protected members of its classes."""
+        """Yield the changes to namespaces, protected members and enumerators of an installed header."""
         if None in (self.file.old_path, self.file.new_path) or not self._is_interface(self.file.old_path or ""):
             return
-        for change in (*compare_namespaces(old_names, new_names), *compare_protected(old_names, new_names)):
+        for change in (
+            *compare_namespaces(old_names, new_names),
+            *compare_protected(old_names, new_names),
+            *compare_enumerations(old_names.enumerations, new_names.enumerations),
+        ):
             yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, change.reason)
 
     @staticmethod

@@ -20,6 +20,7 @@ from linkwright.review.sources.cpp_functions import (
 )
 from linkwright.review.sources.cpp_handles import Handles, add_namespace
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
+from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
 from linkwright.review.sources.name_patterns import find_format
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
@@ -196,6 +197,11 @@ class _Reader:
             self._names.aliases[match["name"] or match["using"]] = type_name
         for match in _NAMESPACE.finditer(self._text):
             self._names.namespaces.setdefault(match["name"], self._make_span(match.start("name"), match.end("name")))
+        for enumeration, enumerators in read_enumerations(self._text).items():
+            self._names.enumerations[enumeration] = {
+                name: (item.value, self._make_span(item.start, item.start + len(name)))
+                for name, item in enumerators.items()
+            }
         overloads: dict[str, list[DeclaredFunction]] = {}
         for function in read_declared_functions(self._text):
             if function.is_override:

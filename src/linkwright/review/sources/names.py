@@ -141,6 +141,7 @@ class SourceNames:
         protected: the protected members, functions and nested classes of the classes of a C++ header.
         aliases: the types that a C++ header names with ``typedef`` and ``using``, by name.
         namespaces: the named namespaces that a C++ header opens, each with its first location.
+        enumerations: the values and locations of the enumerators of each public enumeration of a C++ header.
         hidden_classes: the names of the protected and private classes in a C++ source.
         has_star_import: whether an ``__init__.py`` imports all names of a module, so that it may have other names.
     """
@@ -168,6 +169,7 @@ class SourceNames:
     protected: list[SourceName] = field(default_factory=list)
     aliases: dict[str, str] = field(default_factory=dict)
     namespaces: dict[str, Span] = field(default_factory=dict)
+    enumerations: dict[str, dict[str, tuple[str, Span]]] = field(default_factory=dict)
     hidden_classes: set[str] = field(default_factory=set)
     has_star_import: bool = False
 
