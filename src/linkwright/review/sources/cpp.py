@@ -20,6 +20,7 @@ from linkwright.review.sources.cpp_functions import (
 )
 from linkwright.review.sources.cpp_handles import Handles, add_namespace
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
+from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
 from linkwright.review.sources.name_patterns import find_format
@@ -69,6 +70,8 @@ _GRAPH_KINDS = frozenset({*_COMMUNICATION_KINDS, NameKind.ACTION, NameKind.ACTIO
 """The kinds of names that remappings change."""
 _FREE_INDEX = {"create_publisher": 1, "create_subscription": 1, "create_service": 2, "create_client": 3}
 """The index of the name in the free functions of rclcpp, behind the interfaces of the node."""
+_SERVICE_QOS_INDEX = {"create_service": 1, "create_client": 0}
+"""The index of the QoS behind the name of a service."""
 _CLIENT_LIBRARY = "rclcpp::"
 _NODE_FIRST_CALLS = frozenset({"declare_parameter_if_not_declared"})
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
@@ -338,6 +341,11 @@ class _Reader:
         ):
             details.append(
                 (Detail.QUEUE if function in _ROS1_CALLS else Detail.QOS, " ".join(other_arguments[0].split()))
+            )
+        if function in _SERVICE_QOS_INDEX and kind is not NameKind.ACTION_CLIENT:
+            index = _SERVICE_QOS_INDEX[function]
+            details += read_service_qos(
+                " ".join(other_arguments[index].split()) if index < len(other_arguments) else None
             )
         if kind is NameKind.PUBLISHER and function in _ROS1_CALLS and other_arguments[-1:] == ["true"]:
             details.append((Detail.LATCH, YES))

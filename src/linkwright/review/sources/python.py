@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
+from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_defaults import find_parameter_default
@@ -325,7 +326,7 @@ class _Reader:
                 self._add_frame(_FRAME_FIELDS[keyword.arg], keyword.value)
         if function in _RCLPY_METHODS:
             kind, type_keyword, name_keyword, qos_index = _RCLPY_METHODS[function]
-            qos = self._read_qos(_get_argument(call, qos_index, "qos_profile"))
+            qos = self._read_qos(kind, _get_argument(call, qos_index, "qos_profile"))
             self._add(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 0, type_keyword), qos)
             if kind in _CALLBACK_KEYWORDS:
                 self._add_callback(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 2, "callback"))
@@ -460,8 +461,10 @@ class _Reader:
         enclosing = [node for node in classes if node.lineno <= call.lineno <= (node.end_lineno or node.lineno)]
         return bool(enclosing) and any(ast.unparse(base).endswith("Node") for base in enclosing[-1].bases)
 
-    def _read_qos(self, node: ast.expr | None) -> tuple[tuple[Detail, str], ...]:
+    def _read_qos(self, kind: NameKind, node: ast.expr | None) -> tuple[tuple[Detail, str], ...]:
         text = "" if node is None else _format_expression(self._python, self._python.resolved(node))
+        if kind in (NameKind.SERVICE, NameKind.CLIENT):
+            return read_service_qos(text or None)
         return ((Detail.QOS, text),) if _QOS.fullmatch(text) else ()
 
     def _add_frame(self, kind: NameKind, node: ast.expr) -> None:
