@@ -10,7 +10,7 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.cpp_bases import ClassMethods
-from linkwright.review.sources.names import NameKind, SourceName, SourceNames
+from linkwright.review.sources.names import NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.reading import read_source_names, try_read_source
 from linkwright.review.sources.unchanged_sources import UnchangedSources, get_counterpart, is_same_topic
 from linkwright.review.sources.used_packages import UsedPackages
@@ -45,6 +45,10 @@ class ChangedSources:
     def get_names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
         return self._names.get(path, SourceNames()) if path is not None else SourceNames()
+
+    def list_timers(self, path: str | None) -> list[Timer]:
+        """Return the timers in all changed sources except one."""
+        return [timer for other, names in self._names.items() if other != path for timer in names.timers]
 
     @cached_property
     def codes(self) -> Mapping[str, Code]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
@@ -37,6 +36,7 @@ from linkwright.review.sources.pairing import compute_similarity, pair_similar, 
 from linkwright.review.sources.parameter_uses import ParameterUses
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.python_bases import select_methods
+from linkwright.review.sources.rates import compare_rates, compare_timers
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.shared_constants import find_constant_users
@@ -47,10 +47,6 @@ from linkwright.review.versions import TEST_FOLDERS, Versions
 _SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
 _MAX_FUNCTION_CHANGES = 3
 """The maximum number of functions with changed arguments in a file that have lines of their own."""
-_UNIT_NAMES = re.compile(
-    r"\b(?:ros|rospy|rclcpp|rclpy|std|chrono|(?:nano|micro|milli)?seconds|duration|Duration|from_sec|to_sec|n?secs|"
-    r"[num]?s|Hz|from_seconds|float|int)\b"
-)
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -481,21 +477,14 @@ class _SourcePair:
         yield self._make_change(_format_rename(old, new), new.span, self.new, reason if is_lost else None)
 
     def _compare_rates(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changed rates and periods, and all rates of a new node.
-
-        Rates are compared only if both versions have the same number.
-        """
-        old_rates, new_rates = old_names.rates, new_names.rates
-        if self.file.old_path is None and new_rates and new_names.makes_node:
-            texts = joined_first(dict.fromkeys(text for text, _ in new_rates), MAX_NAMES)
-            yield self._make_change(phrase("rates and periods: {texts}", texts=texts), new_rates[0][1], self.new, None)
-        if len(old_rates) != len(new_rates):
-            return
-        for (old_text, _), (new_text, span) in zip(old_rates, new_rates, strict=True):
-            is_same_call = old_text.partition("(")[0] == new_text.partition("(")[0]
-            if is_same_call and old_text != new_text and (_is_number(old_text) or _is_number(new_text)):
-                text = phrase("rate or period: {old} -> {new}", old=old_text, new=new_text)
-                yield self._make_change(text, span, self.new, None)
+        """Yield the changed rates and periods, and the removed and added timers."""
+        is_added, is_removed = self.file.old_path is None, self.file.new_path is None
+        changes = list(compare_rates(old_names, new_names, is_added=is_added))
+        if not is_added and not is_removed:
+            others = [*self.old.list_timers(self.file.old_path), *self.new.list_timers(self.file.new_path)]
+            changes += compare_timers(old_names, new_names, others)
+        for change in changes:
+            yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, None)
 
     def _compare_imports(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield new absolute imports of modules of the same package.
@@ -555,12 +544,6 @@ def _has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, ne
     """Return whether a function or member only has other names for the same types."""
     is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
     return is_member and old_names.resolve_aliases(old.type) == new_names.resolve_aliases(new.type)
-
-
-def _is_number(rate: str) -> bool:
-    """Return whether the argument of a rate has no names except units."""
-    argument = rate.partition("(")[2]
-    return re.search(r"[A-Za-z_]{2,}", _UNIT_NAMES.sub("", re.sub(r"(\d)[a-z]+", r"\1", argument))) is None
 
 
 def _format_rename(old: SourceName, new: SourceName) -> Phrase:

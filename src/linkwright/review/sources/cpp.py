@@ -24,7 +24,7 @@ from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
 from linkwright.review.sources.name_patterns import find_format
-from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.node_options import Remappings, read_remappings
 from linkwright.review.sources.parameter_defaults import find_cpp_parameter_default
 from linkwright.review.sources.parameter_helpers import find_helper_calls, is_parameter_name, read_elements
@@ -438,8 +438,11 @@ class _Reader:
         index = 1 if is_timer and len(texts) > 1 and not re.search(r"\d", texts[0]) else 0
         if index < len(texts):
             name = match["name"].split()[0]
-            self._names.rates.append((f"{name}({texts[index]})", self._make_span(*arguments[index])))
+            rate = f"{name}({texts[index]})", self._make_span(*arguments[index])
+            self._names.rates.append(rate)
             if "imer" in name:
+                functions = set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
+                self._names.timers.append(Timer(functions.pop() if len(functions) == 1 else "", *rate))
                 self._add_callback(None, "", arguments)
 
     def _get_literal(self, begin: int, end: int) -> str | None:

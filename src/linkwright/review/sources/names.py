@@ -110,6 +110,21 @@ class DefaultName:
     name: str
 
 
+@dataclass(frozen=True)
+class Timer:
+    """A timer of a source.
+
+    Attributes:
+        callback: the name of the function that it calls; empty if it is another expression.
+        text: the call with the period.
+        span: the location of the period.
+    """
+
+    callback: str
+    text: str
+    span: Span
+
+
 @dataclass
 class SourceNames:
     """The names in a source.
@@ -121,6 +136,7 @@ class SourceNames:
         default_names: the names that parameters give by default.
         unknown_scopes: the parameters of ROS 1 that may be private, because a caller passes the node handle.
         rates: the texts of rates and periods, each with its location.
+        timers: the timers, in the order of the source.
         overrides: the names of functions that override a function of a base class, qualified by their classes.
         bases: the names of the base classes of each public class of a C++ source.
         is_program: whether the source is a program and not a library.
@@ -152,6 +168,7 @@ class SourceNames:
     default_names: set[DefaultName] = field(default_factory=set)
     unknown_scopes: set[str] = field(default_factory=set)
     rates: list[tuple[str, Span]] = field(default_factory=list)
+    timers: list[Timer] = field(default_factory=list)
     overrides: set[str] = field(default_factory=set)
     bases: dict[str, list[str]] = field(default_factory=dict)
     is_program: bool = False

@@ -14,7 +14,7 @@ from pathlib import Path, PurePosixPath
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
 from linkwright.review.sources.details import read_service_qos
-from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_defaults import find_parameter_default
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
@@ -371,9 +371,14 @@ class _Reader:
         if function in _RATE_CALLS and called_name(call).partition(".")[0] != "threading" and call.args:
             period = self._python.resolved(call.args[0])
             text = f"{function}({_format_expression(self._python, period)})"
-            self._names.rates.append((text, self._python.span(call.args[0])))
+            span = self._python.span(call.args[0])
+            self._names.rates.append((text, span))
             if "imer" in function:
-                self._add_callback(None, None, _get_argument(call, 1, "callback"))
+                callback = _get_argument(call, 1, "callback")
+                self._add_callback(None, None, callback)
+                is_name = isinstance(callback, (ast.Name, ast.Attribute))
+                name = ast.unparse(callback).rpartition(".")[2] if is_name and callback is not None else ""
+                self._names.timers.append(Timer(name, text, span))
         elif function in _TRANSFORM_CALLS:
             for index in _TRANSFORM_CALLS[function]:
                 if index < len(call.args):
