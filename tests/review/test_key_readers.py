@@ -88,3 +88,29 @@ def test_name_that_a_list_loses_is_breaking_if_an_unchanged_source_uses_it(repos
 )
 def test_other_items_of_lists_are_not_breaking(repository, compare, files, old, new, changed):
     assert find_breaking_changes(repository, compare, files, old, new, changed) == []
+
+
+NODE = "arm_node:\n  ros__parameters:\n    rate: 10.0\n"
+LIMITS = "    limits:\n      speed: 1.0\n      force: 5.0\n"
+DECLARED = 'void start() { declare_parameter("limits.speed", 1.0); }\n'
+
+
+@pytest.mark.parametrize(
+    ("sources", "changed", "is_breaking"),
+    [
+        ({"a/src/arm.cpp": DECLARED}, {"a/src/arm.cpp": "void start() {}\n"}, False),
+        ({"a/src/arm.cpp": DECLARED}, {"a/src/arm.cpp": "// limits\n" + DECLARED}, True),
+        ({"a/src/arm.cpp": DECLARED, "a/src/leg.cpp": DECLARED}, {"a/src/arm.cpp": "void start() {}\n"}, True),
+        ({"a/src/arm.cpp": DECLARED}, {"a/src/arm.cpp": None, "a/src/new.cpp": DECLARED}, True),
+        ({"a/src/arm.cpp": DECLARED}, {}, True),
+        ({}, {}, True),
+    ],
+)
+def test_a_removed_group_of_parameters_is_breaking_unless_its_readers_stop_reading_it(
+    repository, compare, sources, changed, is_breaking
+):
+    repository.commit({"a/package.xml": FILES["a/package.xml"], PATH: NODE + LIMITS, **sources})
+    repository.write({PATH: NODE, **changed})
+    (found,) = (found for found in compare(repository).subjects if found.path == PATH)
+    reason = "the node 'arm_node' starts without these parameters"
+    assert [str(change.reason) for change in found.changes] == [reason if is_breaking else "None"]

@@ -9,9 +9,10 @@ from functools import cached_property
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
-from linkwright.review.versions import TEST_FOLDERS, Versions
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _PROGRAM_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".launch", ".launch.xml")
 _SOURCE_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
@@ -68,6 +69,21 @@ class KeyReaders:
                 return phrase("'{file}' still uses the name '{name}'", file=reader, name=name)
         return None
 
+    def have_stopped_reading(self, group: str) -> bool:
+        """Return whether the sources that named a group of parameters changed, and no source names it any more.
+
+        Args:
+            group: the last name of the group, which may be a part of longer names: ``limits`` of ``arm.limits.speed``.
+        """
+        pattern = re.compile(rf"[\"'](?:[\w.]*\.)?{re.escape(group)}(?:\.[\w.]*)?[\"']")
+        changed = {file.old_path for file in self.versions.changed_files}
+        readers = {path for path in _list_sources(self.versions.old) if _names(self.versions.old, path, pattern)}
+        return (
+            bool(readers)
+            and readers <= changed
+            and not any(_names(self.versions.new, path, pattern) for path in _list_sources(self.versions.new))
+        )
+
     @cached_property
     def _is_file_used(self) -> bool:
         """Whether a program contains the name of the file."""
@@ -91,3 +107,15 @@ class KeyReaders:
         for path in self.versions.new.paths(suffixes):
             if path not in excluded and TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
                 yield path
+
+
+def _list_sources(version: Version) -> Iterator[str]:
+    """Yield the paths of the sources of a version, without tests."""
+    for path in version.paths(_SOURCE_SUFFIXES):
+        if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) and not is_launch_file_name(PurePosixPath(path).name):
+            yield path
+
+
+def _names(version: Version, path: str, pattern: re.Pattern[str]) -> bool:
+    """Return whether the code of a source contains a text outside of comments."""
+    return pattern.search(_COMMENT.sub(r"\1", version.text(path))) is not None

@@ -112,8 +112,8 @@ def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Nod
     old_values, new = ({} if root is None else collect_values(root, labels) for root in (old_root, new_root))
     moveit = MoveItRules(old_values, new)
     old = _report_renamed(pair, old_values, new, moveit)
-    rules = NameRules(old, new)
     readers = KeyReaders(pair.versions, pair.new_path)
+    rules = NameRules(old, new, readers)
     new_keys = frozenset(_get_last_key(part) for name in new for part in list_part_paths(name))
     for name, value in new.items():
         old_value = old.get(name)

@@ -10,6 +10,8 @@ from collections.abc import Collection, Iterator, Mapping
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.breaking import name_reason
+from linkwright.review.files.costmap_topics import CostmapTopics
+from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
 
@@ -57,15 +59,18 @@ class NameRules:
     Args:
         old: the old values by path.
         new: the new values by path.
+        readers: the programs that may read the values.
     """
 
-    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
+    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], readers: KeyReaders) -> None:
+        self._readers = readers
         self._new_nodes = {node for name in new if (node := find_node_name(name)) is not None}
         self._controllers = {*find_controllers(old), *find_controllers(new)}
         self._controllers |= {match["controller"] for name in old if (match := _CLAIM.fullmatch(name)) is not None}
         self._new = new
         self._new_controllers = set(find_controllers(new))
         self._new_parts = {part for name in new for part in list_part_paths(name)}
+        self._topics = CostmapTopics(old, new)
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
 
     def find_change_reason(self, parameter: str, old_value: YamlValue, new_value: YamlValue) -> Phrase | None:
@@ -100,7 +105,8 @@ class NameRules:
             return _make_plugin_reason(removed)
         if removed and old_value.is_list and _CONTROLLER_LIST.search(parameter):
             return make_controller_reason(", ".join(sorted(removed)))
-        return find_type_reason(old_value, new_value) if is_parameter(parameter) else None
+        reason = self._topics.find_reason(parameter)
+        return find_type_reason(old_value, new_value) if reason is None and is_parameter(parameter) else reason
 
     def find_removal_reason(self, parameter: str, old: str) -> Phrase | None:
         """Return the reason why removing a parameter is breaking, or None if it is not.
@@ -117,18 +123,22 @@ class NameRules:
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         if _PLUGIN_LIST.search(parameter) and _find_name_items(old):
             return _make_plugin_reason(_find_name_items(old))
+        topic_reason = self._topics.find_reason(parameter)
+        if topic_reason is not None:
+            return topic_reason
         if node is not None and controller is None and self._is_in_lost_group(parameter, node[0].rstrip(".")):
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         ros1_controller = next(_find_ros1_controllers({parameter: old}), None)
         return None if ros1_controller is None else make_controller_reason(_separate_by_slashes(ros1_controller))
 
     def _is_in_lost_group(self, parameter: str, root: str) -> bool:
-        """Return whether the group of a parameter was removed.
+        """Return whether the group of a parameter was removed, and a program may still read it.
 
         The node uses its default for a single removed value.
         """
         group = list_part_paths(parameter)[-2]
-        return root in self._new_parts and group not in self._new_parts
+        is_lost = root in self._new_parts and group not in self._new_parts
+        return is_lost and not self._readers.have_stopped_reading(group.rpartition(".")[2])
 
     def _is_lost_filter_frame(self, parameter: str, frame: str) -> bool:
         """Return whether no filter of robot_localization in the file publishes the transform of a frame any more."""

@@ -9,7 +9,8 @@ from functools import cached_property
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.sources.code import Code, read_code
-from linkwright.review.sources.names import NameKind, SourceName, SourceNames
+from linkwright.review.sources.cpp_bases import ClassMethods
+from linkwright.review.sources.names import NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.reading import read_source_names, try_read_source
 from linkwright.review.sources.unchanged_sources import UnchangedSources, get_counterpart, is_same_topic
 from linkwright.review.sources.used_packages import UsedPackages
@@ -45,6 +46,10 @@ class ChangedSources:
         """Return the names in a changed source."""
         return self._names.get(path, SourceNames()) if path is not None else SourceNames()
 
+    def list_timers(self, path: str | None) -> list[Timer]:
+        """Return the timers in all changed sources except one."""
+        return [timer for other, names in self._names.items() if other != path for timer in names.timers]
+
     @cached_property
     def codes(self) -> Mapping[str, Code]:
         """The code of the changed sources, by path."""
@@ -74,10 +79,8 @@ class ChangedSources:
         )
 
     @cached_property
-    def _function_names(self) -> frozenset[str]:
-        overrides = {name for names in self._names.values() for name in names.overrides}
-        declared = {name.rpartition("::")[2] for kind, name in self._known_names if kind is NameKind.FUNCTION}
-        return frozenset(overrides | declared)
+    def _methods(self) -> ClassMethods:
+        return ClassMethods(self.version, self._names)
 
     @cached_property
     def _expressions(self) -> list[tuple[NameKind, str]]:
@@ -112,8 +115,8 @@ class ChangedSources:
             return True
         if (item.kind, get_comparison_name(item)) in self._known_names:
             return False
-        if item.kind is NameKind.FUNCTION and item.name.rpartition("::")[2] in self._function_names:
-            return False  # in a base class, for example
+        if item.kind is NameKind.FUNCTION and self._methods.has_function(item.name):
+            return False
         if item.kind in _LOCAL_KINDS:
             return True
         package = self.find_package(path)

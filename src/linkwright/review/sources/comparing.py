@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
@@ -20,6 +19,7 @@ from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import compare_details, format_name, format_names, make_required_reason
+from linkwright.review.sources.enumerators import compare_enumerations
 from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
@@ -33,7 +33,10 @@ from linkwright.review.sources.names import (
 from linkwright.review.sources.namespaces import compare_namespaces
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.pairing import compute_similarity, pair_similar, take_pairs
+from linkwright.review.sources.parameter_uses import ParameterUses
 from linkwright.review.sources.protected_members import compare_protected
+from linkwright.review.sources.python_bases import select_methods
+from linkwright.review.sources.rates import compare_rates, compare_timers
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.shared_constants import find_constant_users
@@ -44,10 +47,6 @@ from linkwright.review.versions import TEST_FOLDERS, Versions
 _SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
 _MAX_FUNCTION_CHANGES = 3
 """The maximum number of functions with changed arguments in a file that have lines of their own."""
-_UNIT_NAMES = re.compile(
-    r"\b(?:ros|rospy|rclcpp|rclpy|std|chrono|(?:nano|micro|milli)?seconds|duration|Duration|from_sec|to_sec|n?secs|"
-    r"[num]?s|Hz|from_seconds|float|int)\b"
-)
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -246,19 +245,22 @@ class _SourcePair:
         if is_python:
             path = self.file.old_path or self.file.path
             is_installed = is_installed_module(self.old.version, self.old.find_package(path), path)
-            common = old_names.self_contained_classes & new_names.self_contained_classes if is_installed else set()
-            belongs = _is_method_of
-        else:
-            old_classes, new_classes = (
-                {item.name for item in names.of_kind(NameKind.CLASS)} for names in (old_names, new_names)
-            )
-            common, belongs = old_classes & new_classes, _has_class
-        return [item for item in removed if belongs(item, common)], [item for item in added if belongs(item, common)]
+            inherited = (old_names.inherited_names, new_names.inherited_names) if is_installed else ({}, {})
+            return select_methods(removed, *inherited), select_methods(added, *reversed(inherited))
+        old_classes, new_classes = (
+            {item.name for item in names.of_kind(NameKind.CLASS)} for names in (old_names, new_names)
+        )
+        common = old_classes & new_classes
+        return [item for item in removed if _has_class(item, common)], [
+            item for item in added if _has_class(item, common)
+        ]
 
     def _pair_names(
         self, kind: NameKind, old_items: Sequence[SourceName], new_items: Sequence[SourceName]
     ) -> list[tuple[SourceName, SourceName]]:
         """Return the pairs of an old and a new name of the same thing."""
+        if kind is NameKind.PARAMETER and old_items and new_items:
+            return pair_similar(old_items, new_items, self._read_uses(old_items, new_items).differ)
         if kind is NameKind.FUNCTION:
             pairs = list(self._pair_by_code(old_items, new_items))
         else:
@@ -269,6 +271,11 @@ class _SourcePair:
             [item for item in items if item not in paired] for items in (old_items, new_items)
         )
         return [*pairs, *pair_similar(unpaired_old, unpaired_new)]
+
+    def _read_uses(self, old_items: Sequence[SourceName], new_items: Sequence[SourceName]) -> ParameterUses:
+        sides = ((self.old.version, self.file.old_path), (self.new.version, self.file.new_path))
+        old_text, new_text = ("" if path is None else version.text(path) for version, path in sides)
+        return ParameterUses(old_text, new_text, [item.name for item in old_items], [item.name for item in new_items])
 
     def _pair_by_code(
         self, removed: Sequence[SourceName], added: Sequence[SourceName]
@@ -470,21 +477,14 @@ class _SourcePair:
         yield self._make_change(_format_rename(old, new), new.span, self.new, reason if is_lost else None)
 
     def _compare_rates(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changed rates and periods, and all rates of a new node.
-
-        Rates are compared only if both versions have the same number.
-        """
-        old_rates, new_rates = old_names.rates, new_names.rates
-        if self.file.old_path is None and new_rates and new_names.makes_node:
-            texts = joined_first(dict.fromkeys(text for text, _ in new_rates), MAX_NAMES)
-            yield self._make_change(phrase("rates and periods: {texts}", texts=texts), new_rates[0][1], self.new, None)
-        if len(old_rates) != len(new_rates):
-            return
-        for (old_text, _), (new_text, span) in zip(old_rates, new_rates, strict=True):
-            is_same_call = old_text.partition("(")[0] == new_text.partition("(")[0]
-            if is_same_call and old_text != new_text and (_is_number(old_text) or _is_number(new_text)):
-                text = phrase("rate or period: {old} -> {new}", old=old_text, new=new_text)
-                yield self._make_change(text, span, self.new, None)
+        """Yield the changed rates and periods, and the removed and added timers."""
+        is_added, is_removed = self.file.old_path is None, self.file.new_path is None
+        changes = list(compare_rates(old_names, new_names, is_added=is_added))
+        if not is_added and not is_removed:
+            others = [*self.old.list_timers(self.file.old_path), *self.new.list_timers(self.file.new_path)]
+            changes += compare_timers(old_names, new_names, others)
+        for change in changes:
+            yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, None)
 
     def _compare_imports(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield new absolute imports of modules of the same package.
@@ -523,10 +523,14 @@ class _SourcePair:
             yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, None)
 
     def _compare_header(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changes to namespaces of an installed header, and to protected members of its classes."""
+        """Yield the changes to namespaces, protected members and enumerators of an installed header."""
         if None in (self.file.old_path, self.file.new_path) or not self._is_interface(self.file.old_path or ""):
             return
-        for change in (*compare_namespaces(old_names, new_names), *compare_protected(old_names, new_names)):
+        for change in (
+            *compare_namespaces(old_names, new_names),
+            *compare_protected(old_names, new_names),
+            *compare_enumerations(old_names.enumerations, new_names.enumerations),
+        ):
             yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, change.reason)
 
     @staticmethod
@@ -540,12 +544,6 @@ def _has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, ne
     """Return whether a function or member only has other names for the same types."""
     is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
     return is_member and old_names.resolve_aliases(old.type) == new_names.resolve_aliases(new.type)
-
-
-def _is_number(rate: str) -> bool:
-    """Return whether the argument of a rate has no names except units."""
-    argument = rate.partition("(")[2]
-    return re.search(r"[A-Za-z_]{2,}", _UNIT_NAMES.sub("", re.sub(r"(\d)[a-z]+", r"\1", argument))) is None
 
 
 def _format_rename(old: SourceName, new: SourceName) -> Phrase:
@@ -580,9 +578,3 @@ def _has_class(function: SourceName, classes: Collection[str]) -> bool:
     """Return whether a C++ function belongs to one of the given classes or to none."""
     names = function.name.split("::")[:-1]
     return not names or names[-1] in classes
-
-
-def _is_method_of(function: SourceName, classes: Collection[str]) -> bool:
-    """Return whether a Python function is a method of a given class or a plain function."""
-    class_name, _, _ = function.name.rpartition(".")
-    return not class_name or class_name in classes

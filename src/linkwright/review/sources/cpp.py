@@ -13,15 +13,18 @@ from linkwright.review.sources.cpp_functions import (
     HIDDEN,
     PROTECTED,
     DeclaredFunction,
+    read_base_names,
     read_declared_functions,
     read_declared_members,
     read_scopes,
 )
 from linkwright.review.sources.cpp_handles import Handles, add_namespace
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
+from linkwright.review.sources.details import read_service_qos
+from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
 from linkwright.review.sources.name_patterns import find_format
-from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.node_options import Remappings, read_remappings
 from linkwright.review.sources.parameter_defaults import find_cpp_parameter_default
 from linkwright.review.sources.parameter_helpers import find_helper_calls, is_parameter_name, read_elements
@@ -67,6 +70,8 @@ _GRAPH_KINDS = frozenset({*_COMMUNICATION_KINDS, NameKind.ACTION, NameKind.ACTIO
 """The kinds of names that remappings change."""
 _FREE_INDEX = {"create_publisher": 1, "create_subscription": 1, "create_service": 2, "create_client": 3}
 """The index of the name in the free functions of rclcpp, behind the interfaces of the node."""
+_SERVICE_QOS_INDEX = {"create_service": 1, "create_client": 0}
+"""The index of the QoS behind the name of a service."""
 _CLIENT_LIBRARY = "rclcpp::"
 _NODE_FIRST_CALLS = frozenset({"declare_parameter_if_not_declared"})
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
@@ -95,7 +100,7 @@ _ALIAS = re.compile(
 )
 _CLASS = re.compile(
     r"^[ \t]*(?:class|struct|enum(?:\s+class)?)\s+(?:[A-Z]\w*_(?:PUBLIC|EXPORT|API|DECL)(?:_TYPE)?\s+)?"
-    r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)[^;{]*)?\{",
+    r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)(?P<bases>[^;{]*))?\{",
     re.MULTILINE,
 )
 _TEXT = re.compile(r'\s*(?:(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"\s*\)?\s*')
@@ -174,6 +179,7 @@ class _Reader:
         for match in _CLASS.finditer(self._text):
             end = match.end() - 1
             if end not in scopes:
+                self._names.bases.setdefault(match["name"], []).extend(read_base_names(match["bases"] or ""))
                 self._add(NameKind.CLASS, match["name"], match.start("name"), match.end("name"))
                 continue
             self._names.hidden_classes.add(match["name"])
@@ -194,10 +200,15 @@ class _Reader:
             self._names.aliases[match["name"] or match["using"]] = type_name
         for match in _NAMESPACE.finditer(self._text):
             self._names.namespaces.setdefault(match["name"], self._make_span(match.start("name"), match.end("name")))
+        for enumeration, enumerators in read_enumerations(self._text).items():
+            self._names.enumerations[enumeration] = {
+                name: (item.value, self._make_span(item.start, item.start + len(name)))
+                for name, item in enumerators.items()
+            }
         overloads: dict[str, list[DeclaredFunction]] = {}
         for function in read_declared_functions(self._text):
             if function.is_override:
-                self._names.overrides.add(function.name.rpartition("::")[2])
+                self._names.overrides.add(function.name)
             else:
                 overloads.setdefault(function.name, []).append(function)
         for name, functions in overloads.items():
@@ -331,6 +342,11 @@ class _Reader:
             details.append(
                 (Detail.QUEUE if function in _ROS1_CALLS else Detail.QOS, " ".join(other_arguments[0].split()))
             )
+        if function in _SERVICE_QOS_INDEX and kind is not NameKind.ACTION_CLIENT:
+            index = _SERVICE_QOS_INDEX[function]
+            details += read_service_qos(
+                " ".join(other_arguments[index].split()) if index < len(other_arguments) else None
+            )
         if kind is NameKind.PUBLISHER and function in _ROS1_CALLS and other_arguments[-1:] == ["true"]:
             details.append((Detail.LATCH, YES))
         if kind is NameKind.SUBSCRIPTION and not type_name:
@@ -422,8 +438,11 @@ class _Reader:
         index = 1 if is_timer and len(texts) > 1 and not re.search(r"\d", texts[0]) else 0
         if index < len(texts):
             name = match["name"].split()[0]
-            self._names.rates.append((f"{name}({texts[index]})", self._make_span(*arguments[index])))
+            rate = f"{name}({texts[index]})", self._make_span(*arguments[index])
+            self._names.rates.append(rate)
             if "imer" in name:
+                functions = set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
+                self._names.timers.append(Timer(functions.pop() if len(functions) == 1 else "", *rate))
                 self._add_callback(None, "", arguments)
 
     def _get_literal(self, begin: int, end: int) -> str | None:

@@ -31,6 +31,8 @@ _LEVELS = ("public", "protected", "private")
 """The levels of access, the most open one first."""
 _OPENING = re.compile(r"[({\[<]")
 _CLOSING = re.compile(r"[)}\]>]")
+_BASE = re.compile(r"(?:^|,)\s*(?:(?:public|protected|private|virtual)\s+)*(?:\w+\s*::\s*)*(?P<name>\w+)")
+_TEMPLATE_ARGUMENTS = re.compile(r"<[^<>]*>")
 
 
 class DeclaredFunction(NamedTuple):
@@ -114,6 +116,16 @@ def read_scopes(text: str, access: Collection[str]) -> Iterator[tuple[list[str],
     for _, classes, _, end in _read_chunks(text, access):
         if text[end] == "{":
             yield classes, end
+
+
+def read_base_names(text: str) -> list[str]:
+    """Return the names of the base classes in the text between the colon and the body of a class.
+
+    The names lack their namespaces and template arguments.
+    """
+    while _TEMPLATE_ARGUMENTS.search(text):
+        text = _TEMPLATE_ARGUMENTS.sub("", text)
+    return [match["name"] for match in _BASE.finditer(text)]
 
 
 def _read_chunks(text: str, levels: Collection[str]) -> Iterator[tuple[str, list[str], int, int]]:

@@ -13,6 +13,11 @@ from linkwright.review.sources.signatures import parse_signature
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _BEST_EFFORT = re.compile(r"best_?effort|sensor_?data", re.IGNORECASE)
 _TRANSIENT = re.compile(r"transient_?local|latching", re.IGNORECASE)
+_QOS = re.compile(r"[\w:.]*(?:QoS|qos_profile|QOS)\w*\s*(?:[({].*)?", re.DOTALL)
+_SERVICES_DEFAULT = re.compile(
+    r"(?:rclcpp::)?ServicesQoS\s*[({]\s*[)}](?:\.get_rmw_qos_profile\(\))?|(?:[\w.]+\.)?(?:rmw_)?qos_profile_services_default"
+)
+_DEFAULT_QOS = "default"
 _MAX_ARGUMENT_CHARACTERS = 80
 """The maximum number of characters of shown arguments of an added function or class."""
 _DEFAULT = " = ..."
@@ -148,6 +153,8 @@ def _find_qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:
     """
     was_best_effort, is_best_effort = (_BEST_EFFORT.search(text) is not None for text in (old, new))
     was_transient, is_transient = (_TRANSIENT.search(text) is not None for text in (old, new))
+    if name.kind in (NameKind.SERVICE, NameKind.CLIENT):
+        return _find_service_reason(name.kind) if is_best_effort and not was_best_effort else None
     if name.kind is NameKind.PUBLISHER:
         if is_best_effort and not was_best_effort:
             return phrase("subscriptions that ask for reliable messages get nothing")
@@ -159,3 +166,21 @@ def _find_qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:
         if is_transient and not was_transient:
             return phrase("the node gets nothing from publishers that keep no messages")
     return None
+
+
+def _find_service_reason(kind: NameKind) -> Phrase:
+    """Return the reason why best effort is breaking: services and their clients are reliable by default."""
+    if kind is NameKind.SERVICE:
+        return phrase("clients with the default QoS do not reach the service")
+    return phrase("the client does not reach services with the default QoS")
+
+
+def read_service_qos(text: str | None) -> tuple[tuple[Detail, str], ...]:
+    """Return the QoS of a service or its client as details; empty if the text is another expression.
+
+    Args:
+        text: the argument as written; None if there is none, for the default QoS.
+    """
+    if text is None or _SERVICES_DEFAULT.fullmatch(text):
+        return ((Detail.QOS, _DEFAULT_QOS),)
+    return ((Detail.QOS, text),) if _QOS.fullmatch(text) else ()

@@ -6,7 +6,7 @@ Such names are topics, parameters, frames and options.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -110,6 +110,21 @@ class DefaultName:
     name: str
 
 
+@dataclass(frozen=True)
+class Timer:
+    """A timer of a source.
+
+    Attributes:
+        callback: the name of the function that it calls; empty if it is another expression.
+        text: the call with the period.
+        span: the location of the period.
+    """
+
+    callback: str
+    text: str
+    span: Span
+
+
 @dataclass
 class SourceNames:
     """The names in a source.
@@ -121,7 +136,9 @@ class SourceNames:
         default_names: the names that parameters give by default.
         unknown_scopes: the parameters of ROS 1 that may be private, because a caller passes the node handle.
         rates: the texts of rates and periods, each with its location.
-        overrides: the names of functions that override a function of a base class.
+        timers: the timers, in the order of the source.
+        overrides: the names of functions that override a function of a base class, qualified by their classes.
+        bases: the names of the base classes of each public class of a C++ source.
         is_program: whether the source is a program and not a library.
         makes_node: whether the source makes a node, even if the name of the node is computed.
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
@@ -129,7 +146,8 @@ class SourceNames:
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
         callbacks: the topic, service or action that calls a function, by the name of the function; its kind is None for
             a timer.
-        self_contained_classes: the classes of a Python source that certainly inherit no methods.
+        inherited_names: the names that each class of a Python source inherits. Classes with unknown base classes are
+            left out.
         bound_names: the names that a Python 3 source defines or imports.
         undefined_names: the undefined names that a source uses, each with the location of its first use.
         attributes: the attributes that a Python 3 source defines in classes or assigns to objects.
@@ -139,6 +157,7 @@ class SourceNames:
         protected: the protected members, functions and nested classes of the classes of a C++ header.
         aliases: the types that a C++ header names with ``typedef`` and ``using``, by name.
         namespaces: the named namespaces that a C++ header opens, each with its first location.
+        enumerations: the values and locations of the enumerators of each public enumeration of a C++ header.
         hidden_classes: the names of the protected and private classes in a C++ source.
         has_star_import: whether an ``__init__.py`` imports all names of a module, so that it may have other names.
     """
@@ -149,14 +168,16 @@ class SourceNames:
     default_names: set[DefaultName] = field(default_factory=set)
     unknown_scopes: set[str] = field(default_factory=set)
     rates: list[tuple[str, Span]] = field(default_factory=list)
+    timers: list[Timer] = field(default_factory=list)
     overrides: set[str] = field(default_factory=set)
+    bases: dict[str, list[str]] = field(default_factory=dict)
     is_program: bool = False
     makes_node: bool = False
     error_line: int = 0
     is_error_certain: bool = True
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)
     callbacks: dict[str, tuple[NameKind | None, str]] = field(default_factory=dict)
-    self_contained_classes: set[str] = field(default_factory=set)
+    inherited_names: dict[str, Collection[str]] = field(default_factory=dict)
     bound_names: frozenset[str] = frozenset()
     undefined_names: dict[str, Span] = field(default_factory=dict)
     attributes: frozenset[str] = frozenset()
@@ -165,6 +186,7 @@ class SourceNames:
     protected: list[SourceName] = field(default_factory=list)
     aliases: dict[str, str] = field(default_factory=dict)
     namespaces: dict[str, Span] = field(default_factory=dict)
+    enumerations: dict[str, dict[str, tuple[str, Span]]] = field(default_factory=dict)
     hidden_classes: set[str] = field(default_factory=set)
     has_star_import: bool = False
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 
 from linkwright.review.sources.names import NameKind, SourceName
@@ -15,14 +15,29 @@ _UNTYPED_KINDS = (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.CLASS, NameKind
 """The kinds for which equal types do not suggest a rename."""
 
 
-def pair_similar(removed: Sequence[SourceName], added: Sequence[SourceName]) -> list[tuple[SourceName, SourceName]]:
+def _never_differ(_old: str, _new: str) -> bool:
+    return False
+
+
+def pair_similar(
+    removed: Sequence[SourceName],
+    added: Sequence[SourceName],
+    differ: Callable[[str, str], bool] = _never_differ,
+) -> list[tuple[SourceName, SourceName]]:
     """Return the pairs of a removed and an added name of the same thing.
 
     A pair is a single removed and added name that are alike, the only names of a type, or the most similar names.
+
+    Args:
+        removed: the names that only the old version has.
+        added: the names that only the new version has.
+        differ: whether an old and a new name are certainly not of the same thing.
     """
     pairs: list[tuple[SourceName, SourceName]] = []
     if len(removed) == len(added) == 1:
         (old,), (new,) = removed, added
+        if differ(old.name, new.name):
+            return []
         has_types = old.kind not in _UNTYPED_KINDS
         has_equal_type = old.type == new.type and (has_types or bool(old.type))
         return [(old, new)] if has_equal_type or compute_similarity(old, new) >= _MIN_SIMILARITY else []
@@ -30,6 +45,7 @@ def pair_similar(removed: Sequence[SourceName], added: Sequence[SourceName]) -> 
     is_compared = len(removed) * len(added) <= _MAX_COMPARED_PAIRS
     for item in removed:
         similar = [candidate for candidate in unpaired if _has_compatible_type(item, candidate)] if is_compared else []
+        similar = [candidate for candidate in similar if not differ(item.name, candidate.name)]
         candidates = [candidate for candidate in similar if compute_similarity(item, candidate) >= _MIN_SIMILARITY]
         same_type = [
             [candidate for candidate in items if candidate.type == item.type and item.type]

@@ -36,7 +36,8 @@ def _find_lost(old: SourceNames, new: SourceNames) -> list[SourceName]:
     """
     classes = {item.name for item in new.of_kind(NameKind.CLASS)} | new.hidden_classes
     public = [item for item in new.names if item.kind in _KINDS]
-    usable = {item.name.rpartition("::")[2] for item in (*public, *new.protected)} | new.overrides
+    names = {item.name for item in (*public, *new.protected)} | new.overrides
+    usable = {name.rpartition("::")[2] for name in names}
     lost = {item.name: item for item in old.protected if item.name.rpartition("::")[2] not in usable}
     return [item for item in lost.values() if item.name.split("::")[-2] in classes]
 

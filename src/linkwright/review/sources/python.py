@@ -13,15 +13,17 @@ from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
-from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
+from linkwright.review.sources.details import read_service_qos
+from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_defaults import find_parameter_default
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python2 import as_python3
+from linkwright.review.sources.python_bases import find_inherited_names
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
 from linkwright.review.sources.required_parameters import is_required_parameter
 from linkwright.review.sources.shared_constants import read_imported_constants
-from linkwright.review.sources.signatures import is_self_contained, read_method_signatures, read_signature
+from linkwright.review.sources.signatures import read_method_signatures, read_signature
 from linkwright.review.sources.undefined_names import find_bound_names, find_undefined_names
 
 _RCLPY_METHODS = {
@@ -249,7 +251,7 @@ class _Reader:
                 signature = read_signature(statement)
                 details = () if signature is None else ((Detail.ARGUMENTS, signature.text),)
                 self._names.add(SourceName(kind, statement.name, "", self._python.span(statement), details))
-                if isinstance(statement, ast.ClassDef) and is_self_contained(statement):
+                if isinstance(statement, ast.ClassDef):
                     self._read_methods(statement)
             self._names.is_program |= isinstance(statement, ast.If) and "__main__" in ast.unparse(statement.test)
             self._names.is_program |= isinstance(statement, ast.FunctionDef) and statement.name == "main"
@@ -269,14 +271,17 @@ class _Reader:
                 self._names.callbacks[function.name] = (kind, text)
 
     def _read_methods(self, definition: ast.ClassDef) -> None:
-        """Add the public methods of a class.
+        """Add the public methods of a class whose base classes are known.
 
         Methods that the source passes on, such as callbacks, are left out.
         """
+        inherited = find_inherited_names(Path(self._python.source.name), self._python.tree, definition)
+        if inherited is None:
+            return
         nodes = list(ast.walk(definition))
         called_ids = {id(node.func) for node in nodes if isinstance(node, ast.Call)}
         passed_on = {node.attr for node in nodes if isinstance(node, ast.Attribute) and id(node) not in called_ids}
-        self._names.self_contained_classes.add(definition.name)
+        self._names.inherited_names[definition.name] = inherited
         for method, signature in read_method_signatures(definition):
             if method.name not in passed_on:
                 name, details = f"{definition.name}.{method.name}", ((Detail.ARGUMENTS, signature.text),)
@@ -321,7 +326,7 @@ class _Reader:
                 self._add_frame(_FRAME_FIELDS[keyword.arg], keyword.value)
         if function in _RCLPY_METHODS:
             kind, type_keyword, name_keyword, qos_index = _RCLPY_METHODS[function]
-            qos = self._read_qos(_get_argument(call, qos_index, "qos_profile"))
+            qos = self._read_qos(kind, _get_argument(call, qos_index, "qos_profile"))
             self._add(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 0, type_keyword), qos)
             if kind in _CALLBACK_KEYWORDS:
                 self._add_callback(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 2, "callback"))
@@ -366,9 +371,14 @@ class _Reader:
         if function in _RATE_CALLS and called_name(call).partition(".")[0] != "threading" and call.args:
             period = self._python.resolved(call.args[0])
             text = f"{function}({_format_expression(self._python, period)})"
-            self._names.rates.append((text, self._python.span(call.args[0])))
+            span = self._python.span(call.args[0])
+            self._names.rates.append((text, span))
             if "imer" in function:
-                self._add_callback(None, None, _get_argument(call, 1, "callback"))
+                callback = _get_argument(call, 1, "callback")
+                self._add_callback(None, None, callback)
+                is_name = isinstance(callback, (ast.Name, ast.Attribute))
+                name = ast.unparse(callback).rpartition(".")[2] if is_name and callback is not None else ""
+                self._names.timers.append(Timer(name, text, span))
         elif function in _TRANSFORM_CALLS:
             for index in _TRANSFORM_CALLS[function]:
                 if index < len(call.args):
@@ -456,8 +466,10 @@ class _Reader:
         enclosing = [node for node in classes if node.lineno <= call.lineno <= (node.end_lineno or node.lineno)]
         return bool(enclosing) and any(ast.unparse(base).endswith("Node") for base in enclosing[-1].bases)
 
-    def _read_qos(self, node: ast.expr | None) -> tuple[tuple[Detail, str], ...]:
+    def _read_qos(self, kind: NameKind, node: ast.expr | None) -> tuple[tuple[Detail, str], ...]:
         text = "" if node is None else _format_expression(self._python, self._python.resolved(node))
+        if kind in (NameKind.SERVICE, NameKind.CLIENT):
+            return read_service_qos(text or None)
         return ((Detail.QOS, text),) if _QOS.fullmatch(text) else ()
 
     def _add_frame(self, kind: NameKind, node: ast.expr) -> None:

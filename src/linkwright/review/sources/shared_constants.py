@@ -66,7 +66,21 @@ def read_imported_constants(path: Path, tree: ast.Module) -> dict[str, ast.expr]
 def _read_module_constants(path: Path, module: str, level: int) -> Mapping[str, ast.expr]:
     """Return the text constants of a module that a source imports.
 
-    The result is empty for a module outside of the package, including targets of links and ``..``.
+    The result is empty for a module outside of the package.
+    """
+    file = find_own_module(path, module, level)
+    return {} if file is None else _read_python_constants(str(file), file.stat().st_mtime_ns)
+
+
+def find_own_module(path: Path, module: str, level: int) -> Path | None:
+    """Return the file of a module of the same package, or None for a module outside of it.
+
+    Targets of links and ``..`` that leave the package are outside.
+
+    Args:
+        path: the path of the source that imports the module.
+        module: the name of the module without leading dots.
+        level: the number of dots before the name.
     """
     parts = module.split(".") if module else []
     folder = path.parents[level - 1] if 0 < level <= len(path.parents) else path.parent
@@ -76,19 +90,26 @@ def _read_module_constants(path: Path, module: str, level: int) -> Mapping[str, 
     package = enclosing_package(path.parent)
     base = (path.parent if package is None else package[1]).resolve()
     files = (base_path.with_name(f"{base_path.name}{PYTHON_SUFFIX}").resolve() for base_path in bases if parts)
-    file = next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
-    return {} if file is None else _read_python_constants(str(file), file.stat().st_mtime_ns)
+    return next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
 
 
 @lru_cache(maxsize=256)
-def _read_python_constants(path: str, _modified_ns: int) -> Mapping[str, ast.expr]:
-    """Return the names at the top of a Python file that are assigned a text once."""
+def read_module(path: str, _modified_ns: int) -> ast.Module | None:
+    """Return the syntax tree of a Python file, or None if it cannot be read or parsed."""
     file = Path(path)
     try:
         if file.stat().st_size > _MAX_BYTES:
-            return {}
-        tree = PythonFile(SourceText(path, file.read_text("utf-8"))).tree
+            return None
+        return PythonFile(SourceText(path, file.read_text("utf-8"))).tree
     except (OSError, SyntaxError, ValueError, RecursionError):
+        return None
+
+
+@lru_cache(maxsize=256)
+def _read_python_constants(path: str, modified_ns: int) -> Mapping[str, ast.expr]:
+    """Return the names at the top of a Python file that are assigned a text once."""
+    tree = read_module(path, modified_ns)
+    if tree is None:
         return {}
     assigned_names = [
         node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)

@@ -75,12 +75,7 @@ def is_self_contained(definition: ast.ClassDef) -> bool:
 
 
 def read_method_signatures(definition: ast.ClassDef) -> Iterator[tuple[ast.FunctionDef, Signature]]:
-    """Yield the public undecorated methods of a class and their parameters.
-
-    Classes with base classes are left out.
-    """
-    if not is_self_contained(definition):
-        return
+    """Yield the public undecorated methods of a class and their parameters."""
     for node in definition.body:
         is_public = isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
         if isinstance(node, ast.FunctionDef) and is_public and not node.decorator_list and node.args.args:

@@ -1,0 +1,78 @@
+"""Find the topics that costmaps no longer read, in parameter files of navigation."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+
+from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.list_changes import EMPTY, list_items
+
+_SOURCES = "observation_sources"
+"""The parameter of an obstacle layer, or of a costmap itself, with the names of its sources."""
+_LAYER_TOPIC = re.compile(r"(?P<costmap>.*costmap[^.]*(?:\.ros__parameters)?)\.(?:.+\.)?(?:map_topic|topics)")
+"""The parameters of static and range layers with the topics that they read."""
+
+
+class CostmapTopics:
+    """The topics that the costmaps of a parameter file read before and after a change.
+
+    Args:
+        old: the old values by path.
+        new: the new values by path.
+    """
+
+    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
+        self._old = old
+        self._new = new
+
+    def find_reason(self, parameter: str) -> Phrase | None:
+        """Return the reason why changing or removing a parameter is breaking, or None if no topic is lost by it."""
+        lost = sorted(
+            topic
+            for owner, costmap, topic in _list_topics(self._old)
+            if parameter in (owner, _get_list_name(owner)) and (costmap, topic) not in self._new_topics
+        )
+        if not lost:
+            return None
+        return phrase("the costmap no longer gets the messages of {names}", names=quoted_names(lost))
+
+    @cached_property
+    def _new_topics(self) -> set[tuple[str, str]]:
+        return {(costmap, topic) for _, costmap, topic in _list_topics(self._new)}
+
+
+def _get_list_name(owner: str) -> str:
+    """Return the path of the list that names the source with a topic."""
+    return _join(_get_parent(_get_parent(owner)), _SOURCES)
+
+
+def _get_parent(path: str) -> str:
+    return path.rpartition(".")[0]
+
+
+def _join(*parts: str) -> str:
+    return ".".join(filter(None, parts))
+
+
+def _list_topics(values: Mapping[str, YamlValue]) -> Iterator[tuple[str, str, str]]:
+    """Yield the path of each parameter with a topic that a costmap reads, the path of the costmap and the topic."""
+    for name, value in values.items():
+        if name.rpartition(".")[2] == _SOURCES:
+            layer = _get_parent(name)
+            for source in re.split(r"[\s,]+", value.text.strip("[] ")):
+                owner = _join(layer, source, "topic")
+                if owner in values and values[owner].text:
+                    yield owner, _find_costmap(layer), values[owner].text.strip("/")
+        match = _LAYER_TOPIC.fullmatch(name)
+        for topic_name in list_items(value.text) if match is not None else ():
+            if match is not None and topic_name not in ("", EMPTY):
+                yield name, match["costmap"], topic_name.strip("/")
+
+
+def _find_costmap(layer: str) -> str:
+    """Return the path of the costmap of a layer; the costmap itself may have the sources."""
+    match = re.match(r".*costmap[^.]*(?:\.ros__parameters)?(?=\.|$)", layer)
+    return "" if match is None else match[0]

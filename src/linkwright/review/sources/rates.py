@@ -1,0 +1,80 @@
+"""Compare the rates of loops and the timers of two versions of a source."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from linkwright.diagnostics import joined_first, phrase
+from linkwright.review.changes import MAX_NAMES
+from linkwright.review.sources.names import SourceNames, Timer
+from linkwright.review.sources.namespaces import HeaderChange
+
+_UNIT_NAMES = re.compile(
+    r"\b(?:ros|rospy|rclcpp|rclpy|std|chrono|(?:nano|micro|milli)?seconds|duration|Duration|from_sec|to_sec|n?secs|"
+    r"[num]?s|Hz|from_seconds|float|int)\b"
+)
+
+
+def compare_rates(old: SourceNames, new: SourceNames, *, is_added: bool) -> Iterator[HeaderChange]:
+    """Yield the changed rates and periods, and all rates of a new node.
+
+    Rates are compared if both versions have the same number, and otherwise those of timers with the same callback.
+
+    Args:
+        old: the names in the old version.
+        new: the names in the new version.
+        is_added: whether the source is new.
+    """
+    if is_added and new.rates and new.makes_node:
+        texts = joined_first(dict.fromkeys(text for text, _ in new.rates), MAX_NAMES)
+        yield HeaderChange(phrase("rates and periods: {texts}", texts=texts), new.rates[0][1])
+    pairs = list(zip(old.rates, new.rates, strict=False))
+    if len(old.rates) != len(new.rates):
+        timers = {timer.callback: timer for timer in old.timers if timer.callback}
+        pairs = [
+            ((timers[timer.callback].text, timer.span), (timer.text, timer.span))
+            for timer in new.timers
+            if timer.callback in timers
+        ]
+    for (old_text, _), (new_text, span) in pairs:
+        is_same_call = old_text.partition("(")[0] == new_text.partition("(")[0]
+        if is_same_call and old_text != new_text and (_is_number(old_text) or _is_number(new_text)):
+            yield HeaderChange(phrase("rate or period: {old} -> {new}", old=old_text, new=new_text), span)
+
+
+def compare_timers(old: SourceNames, new: SourceNames, other: Sequence[Timer]) -> Iterator[HeaderChange]:
+    """Yield the timers that a version of a source has more than the other one.
+
+    Args:
+        old: the names in the old version.
+        new: the names in the new version.
+        other: the timers in the other changed sources of both versions, to which timers move.
+    """
+    for timer in _find_lost(old.timers, new.timers, other):
+        text = phrase("timer removed: {timer}", timer=timer.text)
+        if timer.callback:
+            text = phrase("timer of '{name}' removed: {timer}", name=timer.callback, timer=timer.text)
+        yield HeaderChange(text, timer.span, is_old=True)
+    for timer in _find_lost(new.timers, old.timers, other) if old.names or old.timers else ():
+        text = phrase("timer added: {timer}", timer=timer.text)
+        if timer.callback:
+            text = phrase("timer of '{name}' added: {timer}", name=timer.callback, timer=timer.text)
+        yield HeaderChange(text, timer.span)
+
+
+def _find_lost(own: Sequence[Timer], others: Sequence[Timer], moved: Sequence[Timer]) -> list[Timer]:
+    """Return the timers that only one version has, if it has more timers."""
+    count = len(own) - len(others)
+    callbacks = {timer.callback for timer in (*others, *moved)}
+    texts = {timer.text for timer in (*others, *moved)}
+    lost = [
+        timer for timer in own if timer.callback not in callbacks or (not timer.callback and timer.text not in texts)
+    ]
+    return lost if 0 < len(lost) <= count else []
+
+
+def _is_number(rate: str) -> bool:
+    """Return whether the argument of a rate has no names except units."""
+    argument = rate.partition("(")[2]
+    return re.search(r"[A-Za-z_]{2,}", _UNIT_NAMES.sub("", re.sub(r"(\d)[a-z]+", r"\1", argument))) is None

@@ -1,0 +1,62 @@
+"""The lines of a review about topics that costmaps read in parameter files."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import sentences, subject
+
+PATH = "arm/config/nav.yaml"
+NAV2 = """local_costmap:
+  local_costmap:
+    ros__parameters:
+      plugins: [static_layer, obstacle_layer]
+      static_layer:
+        plugin: "nav2_costmap_2d::StaticLayer"
+        map_topic: /map
+      obstacle_layer:
+        plugin: "nav2_costmap_2d::ObstacleLayer"
+        observation_sources: scan depth
+        scan:
+          topic: /scan
+          max_obstacle_height: 2.0
+        depth:
+          topic: /depth/points
+          max_obstacle_height: 2.0
+"""
+ROS1 = "observation_sources: laser\nlaser: {data_type: LaserScan, topic: scan, marking: true}\n"
+REASON = "the costmap no longer gets the messages of '{}'"
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "reasons"),
+    [
+        (NAV2, "topic: /scan", "topic: /lidar/scan", [REASON.format("scan")]),
+        (NAV2, "topic: /scan", "topic: scan", [None]),
+        (NAV2, "map_topic: /map", "map_topic: /slam/map", [REASON.format("map")]),
+        (NAV2, "sources: scan depth", "sources: scan", [REASON.format("depth/points")]),
+        (NAV2, "sources: scan depth", "sources: depth scan", [None]),
+        (
+            NAV2.replace("        depth:\n          topic: /depth/points\n          max_obstacle_height: 2.0\n", ""),
+            "topic: /scan\n          max_obstacle_height: 2.0",
+            "max_obstacle_height: 2.0",
+            [REASON.format("scan")],
+        ),
+        (ROS1, "topic: scan", "topic: front/scan", [REASON.format("scan")]),
+        ("planner:\n  ros__parameters:\n    topic: /scan\n", "/scan", "/lidar", [None]),
+    ],
+)
+def test_a_topic_that_a_costmap_no_longer_reads_is_breaking(repository, compare, text, old, new, reasons):
+    repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), PATH: text})
+    repository.write({PATH: text.replace(old, new)})
+    changes = subject(compare(repository), PATH).changes
+    assert [None if change.reason is None else str(change.reason) for change in changes] == reasons
+
+
+def test_a_renamed_source_with_the_same_topic_is_not_breaking(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), PATH: ROS1})
+    repository.write({PATH: ROS1.replace("laser", "front")})
+    found = subject(compare(repository), PATH)
+    assert sentences(found)
+    assert all(change.reason is None for change in found.changes)

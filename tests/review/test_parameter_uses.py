@@ -1,0 +1,63 @@
+"""Parameters of sources are renamed only if they keep their use."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+PYTHON = """from rclpy.node import Node
+
+
+class Arm(Node):
+    def __init__(self):
+        super().__init__('arm')
+        self.declare_parameter('{name}', 'base')
+        self.{variable} = self.get_parameter('{name}').value
+
+    def step(self):
+        self.pub.publish(make_path(self.points{old_use}))
+        self.buffer.lookup('map'{new_use})
+"""
+CPP = """void Arm::start() {{
+  declare_parameter("{name}", "base");
+  get_parameter("{name}", {variable}_);
+  publish(points{old_use});
+  lookup("map"{new_use});
+}}
+"""
+RENAMED = ["parameter 'target_frame' ('base') renamed to 'base_frame' ('base')"]
+REMOVED = ["parameters removed: 'target_frame' ('base')"]
+USE = ", self.{}"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (("target_frame", USE, ""), ("base_frame", "", USE), REMOVED),
+        (("target_frame", USE, ""), ("base_frame", USE, ""), RENAMED),
+        (("frame", USE, ""), ("frame", "", USE), RENAMED),
+        (("target_frame", USE, ""), ("base_frame", USE, USE), RENAMED),
+        (("target_frame", "", ""), ("base_frame", "", ""), RENAMED),
+    ],
+)
+def test_a_parameter_of_a_python_node_is_renamed_only_with_the_same_use(repository, compare, old, new, expected):
+    texts = [
+        PYTHON.format(name=name, variable=variable, old_use=first.format(variable), new_use=second.format(variable))
+        for name, (variable, first, second) in (("target_frame", old), ("base_frame", new))
+    ]
+    repository.commit({**MANIFEST, "arm/a.py": texts[0]})
+    repository.write({"arm/a.py": texts[1]})
+    assert breaking(compare(repository)) == expected
+
+
+@pytest.mark.parametrize(("is_same", "expected"), [(True, RENAMED), (False, REMOVED)])
+def test_a_parameter_of_a_cpp_node_is_renamed_only_with_the_same_use(repository, compare, is_same, expected):
+    old = CPP.format(name="target_frame", variable="target", old_use=", target_", new_use="")
+    uses = (", base_", "") if is_same else ("", ", base_")
+    new = CPP.format(name="base_frame", variable="base", old_use=uses[0], new_use=uses[1])
+    repository.commit({**MANIFEST, "arm/a.cpp": old})
+    repository.write({"arm/a.cpp": new})
+    assert breaking(compare(repository)) == [text.replace("'base'", '"base"') for text in expected]

@@ -1,0 +1,87 @@
+"""The lines of a review about methods that are removed from classes with base classes."""
+
+from __future__ import annotations
+
+import pytest
+
+from linkwright.graph import Node
+from linkwright.review.sources.python_bases import NODE_NAMES
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+PYTHON = {
+    **MANIFEST,
+    "arm/setup.py": "from setuptools import setup\nsetup(name='arm', packages=['arm'])\n",
+    "arm/arm/__init__.py": "",
+}
+CPP = {**MANIFEST, "arm/CMakeLists.txt": "project(arm)\ninstall(DIRECTORY include/ DESTINATION include)\n"}
+METHOD = "\n    def {}(self):\n        return 2\n"
+BASE = "class Base:\n    def halt(self):\n        return 1\n\n\n"
+OWN_NAMES = {"declare_parameters_from_overrides", "undeclared_overrides", "parameter_names"}
+"""The public names of our nodes that rclpy does not have."""
+REMOVED = "functions removed: 'Arm.{}'"
+
+
+@pytest.mark.parametrize(
+    ("head", "base", "method", "expected"),
+    [
+        ("from rclpy.node import Node\n\n\n", "Node", "stop", [REMOVED]),
+        ("import rclpy.node\n\n\n", "rclpy.node.Node", "stop", [REMOVED]),
+        ("from rclpy.node import Node\n\n\n", "Node", "destroy_node", []),
+        (BASE, "Base", "stop", [REMOVED]),
+        (BASE, "Base", "halt", []),
+        ("from .base import Base\n\n\n", "Base", "stop", [REMOVED]),
+        ("from arm.base import Base\n\n\n", "Base", "halt", []),
+        ("from other.base import Base\n\n\n", "Base", "stop", []),
+        (BASE, "Base, metaclass=Maker", "stop", []),
+    ],
+)
+def test_a_method_removed_from_a_python_class_with_known_bases_is_breaking(
+    repository, compare, head, base, method, expected
+):
+    text = f"{head}class Arm({base}):\n    def start(self):\n        return 1\n"
+    repository.commit({**PYTHON, "arm/arm/base.py": BASE, "arm/arm/a.py": text + METHOD.format(method)})
+    repository.write({"arm/arm/a.py": text})
+    assert breaking(compare(repository)) == [sentence.format(method) for sentence in expected]
+
+
+def test_a_method_that_moves_to_the_base_class_is_not_breaking(repository, compare):
+    text = "from .base import Base\n\n\nclass Arm(Base):\n    def start(self):\n        return 1\n"
+    repository.commit({**PYTHON, "arm/arm/base.py": BASE, "arm/arm/a.py": text + METHOD.format("stop")})
+    repository.write({"arm/arm/base.py": BASE.rstrip() + "\n" + METHOD.format("stop"), "arm/arm/a.py": text})
+    assert breaking(compare(repository)) == []
+
+
+def test_the_public_names_of_our_nodes_are_among_those_of_rclpy():
+    public = {name for name in dir(Node) if not name.startswith("_") and name.islower()}
+    assert public - OWN_NAMES <= NODE_NAMES
+
+
+def _header(name: str, bases: str, *methods: str) -> str:
+    lines = "".join(f"  {method};\n" for method in methods)
+    return f"#pragma once\nnamespace arm {{\nclass {name}{bases} {{\npublic:\n  {name}();\n{lines}}};\n}}\n"
+
+
+@pytest.mark.parametrize(
+    ("base_header", "bases", "is_removed"),
+    [
+        (_header("Base", "", "void stop()"), " : public Base", False),
+        (_header("Base", "", "void stop()"), " : public Other, public detail::Base", False),
+        (_header("Base", "", "void halt()"), " : public Base", True),
+        (_header("Base", " : public Root", "void stop() override"), " : public Base", False),
+        (_header("Other", "", "void stop()"), " : public Base", True),
+        (_header("Other", " : public Base", "void stop() override"), " : public Base", True),
+    ],
+)
+@pytest.mark.parametrize("is_base_changed", [True, False])
+def test_a_method_removed_from_a_cpp_class_is_breaking_unless_a_base_has_it(
+    repository, compare, base_header, bases, is_removed, is_base_changed
+):
+    header = "arm/include/arm/arm.hpp"
+    files = {"arm/include/arm/base.hpp": base_header, header: _header("Arm", bases, "void stop()", "void go()")}
+    repository.commit({**CPP, **files})
+    repository.write({header: _header("Arm", bases, "void go()")})
+    if is_base_changed:
+        repository.write({"arm/include/arm/base.hpp": base_header + "// changed\n"})
+    assert breaking(compare(repository)) == (["functions removed: 'Arm::stop'"] if is_removed else [])

@@ -1,0 +1,46 @@
+"""The lines of a review about removed and added timers."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import sentences
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+PYTHON = "from rclpy.node import Node\n\n\nclass Arm(Node):\n    def start(self):\n        self.ok = True\n{}"
+STEP, STATE = ("        self.create_timer({}, self.{})\n".format(*timer) for timer in ((0.1, "step"), (0.5, "state")))
+LAMBDA = "        self.create_timer(2.0, lambda: self.step())\n"
+CPP = "void Arm::start() {{\n  ok_ = true;\n{}}}\n"
+CPP_STEP = "  step_ = create_wall_timer(100ms, std::bind(&Arm::step, this));\n"
+CPP_STATE = "  state_ = create_wall_timer(500ms, std::bind(&Arm::state, this));\n"
+CPP_LAMBDA = "  run_ = create_wall_timer(2s, [this]() { run(); });\n"
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "expected"),
+    [
+        ("a.py", STEP + STATE, STATE, ["timer of 'step' removed: create_timer(0.1)"]),
+        ("a.py", STEP, STEP + STATE, ["timer of 'state' added: create_timer(0.5)"]),
+        ("a.py", LAMBDA + STATE, STATE, ["timer removed: create_timer(2.0)"]),
+        (
+            "a.py",
+            STEP + STATE,
+            STATE.replace("0.5", "0.2"),
+            ["rate or period: create_timer(0.5) -> create_timer(0.2)", "timer of 'step' removed: create_timer(0.1)"],
+        ),
+        ("a.cpp", CPP_STEP + CPP_STATE, CPP_STATE, ["timer of 'step' removed: create_wall_timer(100ms)"]),
+        ("a.cpp", CPP_STATE, CPP_STATE + CPP_LAMBDA, ["timer added: create_wall_timer(2s)"]),
+    ],
+)
+def test_a_removed_or_added_timer_is_told(repository, compare, path, old, new, expected):
+    text = PYTHON if path.endswith(".py") else CPP
+    repository.commit({**MANIFEST, f"arm/{path}": text.format(old)})
+    repository.write({f"arm/{path}": text.format(new)})
+    assert sentences(compare(repository).subjects[0])[: len(expected)] == expected
+
+
+def test_a_timer_that_moves_to_another_source_is_not_told(repository, compare):
+    repository.commit({**MANIFEST, "arm/a.py": PYTHON.format(STEP + STATE), "arm/b.py": PYTHON.format("")})
+    repository.write({"arm/a.py": PYTHON.format(STATE), "arm/b.py": PYTHON.format(STEP)})
+    assert all("timer" not in text for found in compare(repository).subjects for text in sentences(found))
