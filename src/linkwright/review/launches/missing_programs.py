@@ -1,0 +1,183 @@
+"""Find launch files that start programs which the packages of the repository do not have."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.lint.targets import find_targets
+from linkwright.packages.manifest import MANIFEST, package_name
+from linkwright.packages.readers.package_xml import Manifest
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.files.build_facts import BuildFacts, FactKind
+from linkwright.review.installed_paths import read_package_facts
+from linkwright.review.launches.outlines import Entry
+from linkwright.review.launches.reading import read_outline
+from linkwright.review.launches.script_options import LAUNCH_SUFFIXES
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
+from linkwright.xacro.cache import read_document
+
+_BUILD_SUFFIXES = ("CMakeLists.txt", ".cmake", "setup.py", "setup.cfg", "pyproject.toml")
+_PROGRAM_KINDS = (FactKind.EXECUTABLE, FactKind.BUILT_EXECUTABLE)
+_SCRIPT_SUFFIXES = (".py", ".sh", ".bash", ".pl", ".rb")
+_GENERATION = re.compile(
+    r"\b(?:RENAME|configure_file|add_custom_command|add_custom_target|execute_process|ExternalProject_Add"
+    r"|FetchContent_\w+|file\s*\(\s*(?:GENERATE|WRITE|DOWNLOAD|COPY))\b",
+    re.IGNORECASE,
+)
+"""A command of a build file that can make a script with another name."""
+_SUBMODULE = re.compile(r"^\s*path\s*=\s*(?P<path>\S+)", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class _Package:
+    """The programs of a package in one version.
+
+    Args:
+        version: the version of the repository.
+        folder: the folder of the package relative to the root; empty for the root.
+    """
+
+    version: Version
+    folder: str
+
+    @cached_property
+    def facts(self) -> BuildFacts | None:
+        """The facts of the build file, or None if it cannot be read."""
+        return read_package_facts(self.version, self.folder)
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        """The names of all files of the package."""
+        return frozenset(name for _, _, names in os.walk(self.version.file(self.folder)) for name in names)
+
+    @cached_property
+    def is_ros1(self) -> bool:
+        """Whether launch files also find the scripts in the source folder of the package."""
+        return Manifest(read_document(str(self.version.file(self.folder) / MANIFEST))).is_ros1
+
+    @cached_property
+    def build_text(self) -> str:
+        """The text of all build files."""
+        return "\n".join(self.version.text(path) for path in self.version.paths(_BUILD_SUFFIXES, self.folder))
+
+    @cached_property
+    def programs(self) -> frozenset[str]:
+        """The names of the programs that the package builds or installs and whose scripts exist."""
+        if self.facts is None:
+            return frozenset()
+        programs = {fact.name for fact in self.facts.facts if fact.kind in _PROGRAM_KINDS}
+        installed = {
+            PurePosixPath(target).name: source
+            for target, source in self.facts.files.items()
+            if PurePosixPath(target).parts[:2] == ("lib", self.facts.project)
+        }
+        programs |= installed.keys()
+        return frozenset(
+            name for name in programs if not name.endswith(_SCRIPT_SUFFIXES) or self._may_have_script(name, installed)
+        )
+
+    def _may_have_script(self, name: str, installed: Mapping[str, str]) -> bool:
+        source = PurePosixPath(installed.get(name, name)).name
+        is_built = self.facts is not None and (name in self.facts.targets or "entry_points" in self.build_text)
+        return source in self.names or is_built or self._may_generate
+
+    @cached_property
+    def _may_generate(self) -> bool:
+        """Whether the build can make scripts, or a part of the package is in another repository."""
+        submodules = (PurePosixPath(match["path"]) for match in _SUBMODULE.finditer(self.version.text(".gitmodules")))
+        return _GENERATION.search(self.build_text) is not None or any(
+            path.is_relative_to(self.folder) for path in submodules
+        )
+
+    def _names_foreign_path(self, name: str) -> bool:
+        """Return whether a build file names a script by a path that may lead out of the package."""
+        paths = re.findall(rf"[^\s\"'()]*{re.escape(name)}", self.build_text)
+        return any(".." in path or "$" in path for path in paths)
+
+    def has(self, name: str) -> bool:
+        """Return whether launch files certainly find a program."""
+        return name in self.programs or (self.is_ros1 and name in self.names)
+
+    def lacks(self, name: str) -> bool:
+        """Return whether launch files certainly do not find a program."""
+        if self.has(name) or self._may_generate or self.facts is None:
+            return False
+        if name.endswith(_SCRIPT_SUFFIXES):
+            if name in self.names and (self.facts.unknown or PurePosixPath(name).stem in self.build_text):
+                return False
+            return not self._names_foreign_path(name) and not {name + ".in", PurePosixPath(name).stem} & self.names
+        return not re.search(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])", self.build_text)
+
+
+def find_missing_programs(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the launch files that start a program which the new version does not have, each with a change.
+
+    The program was removed, or is a script that a changed launch file starts and that does not exist.
+    """
+    changed = {file.new_path: file.old_path for file in changed_files if file.new_path}
+    packages = _find_shared_packages(versions)
+    folders = {versions.old.package_of(file.old_path) for file in changed_files if file.old_path}
+    changed_packages = {name for name, (old, _) in packages.items() if old.folder in folders}
+    for path in versions.new.paths(LAUNCH_SUFFIXES):
+        text = versions.new.text(path)
+        if not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
+            continue
+        if path not in changed and not any(name in text for name in changed_packages):
+            continue
+        old_path = changed.get(path, path)
+        old_names = {entry.name for entry in _read_nodes(versions.old, old_path)} if old_path else set[str]()
+        reported: set[str] = set()
+        for entry in _read_nodes(versions.new, path):
+            package, _, name = entry.name.partition("/")
+            if package not in packages or not name or entry.name in reported or re.search(r"[$/*:\s]", name):
+                continue
+            old, new = packages[package]
+            if not new.lacks(name):
+                continue
+            change = None
+            if old.has(name) and package in changed_packages:
+                change = _make_removal_change(package, name, is_left=name in new.names)
+            elif path in changed and name.endswith(_SCRIPT_SUFFIXES) and entry.name not in old_names:
+                change = phrase("starts '{name}' of '{package}', which does not exist", name=name, package=package)
+            if change is not None:
+                reported.add(entry.name)
+                location = Location(path, entry.span.line, entry.span.column)
+                yield path, Change(change, Effect.BREAKING, phrase("the node does not start"), location)
+
+
+def _make_removal_change(package: str, name: str, *, is_left: bool) -> Phrase:
+    if is_left:
+        return phrase("starts '{name}' of '{package}', which is no longer installed", name=name, package=package)
+    return phrase("starts '{name}' of '{package}', which no longer exists", name=name, package=package)
+
+
+def _find_shared_packages(versions: Versions) -> dict[str, tuple[_Package, _Package]]:
+    """Return the packages that both versions have exactly once, by name."""
+    old, new = _find_packages(versions.old), _find_packages(versions.new)
+    return {name: (old[name], new[name]) for name in old if name in new}
+
+
+def _find_packages(version: Version) -> dict[str, _Package]:
+    found: dict[str, list[_Package]] = {}
+    for folder in find_targets([version.root]).packages:
+        name, path = package_name(folder), version.relative(folder)
+        if name is not None and path is not None:
+            found.setdefault(name, []).append(_Package(version, "" if path == "." else path))
+    return {name: packages[0] for name, packages in found.items() if len(packages) == 1}
+
+
+def _read_nodes(version: Version, path: str) -> list[Entry]:
+    """Return the nodes of a launch file; none if it cannot be read."""
+    try:
+        outline = read_outline(version.file(path), version.root)
+    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
+        return []
+    return [entry for entry in outline.entries if entry.kind == "node"]

@@ -1,0 +1,76 @@
+"""The lines of a review about launch files that start programs which do not exist."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import Repository
+from tests.review.conftest import breaking
+
+MANIFEST = "<package><name>{name}</name><version>1.0.0</version><buildtool_depend>{tool}</buildtool_depend></package>\n"
+CMAKE = "cmake_minimum_required(VERSION 3.8)\nproject(lamp)\nfind_package({tool} REQUIRED)\n{body}"
+SCRIPTS = "install(PROGRAMS scripts/old.py scripts/other.py DESTINATION lib/lamp)\n"
+LAUNCHES = {
+    "a.launch": '<launch><node pkg="lamp" type="{name}" name="n"/></launch>\n',
+    "a.launch.xml": '<launch><node pkg="lamp" exec="{name}" name="n"/></launch>\n',
+    "a.launch.yaml": "launch:\n- node:\n    pkg: lamp\n    exec: {name}\n",
+    "a.launch.py": "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
+    "def generate_launch_description():\n    return LaunchDescription([Node(package='lamp', executable='{name}')])\n",
+}
+
+
+def write_package(repository: Repository, tool: str, body: str, launch: str, name: str, folder: str = "lamp"):
+    files = {
+        "lamp/package.xml": MANIFEST.format(name="lamp", tool=tool),
+        "start/package.xml": MANIFEST.format(name="start", tool=tool),
+        "lamp/CMakeLists.txt": CMAKE.format(tool=tool, body=body),
+        "lamp/scripts/old.py": "#!/usr/bin/env python3\nprint(1)\n",
+        "lamp/scripts/other.py": "#!/usr/bin/env python3\nprint(2)\n",
+        f"{folder}/launch/{launch}": LAUNCHES[launch].format(name=name),
+    }
+    repository.commit(files)
+
+
+@pytest.mark.parametrize("folder", ["lamp", "start"])
+@pytest.mark.parametrize("launch", LAUNCHES)
+def test_a_launch_file_that_starts_a_removed_script_is_named(repository, compare, launch, folder):
+    tool = "catkin" if launch == "a.launch" else "ament_cmake"
+    write_package(repository, tool, SCRIPTS, launch, "old.py", folder)
+    repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool=tool, body=SCRIPTS.replace("scripts/old.py ", ""))})
+    (repository.root / "lamp/scripts/old.py").unlink()
+    assert "starts 'old.py' of 'lamp', which no longer exists" in breaking(compare(repository))
+
+
+def test_a_launch_file_that_starts_a_script_which_is_no_longer_installed_is_named(repository, compare):
+    write_package(repository, "ament_cmake", SCRIPTS, "a.launch.py", "old.py")
+    body = SCRIPTS.replace("scripts/old.py ", "")
+    repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool="ament_cmake", body=body)})
+    assert "starts 'old.py' of 'lamp', which is no longer installed" in breaking(compare(repository))
+
+
+def test_a_script_in_the_sources_of_a_catkin_package_is_found(repository, compare):
+    write_package(repository, "catkin", SCRIPTS, "a.launch", "old.py")
+    repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool="catkin", body="")})
+    assert not [line for line in breaking(compare(repository)) if line.startswith("starts")]
+
+
+@pytest.mark.parametrize("text", ["", "set(NAMES old other)\nforeach(name ${NAMES})\nendforeach()\n"])
+def test_a_launch_file_that_starts_a_removed_executable_is_named(repository, compare, text):
+    body = "add_executable(old old.cpp)\ninstall(TARGETS old DESTINATION lib/lamp)\n"
+    write_package(repository, "ament_cmake", body, "a.launch.xml", "old")
+    repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool="ament_cmake", body=text)})
+    found = [line for line in breaking(compare(repository)) if line.startswith("starts")]
+    assert found == ([] if text else ["starts 'old' of 'lamp', which no longer exists"])
+
+
+@pytest.mark.parametrize("launch", LAUNCHES)
+@pytest.mark.parametrize(
+    ("body", "is_found"), [(SCRIPTS, True), (SCRIPTS + "configure_file(new.in scripts/new.py)\n", False)]
+)
+def test_a_changed_launch_file_that_starts_a_script_which_does_not_exist_is_named(
+    repository, compare, launch, body, is_found
+):
+    write_package(repository, "catkin" if launch == "a.launch" else "ament_cmake", body, launch, "old.py")
+    repository.write({f"lamp/launch/{launch}": LAUNCHES[launch].format(name="new.py")})
+    found = [line for line in breaking(compare(repository)) if line.startswith("starts")]
+    assert found == (["starts 'new.py' of 'lamp', which does not exist"] if is_found else [])
