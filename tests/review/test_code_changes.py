@@ -272,3 +272,24 @@ def test_overloads_that_change_places_are_no_change(repository, compare):
     repository.commit({**MANIFEST, "arm/src/f.cpp": "".join(overloads)})
     repository.write({"arm/src/f.cpp": "".join(reversed(overloads))})
     assert [sentence for found in compare(repository).subjects for sentence in sentences(found)] == []
+
+
+def test_code_outside_of_functions_changes_beside_a_function(review_lines):
+    old = "LIMIT = compute(1)\ndef drive():\n    go()\n"
+    new = "LIMIT = measure(1)\ndef drive():\n    stop()\n"
+    lines = review_lines("arm/src/a.py", old, new)
+    assert lines == ["code changed in 'drive()'; code changed outside of functions"]
+
+
+def test_objects_outside_of_functions_change_beside_a_function(review_lines):
+    old = 'ValueArg frame("f", "frame", "map", cmd);\nvoid drive() { go(); }\n'
+    new = 'ValueArg base("b", "base-link", "base", cmd);\nvoid drive() { stop(); }\n'
+    lines = review_lines("arm/src/a.cpp", old, new)
+    assert lines == ["code changed in 'drive()'; code changed outside of functions"]
+
+
+def test_calls_and_declarations_of_a_changed_function_are_not_other_code(review_lines):
+    old = "void drive();\nint state = drive();\nvoid drive() { go(); }\n"
+    new = "void drive(int speed);\nint state = drive(1);\nvoid drive(int speed) { go(speed); }\n"
+    lines = review_lines("arm/src/a.cpp", old, new)
+    assert "outside" not in str(lines)

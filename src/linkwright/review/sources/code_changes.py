@@ -18,6 +18,7 @@ from linkwright.review.sources.tokens import tokenize_cpp
 
 _QUOTED = re.compile(r"'([^']+)'")
 _LITERAL = re.compile("\"((?:\\\\.|[^\"\\\\])*)\"|'((?:\\\\.|[^'\\\\])*)'")
+_CALL = re.compile(r"(\w+)\s*\(")
 _VALUES = "values in {name}: {values}"
 _MODULE_VALUES = "values: {values}"
 _MAX_COMPARED_PAIRS = 4_000_000
@@ -49,8 +50,9 @@ def find_code_change(
 ) -> CodeChange | None:
     """Return the changed functions that no other line names, or None.
 
-    If nothing else is reported, the change names classes whose code outside of functions changes, or imports. If values
-    in the code outside of functions are reported, it tells whether that code changes in more than them.
+    If nothing else is reported, the change names classes whose code outside of functions changes, or imports. Beside
+    changed functions, it tells whether the code outside of functions changes in more than other lines report. So it
+    does if values in that code are reported.
 
     Args:
         old: the code of the old version.
@@ -76,6 +78,7 @@ def find_code_change(
     removed, added = ([name for name in items if not lines.mentions(name)] for items in (removed, added))
     texts = _format_functions(changed, added, removed, renamed, names)
     if texts:
+        texts += _format_other_code(old, new, lines)
         new_names = [*(name for _, name in changed), *added, *(name for _, name in renamed)]
         sides = (new, old) if new_names else (old, new)
         name = new_names[0] if new_names else removed[0]
@@ -110,6 +113,24 @@ def _format_functions(
             phrase("code renamed: {names}", names=_join_names(f"'{old}()' -> '{new}()'" for old, new in renamed))
         )
     return texts
+
+
+def _format_other_code(old: Code, new: Code, lines: _ReportedLines) -> list[Phrase]:
+    """Return a text for the code outside of functions, if it changes in more than other lines report."""
+    names = old.functions.keys() | new.functions.keys()
+    changed = {
+        name
+        for name in names
+        if _get_texts(old.functions.get(name, ())[:1]) != _get_texts(new.functions.get(name, ())[:1])
+    }
+    short_names = {_get_short_name(name) for name in changed}
+    before, after = (_without_calls(code.outside.get("", ()), short_names) for code in (old, new))
+    return [phrase("code changed outside of functions")] if lines.has_unreported_change(before, after, "") else []
+
+
+def _without_calls(parts: Sequence[Part], functions: set[str]) -> list[Part]:
+    """Return the statements that neither call nor declare one of the functions."""
+    return [part for part in parts if functions.isdisjoint(_CALL.findall(part.text))]
 
 
 def _find_outside_change(old: Code, new: Code) -> CodeChange | None:
