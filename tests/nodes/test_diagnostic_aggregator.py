@@ -6,6 +6,7 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
+from linkwright.nodes.diagnostic_aggregator.add_analyzer import AddAnalyzer
 from linkwright.nodes.diagnostic_aggregator.items import remove_prefix
 from linkwright.nodes.diagnostic_aggregator.node import DiagnosticAggregator
 
@@ -25,6 +26,7 @@ PARTS = {
         },
     },
 }
+CAMERAS = {"cameras": {"type": GENERIC, "path": "Cameras", "startswith": ["camera"]}, "use_sim_time": False}
 
 
 class AggregatorHarness:
@@ -234,6 +236,45 @@ class TestState:
         await aggregator.send(("/arms/left", OK), seconds=0)
         await aggregator.send(("/arms/left", OK), seconds=0)
         assert logged("WARN") == ["diagnostics without a timestamp were received: /arms/left"]
+
+
+class TestAddedAnalyzers:
+    async def test_running_aggregator_gets_analyzers(self, harness, aggregate):
+        aggregator = aggregate(PARTS)
+        adding = AddAnalyzer(harness.graph, NodeOptions(parameters=CAMERAS, namespace="/vision"))
+        await harness.clock.advance(1.0)
+        assert adding.finished.result() == 0
+        adding.close()
+        await aggregator.send(("camera", OK), ("/arms/left", OK))
+        levels, _ = await aggregator.report()
+        assert {"/Robot/Cameras/camera", "/Robot/Arms/ arms left"} <= levels.keys()
+        assert "/Robot/Other" not in levels
+
+    async def test_aggregator_is_awaited(self, harness, aggregate, logged):
+        adding = AddAnalyzer(harness.graph, NodeOptions(parameters=CAMERAS))
+        await harness.clock.advance(1.5)
+        assert not adding.finished.done()
+        assert logged("INFO") == ["waiting for the service '/analyzers/set_parameters_atomically' of the aggregator"]
+        aggregate(PARTS)
+        await harness.clock.advance(1.0)
+        assert adding.finished.result() == 0
+
+    async def test_other_name_of_aggregator_is_a_remapping(self, harness):
+        aggregator = DiagnosticAggregator(harness.graph, NodeOptions(name="mine", parameters=PARTS))
+        remapping = ("/analyzers/set_parameters_atomically", "/mine/set_parameters_atomically")
+        adding = AddAnalyzer(harness.graph, NodeOptions(parameters=CAMERAS, remappings=[remapping]))
+        await harness.clock.advance(1.0)
+        assert adding.finished.result() == 0
+        assert aggregator.node.get_parameter("cameras.path").value == "Cameras"
+
+    async def test_refusal_is_logged(self, harness, aggregate, logged):
+        aggregator = aggregate({**PARTS, "cameras": {"type": GENERIC, "path": "Cameras", "startswith": ["lens"]}})
+        wrong = {"cameras": {"type": GENERIC, "path": 5, "startswith": ["camera"]}}
+        adding = AddAnalyzer(harness.graph, NodeOptions(parameters=wrong))
+        await harness.clock.advance(1.0)
+        assert adding.finished.result() == 1
+        assert any("refuses the analyzers" in text for text in logged("ERROR"))
+        assert aggregator.node.node.get_parameter("cameras.path").value == "Cameras"
 
 
 class TestWrongParameters:

@@ -33,20 +33,6 @@ ARGUMENTS = {
     "transform": ["a", "b", "std_msgs/String"],
     "relay_field": ["a", "b", "std_msgs/String", "{data: m.data}"],
 }
-PARAMETERS = {
-    "robot_description": robot(joint("a")),
-    "robot_description_semantic": (
-        "<robot name='test'><group name='arm'><chain base_link='base' tip_link='a_link'/></group></robot>"
-    ),
-    "moveit_servo.move_group_name": "arm",
-    "port": 0,  # any free port, for the bridge
-    "entity_name": "a",
-    "node_names": ["a"],
-    "joints": ["a"],
-    "goal_names": ["goal"],
-    "goal": [0.0],
-    "goal.positions": [0.0],
-}
 NAMED_BY_THEMSELVES = (
     *(f"{un}spawner{end}" for un in ("", "un") for end in ("", ".py")),
     "static_transform_publisher",
@@ -54,6 +40,21 @@ NAMED_BY_THEMSELVES = (
     "relay_field",
 )
 """Nodes whose default names contain a number that differs each time."""
+
+PARAMETERS = {
+    "robot_description": robot(joint("a")),
+    "robot_description_semantic": "<robot name='test'><group name='g'><chain base_link='base' tip_link='a_link'/>"
+    "</group></robot>",
+    "moveit_servo.move_group_name": "g",
+    "port": 0,  # any free port, for the bridge
+    "entity_name": "a",
+    "node_names": ["a"],
+    "joints": ["a"],
+    "goal_names": ["numbers", "point"],
+    "numbers": [0.0],
+    "point.positions": [0.0],
+}
+"""The parameters without which a node does not start."""
 
 NEED_A_TERMINAL = ("teleop_twist_keyboard",)
 
@@ -81,7 +82,7 @@ async def test_executables_start_and_close(harness, executable, terminal):
     options = NodeOptions(
         name="mine",
         namespace="/robot",
-        parameters=PARAMETERS,
+        parameters=dict(PARAMETERS),
         arguments=ARGUMENTS.get(executable[1], []),
         library=harness.library,
         terminal=terminal,
@@ -99,7 +100,7 @@ async def test_executables_start_and_close(harness, executable, terminal):
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
 async def test_default_name_matches_started_node(harness, executable, terminal):
     options = NodeOptions(
-        parameters=PARAMETERS,
+        parameters=dict(PARAMETERS),
         arguments=ARGUMENTS.get(executable[1], []),
         library=harness.library,
         terminal=terminal,

@@ -57,7 +57,7 @@ class AnalyzerFactory:
             prefix: the prefix of the parameters, for messages.
         """
         group = AnalyzerGroup(path, path)
-        for key in sorted(_list_analyzer_keys(parameters)):
+        for key in sorted(list_analyzer_keys(parameters)):
             own = {
                 name.removeprefix(f"{key}."): value for name, value in parameters.items() if name.startswith(f"{key}.")
             }
@@ -153,7 +153,7 @@ class AnalyzerFactory:
             return None
 
 
-def _list_analyzer_keys(parameters: Mapping[str, Any]) -> set[str]:
+def list_analyzer_keys(parameters: Mapping[str, Any]) -> set[str]:
     """Return the prefixes of the parameters of each analyzer: ``NAME`` or ``analyzers.NAME``."""
     keys = set()
     for name in parameters:

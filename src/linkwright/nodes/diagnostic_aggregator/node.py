@@ -7,11 +7,12 @@ simulations.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.graph import Graph, Publisher
+from linkwright.graph import Graph, Parameter, Publisher
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.time.clock import Clock
 from linkwright.graph.time.values import ClockType
@@ -29,7 +30,7 @@ class DiagnosticAggregator(SingleNode):
     """The running aggregator_node.
 
     Parameters: ``path``, ``pub_rate`` (Hz), ``history_depth``, ``other_as_errors``, ``critical``, and the parameters of
-    the analyzers.
+    the analyzers, to which others can be added while it runs.
     """
 
     DEFAULT_NAME = "analyzers"
@@ -47,11 +48,9 @@ class DiagnosticAggregator(SingleNode):
         depth = int(self._read("history_depth", 1000))
         self._is_critical = bool(self._read("critical", False))
         self._other = OtherAnalyzer(base_path, are_errors=bool(self._read("other_as_errors", False)))
-        parameters = {name: parameter.value for name, parameter in node.get_parameters_by_prefix("").items()}
-        log_error = node.get_logger().error
-        self._group = AnalyzerFactory(lambda problem: log_error(localized(problem))).create_group(parameters, base_path)
-        if not self._group.analyzers:
-            log_error(localized(phrase("no analyzer is set, so all diagnostics are in the group 'Other'")))
+        self._base_path = base_path
+        self._create_analyzers()
+        node.add_post_set_parameters_callback(self._on_parameters)
         self._unstamped: set[str] = set()
         self._level = Level.STALE
         self._clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
@@ -59,6 +58,20 @@ class DiagnosticAggregator(SingleNode):
         self._levels: Publisher[Any] = node.create_publisher(_STATUS, "/diagnostics_toplevel_state", 1)
         node.create_subscription(_ARRAY, "/diagnostics", self._on_diagnostics, QoSProfile(depth=max(depth, 1)))
         node.create_timer(1.0 / (rate if rate > 0 else _DEFAULT_RATE), self._publish, clock=self._clock)
+
+    def _create_analyzers(self) -> None:
+        parameters = {name: parameter.value for name, parameter in self._node.get_parameters_by_prefix("").items()}
+        self._parameter_names = frozenset(parameters)
+        log_error = self._node.get_logger().error
+        factory = AnalyzerFactory(lambda problem: log_error(localized(problem)))
+        self._group = factory.create_group(parameters, self._base_path)
+        if not self._group.analyzers:
+            log_error(localized(phrase("no analyzer is set, so all diagnostics are in the group 'Other'")))
+
+    def _on_parameters(self, parameters: Sequence[Parameter]) -> None:
+        """Create all analyzers again if there are new parameters, as add_analyzer sets them."""
+        if not self._parameter_names.issuperset(parameter.name for parameter in parameters):
+            self._create_analyzers()
 
     def _read(self, name: str, default: Any) -> Any:
         if not self._node.has_parameter(name):
