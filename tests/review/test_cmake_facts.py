@@ -250,3 +250,23 @@ def test_built_interface_without_a_file_is_named(repository, compare):
     repository.write({"a/CMakeLists.txt": CATKIN.replace("Load.msg", "Load.msg Lost.msg")})
     found = subject(compare(repository), "a/CMakeLists.txt")
     assert sentences(found) == ["built interfaces added: 'msg/Lost.msg'"]
+
+
+@pytest.mark.parametrize(
+    ("command", "folders"),
+    [
+        ("include_directories(include /opt/cuda/include)", ["/opt/cuda/include"]),
+        ("target_include_directories(arm PUBLIC ~/ws/include)", ["~/ws/include"]),
+        ("include_directories(include ${CMAKE_CURRENT_SOURCE_DIR}/src ${EIGEN_DIR})", []),
+        ("set(own ${PROJECT_SOURCE_DIR}/src)\ninclude_directories(${own})", []),
+        ("include_directories($<BUILD_INTERFACE:/opt/include>)", []),
+    ],
+)
+def test_a_new_absolute_include_folder_is_told(repository, compare, command, folders):
+    text = "project(arm)\nadd_library(arm src/arm.cpp)\n"
+    repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/CMakeLists.txt": text})
+    repository.write({"arm/CMakeLists.txt": f"{text}{command}\n"})
+    found = [
+        line for subject in compare(repository).subjects for line in sentences(subject) if "include folders" in line
+    ]
+    assert found == [f"absolute include folders added: '{folder}'" for folder in folders]

@@ -65,6 +65,7 @@ from linkwright.review.other_files import find_file_states
 from linkwright.review.package_lookups import find_new_lookups
 from linkwright.review.parts import compare_parts
 from linkwright.review.references import find_lost_references
+from linkwright.review.removed_programs import merge_removed_options
 from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import match_moved_files, remove_consequences
 from linkwright.review.robots.semantics import find_semantic_files
@@ -259,7 +260,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_programs))
         result = _add_changes(result, self._run_step(find_missing_programs))
         result = _add_changes(result, self._run_step(find_new_lookups))
-        return sorted(result, key=lambda subject: subject.path)
+        return sorted(merge_removed_options(result), key=lambda subject: subject.path)
 
     def _find_removed_submodules(self) -> Iterator[Subject]:
         """Yield the removed submodules with their packages."""

@@ -2,30 +2,20 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.excerpts import shorten_middle
 from linkwright.review.file_pair import FilePair
-from linkwright.review.list_changes import EMPTY, change_text
+from linkwright.review.files.build_commands import compare_other_commands
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
-_MAX_OTHER_COMMANDS = 6
-"""The maximum number of other commands whose text is shown."""
-_MAX_TEXT_CHARACTERS = 200
 _MIN_FOLDER_PARTS = 3
 """The minimum number of path parts of a folder that replaces its files in a report."""
-_MIN_LONG_LIST_WORDS = 5
-"""The minimum number of words of a command of which only the differing words are shown."""
-_DOWNLOAD_COMMANDS = ("externalproject_add", "fetchcontent_declare")
-"""The commands that download other projects, with a URL and a version after keywords."""
-_KEYWORD = re.compile(r"[A-Z][A-Z_]{2,}")
 
 _PATH_FOLDER = "bin"
 """The folder below the prefix that is in ``PATH``."""
@@ -82,6 +72,7 @@ class FactKind(Enum):
     STOP = (phrase("errors that stop the build"), None)
     TEST = (phrase("tests"), None)
     SETTING = (phrase("settings"), None)
+    INCLUDE_FOLDER = (phrase("absolute include folders"), None)
     FOLDER = (phrase("installed folders that the repository does not have"), None)
 
     def __init__(self, title: Phrase, reason: Phrase | None) -> None:
@@ -251,7 +242,7 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         _report_unpaired(pair, kind, removed, added)
     _report_conditions(pair, conditions)
     _compare_files(pair, old, new)
-    _compare_other_commands(pair, old, new)
+    compare_other_commands(pair, old.other_commands, new.other_commands)
     old.environment.compare(pair, new.environment)
 
 
@@ -518,79 +509,3 @@ def _get_file_name(path: str) -> str:
 
 
 # --- other commands ---------------------------------------------------------------------------------------------------
-
-
-def _compare_other_commands(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
-    """Report the other commands that differ: a few as text, more of them by name."""
-    removed, added = (
-        _find_unpaired_items(old.other_commands, new.other_commands),
-        _find_unpaired_items(new.other_commands, old.other_commands),
-    )
-    names = list(dict.fromkeys(name for name, _ in (*added, *removed)))
-    if len(names) > _MAX_OTHER_COMMANDS:
-        pair.add(phrase("other build settings changed: {names}", names=list_names(names)), None)
-        return
-    for name in names:
-        old_texts, new_texts = ([text for other, text in items if other == name] for items in (removed, added))
-        old_text, new_text = ("; ".join(filter(None, texts)) for texts in (old_texts, new_texts))
-        if name in _DOWNLOAD_COMMANDS and len(old_texts) == len(new_texts) == 1:
-            for text in _compare_keywords(name, old_text.split(), new_text.split()):
-                pair.add(text, None)
-        elif old_texts and new_texts:
-            pair.add(_format_word_changes(name, old_text, new_text), None)
-        elif new_texts:
-            text = phrase(
-                "{parameter} added: {items}", parameter=name, items=shorten_middle(new_text, _MAX_TEXT_CHARACTERS)
-            )
-            pair.add(text if new_text else phrase("{parameter} added", parameter=name), None)
-        else:
-            text = phrase(
-                "{parameter} removed: {items}", parameter=name, items=shorten_middle(old_text, _MAX_TEXT_CHARACTERS)
-            )
-            pair.add(text if old_text else phrase("{parameter} removed", parameter=name), None)
-
-
-def _compare_keywords(name: str, old_words: Sequence[str], new_words: Sequence[str]) -> Iterator[Phrase]:
-    """Yield the changes to the arguments of a command after each keyword, such as ``GIT_TAG``."""
-    old, new = _group_by_keyword(old_words), _group_by_keyword(new_words)
-    for keyword in dict.fromkeys([*old, *new]):
-        before, after = old.get(keyword), new.get(keyword)
-        if before != after:
-            yield change_text(f"{name} {keyword}".strip(), before or EMPTY, after or EMPTY)
-
-
-def _group_by_keyword(words: Sequence[str]) -> dict[str, str]:
-    """Return the arguments by the keyword before them; an empty keyword for the first ones."""
-    values: dict[str, list[str]] = {}
-    keyword = ""
-    for word in words:
-        if _KEYWORD.fullmatch(word):
-            keyword = word
-            values.setdefault(keyword, [])
-        else:
-            values.setdefault(keyword, []).append(word)
-    return {key: " ".join(items) for key, items in values.items()}
-
-
-def _format_word_changes(name: str, old: str, new: str) -> Phrase:
-    """Return the change to the arguments of a command.
-
-    For long lists, only added and removed words are shown.
-    """
-    old_words, new_words = old.split(), new.split()
-    added = [word for word in new_words if word not in old_words]
-    removed = [word for word in old_words if word not in new_words]
-    if min(len(old_words), len(new_words)) < _MIN_LONG_LIST_WORDS or not (added or removed):
-        return change_text(name, old, new)
-    return change_text(name, f"[{', '.join(dict.fromkeys(old_words))}]", f"[{', '.join(dict.fromkeys(new_words))}]")
-
-
-def _find_unpaired_items(items: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    unpaired_others = list(others)
-    unpaired = []
-    for item in items:
-        if item in unpaired_others:
-            unpaired_others.remove(item)
-        else:
-            unpaired.append(item)
-    return unpaired

@@ -91,6 +91,7 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
         _read_packages,
         _read_tests,
         _read_settings,
+        _read_include_folders,
     ):
         facts.facts += reader(commands)
     facts.facts += _read_ros1_interfaces(commands, file.parent)
@@ -416,6 +417,19 @@ def _read_settings(commands: Sequence[Command]) -> Iterator[Fact]:
             yield _make_fact(FactKind.SETTING, arguments[0], words[2] if len(words) > 2 else "OFF")
 
 
+def _read_include_folders(commands: Sequence[Command]) -> Iterator[Fact]:
+    """Yield the absolute folders of headers as written, which other computers may not have.
+
+    Folders below variables and in generator expressions are left out.
+    """
+    for command in commands:
+        if command.name in _INCLUDE_COMMANDS:
+            for argument in command.arguments:
+                if argument.text.startswith(("/", "~/")) and "$" not in argument.text:
+                    yield _make_fact(FactKind.INCLUDE_FOLDER, argument)
+
+
+_INCLUDE_COMMANDS = ("include_directories", "target_include_directories")
 _FACT_COMMANDS = frozenset(
     {
         *("ament_auto_add_executable", "ament_auto_add_library", "rclcpp_components_register_node"),

@@ -17,6 +17,7 @@ from linkwright.review.sources.changed_texts import find_text_changes
 from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
+from linkwright.review.sources.conditions import compare_conditions
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import compare_details, format_name, format_names, make_required_reason
 from linkwright.review.sources.enumerators import compare_enumerations
@@ -101,6 +102,9 @@ class _SourcePair:
         old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
         changes = [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
         changes += self._compare_rates(old_names, new_names)
+        for change in compare_conditions(old_names, new_names):
+            path = (self.file.old_path if change.is_old else self.file.new_path) or self.file.path
+            changes.append(Change(change.text, location=Location(path, change.line, 1, change.is_old)))
         changes += self._compare_imports(old_names, new_names)
         changes += self._find_undefined(old_names, new_names)
         changes += self._compare_header(old_names, new_names)

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
+from linkwright.review.sources.conditions import find_cpp_conditions
 from linkwright.review.sources.cpp_callbacks import find_message_type, find_service_type
 from linkwright.review.sources.cpp_functions import (
     HIDDEN,
@@ -168,6 +169,7 @@ class _Reader:
                 self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)
         self._read_classes()
         self._read_functions()
+        self._names.conditional_lines += find_cpp_conditions(text)
         self._names.is_program = re.search(r"\bint\s+main\s*\(", text) is not None
 
     def _read_classes(self) -> None:

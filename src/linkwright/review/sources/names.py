@@ -6,9 +6,11 @@ Such names are topics, parameters, frames and options.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase
 
@@ -118,6 +120,22 @@ class DefaultName:
     name: str
 
 
+class ConditionalLines(NamedTuple):
+    """The lines in a branch of an ``if`` statement.
+
+    Attributes:
+        first: the first line of the branch.
+        last: the last line of the branch.
+        condition: the condition of the branch as code.
+        line: the line of the statement.
+    """
+
+    first: int
+    last: int
+    condition: str
+    line: int
+
+
 @dataclass(frozen=True)
 class Timer:
     """A timer of a source.
@@ -141,6 +159,8 @@ class SourceNames:
         names: the distinct literal names.
         expressions: the names that are expressions, whose values are unknown.
         defaults: the names that expressions have by default, by the text of the expression.
+        counts: the number of places with a literal name, by kind and name.
+        conditional_lines: the branches of ``if`` statements.
         default_names: the names that parameters give by default.
         unknown_scopes: the parameters of ROS 1 that may be private, because a caller passes the node handle.
         rates: the texts of rates and periods, each with its location.
@@ -173,6 +193,8 @@ class SourceNames:
     names: list[SourceName] = field(default_factory=list)
     expressions: list[SourceName] = field(default_factory=list)
     defaults: dict[str, str] = field(default_factory=dict)
+    counts: Counter[tuple[NameKind, str]] = field(default_factory=Counter)
+    conditional_lines: list[ConditionalLines] = field(default_factory=list)
     default_names: set[DefaultName] = field(default_factory=set)
     unknown_scopes: set[str] = field(default_factory=set)
     rates: list[tuple[str, Span]] = field(default_factory=list)
@@ -200,6 +222,7 @@ class SourceNames:
 
     def add(self, name: SourceName) -> None:
         """Add a literal name, or complete an equal name."""
+        self.counts[name.kind, name.name] += 1
         for index, other in enumerate(self.names):
             if (other.kind, other.name) == (name.kind, name.name):
                 if name.type and not other.type:

@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
+from linkwright.review.sources.conditions import find_python_conditions
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.interface_types import PythonTypes
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames, Timer
@@ -244,6 +245,7 @@ class _Reader:
                 if isinstance(node.func, ast.Attribute) and function == "":
                     function = node.func.attr
                 self._read_call(node, function)
+        self._names.conditional_lines += find_python_conditions(tree)
         for part in ast.walk(tree):
             if isinstance(part, (ast.FunctionDef, ast.AsyncFunctionDef)):
                 self._read_decorators(part)
