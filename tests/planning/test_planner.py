@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi
+from math import inf, pi
+from time import perf_counter
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from linkwright.planning.goals import Goal, JointTarget, LinkTarget
 from linkwright.planning.library import load_ompl
 from linkwright.planning.planner import Failure, Method, MotionPlanner, PlanError, PlanRequest
 from linkwright.planning.robot_model import PlacedShape
-from linkwright.planning.sampling import apply_parameters, planner_class, subdivide
+from linkwright.planning.sampling import _PLANNERS, apply_parameters, planner_class, subdivide
 from tests.planning.arms import arm
 
 pytestmark = pytest.mark.extra("arm")
@@ -214,6 +215,56 @@ class TestLines:
             offset = arm().model.link_pose("tool")[:3] - first[:3]
             assert np.linalg.norm(offset - offset @ direction * direction) < 2e-3
         assert np.linalg.norm(offset) == pytest.approx(0.1118, abs=1e-3)
+
+
+class CancelAtCall:
+    """A cancellation at a call, which counts the calls."""
+
+    def __init__(self, number: float = inf) -> None:
+        self.number, self.count = number, 0
+
+    def __call__(self) -> bool:
+        self.count += 1
+        return self.count > self.number
+
+
+class TestCancellation:
+    def cancel(self, plan_request: PlanRequest, is_canceled: CancelAtCall, *objects: SceneObject) -> None:
+        """Check that a plan that would take a minute ends when it is canceled."""
+        begin = perf_counter()
+        with pytest.raises(PlanError) as caught:
+            MotionPlanner(arm().model, scene(*objects), is_canceled).plan(replace(plan_request, timeout_s=60.0))
+        assert caught.value.failure is Failure.PREEMPTED
+        assert perf_counter() - begin < 15.0
+
+    @pytest.mark.parametrize("planner", _PLANNERS)
+    def test_search_ends(self, planner: str) -> None:
+        start = {"pan": pi / 2, "lift": 1.2, "elbow": 0.6}
+        goal = joint_goal(**start | {"pan": -pi / 2})
+        self.cancel(request(goal, start=start, planner=planner), CancelAtCall(2000), *WALLS)
+
+    def test_search_for_configurations_of_a_pose_ends(self) -> None:
+        far = PlacedShape(Sphere(0.01), np.array((3.0, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0)))
+        self.cancel(request(Goal(links=(LinkTarget("tool", (far,)),))), CancelAtCall(2))
+
+    @pytest.mark.parametrize("share", [0.0, 0.3, 0.6, 0.9])
+    def test_checks_of_a_motion_end(self, share: float) -> None:
+        line = request(joint_goal(pan=0.4, lift=0.8, elbow=0.9), method=Method.JOINT_LINE)
+        calls = CancelAtCall()
+        MotionPlanner(arm().model, scene(), calls).plan(line)
+        assert calls.count > 100
+        self.cancel(line, canceled := CancelAtCall(int(share * calls.count)))
+        assert canceled.count <= canceled.number + 3
+
+    def test_curve_ends(self) -> None:
+        tip = LinkTarget("tool", (PlacedShape(Sphere(0.001), np.array((0.35, 0.3, 0.3, 0.0, 0.0, 0.0, 1.0))),))
+        self.cancel(request(Goal(links=(tip,)), method=Method.CARTESIAN_LINE), CancelAtCall(5))
+
+    def test_check_of_a_blend_ends(self) -> None:
+        path = np.array((arm().positions(**LEFT), arm().positions(pan=0.4, lift=0.8, elbow=0.9)))[:, arm().indexes]
+        planner = MotionPlanner(arm().model, scene(), CancelAtCall(5))
+        with pytest.raises(PlanError, match="canceled"):
+            planner.is_path_free(request(), arm().positions(**LEFT), path)
 
 
 @pytest.mark.parametrize(

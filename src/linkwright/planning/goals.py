@@ -131,6 +131,7 @@ def goal_configurations(
     start: Array,
     is_valid: Callable[[Array], bool],
     timeout_s: float,
+    is_canceled: Callable[[], bool],
     seed: int = 0,
 ) -> Iterator[Array]:
     """Yield different positions of all joints that fulfill a goal and are valid, at most six.
@@ -144,6 +145,7 @@ def goal_configurations(
         start: the positions of all joints at the start.
         is_valid: returns whether the positions of all joints are acceptable, such as free of collisions.
         timeout_s: the time after which the search for configurations of a link target ends.
+        is_canceled: returns whether the search must stop.
         seed: the seed of the random numbers.
     """
     positions = start.copy()
@@ -162,7 +164,7 @@ def goal_configurations(
     found: list[Array] = []
     attempt: np.random.Generator | None = None
     origin = positions
-    while len(found) < _MAX_GOALS and (remaining := deadline - perf_counter()) > 0.0:
+    while len(found) < _MAX_GOALS and (remaining := deadline - perf_counter()) > 0.0 and not is_canceled():
         pose = target.sample(attempt, current)
         solution = solver.solve(pose, origin, min(remaining, 0.05), is_valid)
         attempt = random

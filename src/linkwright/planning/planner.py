@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
-from functools import partial
 from itertools import islice, pairwise
 from time import perf_counter
 from typing import Any
@@ -62,6 +61,7 @@ class Failure(Enum):
     INVALID_MOTION_PLAN = "there is no arc through the points"
     INVALID_ROBOT_STATE = "a joint of the start is outside of its bounds"
     FAILURE = "two motions of a sequence cannot be blended"
+    PREEMPTED = "the planning was canceled"
 
 
 class PlanError(Exception):
@@ -134,11 +134,15 @@ class MotionPlanner:
     Args:
         model: the robot; it is moved.
         scene: the robot among objects.
+        is_canceled: returns whether the planning must stop; it is called often, and raises no error.
     """
 
-    def __init__(self, model: RobotModel, scene: CollisionScene) -> None:
+    def __init__(
+        self, model: RobotModel, scene: CollisionScene, is_canceled: Callable[[], bool] = lambda: False
+    ) -> None:
         self._model = model
         self._scene = scene
+        self._is_canceled = is_canceled
 
     def plan(self, request: PlanRequest) -> Trajectory:
         """Return a trajectory of the group's joints.
@@ -157,7 +161,10 @@ class MotionPlanner:
         deadline = perf_counter() + request.timeout_s
         indexes = np.array([self._model.index(name) for name in request.group.joint_names])
         start = self._checked_start(request, indexes)
-        is_valid = partial(self._is_valid, request)
+
+        def is_valid(positions: Array) -> bool:  # After a cancellation, no configuration is, so that searches end.
+            return not self._is_canceled() and self._is_valid(request, positions)
+
         goals = self._find_goals(request, start, is_valid)
         while (path := self._find_path(request, start, goals, indexes, is_valid, deadline)) is not None:
             trajectory = self._find_free_trajectory(request, start, path)
@@ -165,6 +172,7 @@ class MotionPlanner:
                 return Plan(start, path, trajectory)
             if request.method is not Method.SAMPLING or perf_counter() >= deadline:
                 break
+        self._stop_if_canceled()
         raise PlanError(Failure.PLANNING_FAILED, reason=_explain_turns(request.group, start[indexes], goals, indexes))
 
     def time_path(
@@ -180,7 +188,7 @@ class MotionPlanner:
                 instead of those of the request.
 
         Raises:
-            PlanError: even the trajectory that stops at each corner collides.
+            PlanError: even the trajectory that stops at each corner collides, or the planning is canceled.
         """
         trajectory = self._find_free_trajectory(request, start, path, scales)
         if trajectory is None:
@@ -194,10 +202,14 @@ class MotionPlanner:
             request: the request, with the group and the constraint.
             start: the positions of all joints.
             path: the positions of the group's joints, shape (n, joints).
+
+        Raises:
+            PlanError: the planning is canceled.
         """
         indexes = np.array([self._model.index(name) for name in request.group.joint_names])
         positions = start.copy()
         for configuration in subdivide(path, _CHECK_STEP):
+            self._stop_if_canceled()
             positions[indexes] = configuration
             if not self._is_valid(request, positions):
                 return False
@@ -216,6 +228,7 @@ class MotionPlanner:
         indexes = np.array([self._model.index(name) for name in group.joint_names])
         speed_limits = LinkSpeedLimits(self._model, group, start, request.max_link_speeds)
         for deviation in _DEVIATIONS:
+            self._stop_if_canceled()
             trajectory = parameterize_smoothly(
                 path,
                 group.max_velocities * velocity_scale,
@@ -238,6 +251,7 @@ class MotionPlanner:
         """
         positions, was_clear, touches = start.copy(), False, False
         for configuration in motion:
+            self._stop_if_canceled()
             positions[indexes] = configuration
             if self._scene.is_clear(positions):
                 if touches or not self._fulfills_constraint(request, positions):
@@ -288,7 +302,8 @@ class MotionPlanner:
                     target.above, target.below
                 ):
                     raise PlanError(Failure.INVALID_GOAL_CONSTRAINTS)
-            possible = goal_configurations(goal, self._model, group, start, is_valid, request.timeout_s * _GOAL_SHARE)
+            timeout_s = request.timeout_s * _GOAL_SHARE
+            possible = goal_configurations(goal, self._model, group, start, is_valid, timeout_s, self._is_canceled)
             found = list(islice(possible, 1 if request.method in _CARTESIAN else None))
             if not found and not goal.links:
                 positions = start.copy()
@@ -296,6 +311,7 @@ class MotionPlanner:
                     positions[self._model.index(name)] = target.position
                 failure, contacts = Failure.GOAL_IN_COLLISION, self._scene.contacts(positions)
             configurations += found
+        self._stop_if_canceled()
         if not configurations:
             raise PlanError(failure, contacts)
         return configurations
@@ -312,7 +328,8 @@ class MotionPlanner:
             return bool(is_valid(positions))
 
         positions = start.copy()
-        problem = SamplingProblem(request.group, is_free, request.planner, request.planner_parameters)
+        planner, parameters = request.planner, request.planner_parameters
+        problem = SamplingProblem(request.group, is_free, planner, parameters, self._is_canceled)
         ends = [goal[indexes] for goal in goals]
         if request.method is Method.JOINT_LINE:
             path = np.array((start[indexes], min(ends, key=lambda end: float(np.linalg.norm(end - start[indexes])))))
@@ -349,6 +366,10 @@ class MotionPlanner:
 
     def _is_valid(self, request: PlanRequest, positions: Array) -> bool:
         return self._scene.is_free(positions) and self._fulfills_constraint(request, positions)
+
+    def _stop_if_canceled(self) -> None:
+        if self._is_canceled():
+            raise PlanError(Failure.PREEMPTED)
 
     def _fulfills_constraint(self, request: PlanRequest, positions: Array) -> bool:
         constraint = request.path_constraint

@@ -54,23 +54,26 @@ class SamplingProblem:
         is_free: returns whether the positions of the group's joints are free of collisions, shape (joints,).
         planner: a planner of OMPL, see `planner_class`.
         parameters: the parameters of the planner, by OMPL's names.
+        is_canceled: returns whether the search must stop; it is called before each check of a configuration.
     """
 
     def __init__(
         self,
         group: JointGroup,
         is_free: Callable[[Array], bool],
-        planner: str = DEFAULT_PLANNER,
-        parameters: Mapping[str, Any] | None = None,
+        planner: str,
+        parameters: Mapping[str, Any],
+        is_canceled: Callable[[], bool],
     ) -> None:
         self._group = group
         self._is_free = is_free
+        self._is_canceled = is_canceled
         self._planner = planner
-        self._parameters = parameters or {}
+        self._parameters = parameters
         self._ompl = load_ompl()
 
     def solve(self, start: Array, goals: Sequence[Array], timeout_s: float) -> Array | None:
-        """Return a path from a configuration to one of several goals, or None.
+        """Return a path from a configuration to one of several goals, or None if there is none or it is canceled.
 
         Args:
             start: positions of the joints in rad or m, shape (joints,).
@@ -82,7 +85,7 @@ class SamplingProblem:
         """
         deadline = perf_counter() + timeout_s
         step = _MAX_STEP
-        while (remaining := deadline - perf_counter()) > 0.0:
+        while (remaining := deadline - perf_counter()) > 0.0 and not self._is_canceled():
             search_s = max(_SEARCH_SHARE * remaining, _MIN_SEARCH_SHARE * timeout_s)
             path = self._search(start, goals, step, min(remaining, search_s))
             if path is None:
@@ -110,8 +113,16 @@ class SamplingProblem:
             bounds.setHigh(index, float(upper[index]))
         space.setBounds(bounds)
         setup = geometric.SimpleSetup(space)
-        is_free, indexes = self._is_free, range(count)
-        setup.setStateValidityChecker(lambda state: is_free(np.array([state[index] for index in indexes])))
+        is_free, is_canceled, indexes = self._is_free, self._is_canceled, range(count)
+        condition = base.timedPlannerTerminationCondition(timeout_s)
+
+        def is_valid(state: Any) -> bool:
+            if is_canceled():  # OMPL cannot raise an error of Python, and a condition in Python would block it.
+                condition.terminate()
+                return False
+            return is_free(np.array([state[index] for index in indexes]))
+
+        setup.setStateValidityChecker(is_valid)
         information = setup.getSpaceInformation()
         information.setStateValidityCheckingResolution(min(step / space.getMaximumExtent(), _MAX_STEP_SHARE))
         setup.setStartState(_make_state(space, start))
@@ -122,10 +133,11 @@ class SamplingProblem:
         planner = getattr(geometric, self._planner)(information)
         apply_parameters(planner, self._parameters)
         setup.setPlanner(planner)
-        setup.solve(timeout_s)
-        if not setup.haveExactSolutionPath():
+        setup.solve(condition)
+        if not setup.haveExactSolutionPath() or is_canceled():
             return None
-        setup.simplifySolution(min(_MAX_SIMPLIFICATION_S, timeout_s))
+        condition = base.timedPlannerTerminationCondition(min(_MAX_SIMPLIFICATION_S, timeout_s))
+        setup.simplifySolution(condition)
         path = setup.getSolutionPath()
         return np.array([[state[index] for index in indexes] for state in path.getStates()])
 

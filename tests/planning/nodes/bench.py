@@ -81,9 +81,16 @@ class Bench:
         return await self.wait(client.call_async(service.Request(**fields)))
 
     async def send(self, kind: str, name: str, **fields: Any) -> tuple[int, Any]:
+        return await self.end(await self.start(kind, name, **fields))
+
+    async def start(self, kind: str, name: str, **fields: Any) -> Any:
+        """Send a goal, and return its handle."""
         action = get_action(f"moveit_msgs/action/{kind}")
         self.client = ActionClient(self.node, action, name)
-        handle = await self.wait(self.client.send_goal_async(action.Goal(**fields)))
+        return await self.wait(self.client.send_goal_async(action.Goal(**fields)))
+
+    async def end(self, handle: Any) -> tuple[int, Any]:
+        """Return the status and the result of a goal, when it ends."""
         response = await self.wait(handle.get_result_async())
         return response.status, response.result
 
@@ -119,6 +126,24 @@ def box(name: str, x: float, y: float, z: float, *, size: tuple[float, float, fl
     result.pose.position.x, result.pose.position.y, result.pose.position.z = x, y, z
     result.primitives = [message("shape_msgs/msg/SolidPrimitive", type=1, dimensions=list(size))]
     return result
+
+
+def endless_request() -> Any:
+    """Return a request for a motion that does not exist, which is searched for an hour."""
+    start = {"pan": 1.5, "lift": 1.2, "elbow": 0.6}
+    goal = joint_constraints(**start | {"pan": -1.5})
+    return motion_request(goal, start_state=state(**start), allowed_planning_time=3600.0)
+
+
+def closed_room() -> Any:
+    """Return a scene with two walls on both sides of the arm and a ceiling, for `endless_request`."""
+    scene = message("moveit_msgs/msg/PlanningScene", is_diff=True)
+    scene.world.collision_objects = [
+        box("front", 1.05, 0.0, 0.0, size=(1.9, 0.02, 3.0)),
+        box("back", -1.05, 0.0, 0.0, size=(1.9, 0.02, 3.0)),
+        box("ceiling", 0.0, 0.0, 0.75, size=(4.0, 4.0, 0.02)),
+    ]
+    return scene
 
 
 def joint_constraints(**joints: float) -> Any:

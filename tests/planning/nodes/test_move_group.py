@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Any
 
 import numpy as np
@@ -11,12 +12,15 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
+from linkwright.planning.nodes.conversions import RequestError
 from linkwright.planning.nodes.move_group import MoveGroup
 from tests.planning.nodes.bench import (
     PARAMETERS,
     START,
     Bench,
     box,
+    closed_room,
+    endless_request,
     joint_constraints,
     message,
     motion_request,
@@ -376,6 +380,38 @@ class TestPlans:
         fields = {"group_name": "arm", "max_step": 0.01, "waypoints": [message("geometry_msgs/msg/Pose")], **changes}
         response = await bench.call("GetCartesianPath", "compute_cartesian_path", **fields)
         assert response.error_code.val == getattr(response.error_code, code)
+
+
+class TestCancellation:
+    async def start(self, bench: Bench) -> Any:
+        options = message("moveit_msgs/msg/PlanningOptions", planning_scene_diff=closed_room())
+        return await bench.start("MoveGroup", "move_action", request=endless_request(), planning_options=options)
+
+    async def test_canceled_plan_ends(self, bench) -> None:
+        goal = await self.start(bench)
+        await asyncio.sleep(0.2)
+        goal.cancel_goal_async()
+        status, result = await bench.end(goal)
+        assert (status, result.error_code.val) == (GoalStatus.CANCELED, result.error_code.PREEMPTED)
+        assert bench.received == []
+
+    async def test_canceled_plan_does_not_wait_for_others(self, bench) -> None:
+        first, second = await self.start(bench), await self.start(bench)
+        second.cancel_goal_async()
+        assert (await bench.end(second))[0] == GoalStatus.CANCELED
+        third = await bench.start("MoveGroup", "move_action", request=motion_request(joint_constraints(pan=0.3)))
+        first.cancel_goal_async()
+        assert (await bench.end(first))[0] == GoalStatus.CANCELED
+        assert (await bench.end(third))[0] == GoalStatus.SUCCEEDED
+
+    async def test_node_that_closes_ends_its_plan(self, bench) -> None:
+        await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=closed_room())
+        planning = bench.move_group._planning
+        plan = asyncio.ensure_future(planning.plan(endless_request(), bench.move_group._monitor.scene))
+        await asyncio.sleep(0.2)
+        bench.move_group.close()
+        with pytest.raises(RequestError, match="canceled"):
+            await plan
 
 
 class TestExecution:

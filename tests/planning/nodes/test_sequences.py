@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Any
 
 import numpy as np
 import pytest
 
 from linkwright.graph.actions.goal import GoalStatus
-from tests.planning.nodes.bench import START, Bench, box, joint_constraints, message, motion_request, state
+from tests.planning.nodes.bench import (
+    START,
+    Bench,
+    box,
+    closed_room,
+    endless_request,
+    joint_constraints,
+    message,
+    motion_request,
+    state,
+)
 
 pytestmark = pytest.mark.extra("arm")
 
@@ -104,4 +115,23 @@ class TestAction:
         status, response = await self.send(bench, item(pan=0.1), plan_only=True)
         assert status == GoalStatus.SUCCEEDED
         assert len(response.planned_trajectories) == 1
+        assert bench.received == []
+
+    async def test_canceled_sequence_ends(self, bench) -> None:
+        motion = item(pan=0.1)
+        motion.req = endless_request()
+        motion.req.pipeline_id = "ompl"
+        goal = await bench.start(
+            "MoveGroupSequence",
+            "sequence_move_group",
+            request=message("moveit_msgs/msg/MotionSequenceRequest", items=[motion]),
+            planning_options=message("moveit_msgs/msg/PlanningOptions", planning_scene_diff=closed_room()),
+        )
+        await asyncio.sleep(0.2)
+        goal.cancel_goal_async()
+        status, result = await bench.end(goal)
+        assert (status, result.response.error_code.val) == (
+            GoalStatus.CANCELED,
+            result.response.error_code.PREEMPTED,
+        )
         assert bench.received == []

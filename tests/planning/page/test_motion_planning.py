@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
@@ -15,6 +17,7 @@ from linkwright.page.protocol.motion_planning import (
 from linkwright.planning.page.scene_edits import describe_objects, make_moved_object
 from linkwright.rviz.displays.moveit.scene import Scene
 from tests.planning.arms import SRDF
+from tests.planning.nodes.bench import closed_room
 from tests.planning.page.bench import HANDLE, open_bench
 from tests.rviz.displays.moveit.arm import make_collision_object, make_pose, make_scene
 
@@ -244,6 +247,22 @@ async def test_motion_is_planned_and_executed():
         await bench.until(lambda: bench.session.current.values.get("lift") == pytest.approx(0.4, abs=1e-3))
         bench.command("plan_and_execute")
         await bench.until(lambda: bench.panel()["outcome"] == "executed" and len(bench.followed) == 2)
+
+
+async def test_stop_cancels_planning():
+    async with open_bench(", MoveIt_Planning_Time: 3600") as bench:
+        assert await bench.session.client.apply_scene(closed_room())
+        bench.publish_joints(pan=1.5, lift=1.2, elbow=0.6, bend=0.0)
+        await bench.until(lambda: bench.session.current.values.get("pan") == pytest.approx(1.5))
+        bench.set_joint("pan", -1.5)
+        bench.command("plan_and_execute")
+        await bench.until(lambda: bench.panel()["activity"] == "planning")
+        await asyncio.sleep(0.2)
+        bench.command("stop")
+        await bench.until(lambda: bench.panel()["activity"] == "idle")
+        assert bench.panel()["outcome"] == "stopped"
+        assert not bench.panel()["executable"]
+        assert bench.followed == []
 
 
 async def test_stop_cancels_execution():

@@ -50,7 +50,8 @@ class MoveGroup(SingleNode):
             self._start()
 
     def close(self) -> None:
-        """Stop the execution and destroy the node."""
+        """Stop the planning and the execution, and destroy the node."""
+        self._planning.stop()
         self._execution.stop()
         super().close()
 
@@ -130,7 +131,7 @@ class MoveGroup(SingleNode):
         publish_state("PLANNING")
         try:
             scene = self._monitor.scene_with_difference(planning_options.planning_scene_diff)
-            start, trajectory, names = await self._planning.plan(request, scene)
+            start, trajectory, names = await self._planning.plan(request, scene, lambda: bool(goal.is_cancel_requested))
             result.trajectory_start = self._robot.state_message(start)
             result.planned_trajectory = trajectory_message(names, trajectory, self._robot.frame)
             result.planning_time = perf_counter() - started

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections.abc import Callable, Iterable
 from time import perf_counter
 from typing import Any, TypeVar
@@ -20,13 +21,19 @@ from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
-from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
+from linkwright.planning.planner import Failure, MotionPlanner, PlanError, PlanRequest
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.timing import Trajectory
 
 Result = TypeVar("Result")
 
 _DEFAULT_PLANNING_TIME_S = 5.0
+_POLL_S = 0.02
+"""The time in s between two checks of whether a plan that waits for others is canceled."""
+
+
+def _never() -> bool:
+    return False
 
 
 class PlanningServices:
@@ -53,6 +60,7 @@ class PlanningServices:
         self._node, self._robot, self._monitor, self._pipelines = node, robot, monitor, pipelines
         self._default_scale = default_scale
         self._planning = asyncio.Lock()
+        self._is_stopped = threading.Event()
         self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
         self._path_publisher: Publisher[Any] = node.create_publisher(
             "moveit_msgs/msg/DisplayTrajectory", "display_planned_path", 10
@@ -63,6 +71,10 @@ class PlanningServices:
             ("query_planner_interface", "QueryPlannerInterfaces", self._query_planners),
         ):
             node.create_service(get_service(f"moveit_msgs/srv/{kind}"), name, callback, callback_group=group)
+
+    def stop(self) -> None:
+        """Cancel the current plan and those that wait."""
+        self._is_stopped.set()
 
     async def _plan_path(self, request: Any, response: Any) -> Any:
         motion_request = request.motion_plan_request
@@ -81,14 +93,21 @@ class PlanningServices:
         result.error_code.val = self._error_codes.SUCCESS
         return response
 
-    async def plan(self, request: Any, scene: SceneState) -> tuple[Array, Trajectory, tuple[str, ...]]:
+    async def plan(
+        self, request: Any, scene: SceneState, is_canceled: Callable[[], bool] = _never
+    ) -> tuple[Array, Trajectory, tuple[str, ...]]:
         """Plan a motion, and return the start, the trajectory and the names of its joints.
 
+        Args:
+            request: a moveit_msgs/msg/MotionPlanRequest.
+            scene: the scene.
+            is_canceled: returns whether the planning must stop; it is also called in other threads.
+
         Raises:
-            RequestError: there is no plan.
+            RequestError: there is no plan, or the planning was canceled.
         """
         plan_request, scene = self.prepare(request, scene, self._robot.positions)
-        trajectory = await self.run(scene, lambda planner: planner.plan(plan_request))
+        trajectory = await self.run(scene, lambda planner: planner.plan(plan_request), is_canceled)
         self.publish_path(plan_request.start, [(plan_request.group, trajectory)])
         return plan_request.start, trajectory, plan_request.group.joint_names
 
@@ -116,20 +135,46 @@ class PlanningServices:
         scene = self._monitor.scene_with(request.start_state, start, scene)
         return self._make_request(request, group, start), scene
 
-    async def run(self, scene: SceneState, work: Callable[[MotionPlanner], Result]) -> Result:
+    async def run(
+        self, scene: SceneState, work: Callable[[MotionPlanner], Result], is_canceled: Callable[[], bool] = _never
+    ) -> Result:
         """Return what a function computes with a planner in another thread, after other plans.
 
+        Args:
+            scene: the scene of the planner.
+            work: the function.
+            is_canceled: returns whether the planning must stop; it is also called in the other thread.
+
         Raises:
-            RequestError: there is no plan.
+            RequestError: there is no plan, or the planning was canceled.
         """
-        async with self._planning:
-            planner = MotionPlanner(RobotModel(self._robot.robot), self._monitor.compile(scene))
-            try:
-                return await asyncio.to_thread(work, planner)
-            except PlanError as error:
-                raise RequestError(error.failure.name, self._explain(error)) from None
-            except LinkwrightError as error:  # OMPL is not installed.
-                raise RequestError("FAILURE", render(error.diagnostics[0])) from None
+
+        def must_stop() -> bool:
+            return self._is_stopped.is_set() or is_canceled()
+
+        if not await self._wait_for_turn(must_stop):
+            raise RequestError(Failure.PREEMPTED.name, Failure.PREEMPTED.value)
+        try:
+            planner = MotionPlanner(RobotModel(self._robot.robot), self._monitor.compile(scene), must_stop)
+            return await asyncio.to_thread(work, planner)
+        except PlanError as error:
+            raise RequestError(error.failure.name, self._explain(error)) from None
+        except LinkwrightError as error:  # OMPL is not installed.
+            raise RequestError("FAILURE", render(error.diagnostics[0])) from None
+        finally:
+            self._planning.release()
+
+    async def _wait_for_turn(self, must_stop: Callable[[], bool]) -> bool:
+        """Acquire the lock of the planning after other plans, and return whether the plan was not canceled before."""
+        turn = asyncio.ensure_future(self._planning.acquire())
+        try:
+            while not turn.done() and not must_stop():
+                await asyncio.wait({turn}, timeout=_POLL_S)
+        except asyncio.CancelledError:
+            if not turn.cancel():
+                self._planning.release()
+            raise
+        return not turn.cancel()
 
     def _make_request(self, request: Any, group: JointGroup, start: Array) -> PlanRequest:
         """Return the request of a moveit_msgs/msg/MotionPlanRequest.

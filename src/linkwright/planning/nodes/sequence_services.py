@@ -66,7 +66,7 @@ class SequenceServices:
 
     async def _plan_path(self, request: Any, response: Any) -> Any:
         try:
-            await self._plan_into(response.response, request.request, self._monitor.scene)
+            await self._plan_into(response.response, request.request, self._monitor.scene, lambda: False)
         except RequestError as error:
             self._report(response.response, error)
         return response
@@ -76,7 +76,7 @@ class SequenceServices:
         self._publish_state(goal, "PLANNING")
         try:
             scene = self._monitor.scene_with_difference(options.planning_scene_diff)
-            await self._plan_into(result.response, goal.request.request, scene)
+            await self._plan_into(result.response, goal.request.request, scene, lambda: bool(goal.is_cancel_requested))
             if not options.plan_only and not self._may_execute:
                 self._node.get_logger().warning("Only plan will be calculated, although plan_only == false.")
             elif not options.plan_only:
@@ -103,18 +103,18 @@ class SequenceServices:
         self._node.get_logger().error(str(error))
         response.error_code.val = getattr(self._error_codes, error.code)
 
-    async def _plan_into(self, response: Any, request: Any, scene: SceneState) -> None:
+    async def _plan_into(self, response: Any, request: Any, scene: SceneState, is_canceled: Callable[[], bool]) -> None:
         """Plan a moveit_msgs/msg/MotionSequenceRequest, and write the result into a MotionSequenceResponse.
 
         Raises:
-            RequestError: there is no plan.
+            RequestError: there is no plan, or the planning was canceled.
         """
         started = perf_counter()
         response.error_code.val = self._error_codes.SUCCESS
         if not request.items:
             self._node.get_logger().warning(_EMPTY)
             return
-        motions = await self._plan(request.items, scene)
+        motions = await self._plan(request.items, scene, is_canceled)
         response.sequence_start = self._robot.state_message(motions[0].start)
         response.planned_trajectories = [
             trajectory_message(motion.group.joint_names, motion.trajectory, self._robot.frame) for motion in motions
@@ -122,7 +122,7 @@ class SequenceServices:
         response.planning_time = perf_counter() - started
         self._planning.publish_path(motions[0].start, [(motion.group, motion.trajectory) for motion in motions])
 
-    async def _plan(self, items: Any, scene: SceneState) -> list[SequenceMotion]:
+    async def _plan(self, items: Any, scene: SceneState, is_canceled: Callable[[], bool]) -> list[SequenceMotion]:
         radii = self._read_radii(items)
         _check_start_states(items)
         positions, commands = self._robot.positions, []
@@ -130,7 +130,7 @@ class SequenceServices:
             item.req.pipeline_id = item.req.pipeline_id or items[0].req.pipeline_id
             try:
                 request, scene = self._planning.prepare(item.req, scene, positions)
-                plan = await self._planning.run(scene, partial(_plan_path, request))
+                plan = await self._planning.run(scene, partial(_plan_path, request), is_canceled)
             except RequestError as error:
                 raise RequestError(error.code, f"Could not solve command [{number}] of the sequence: {error}") from None
             commands.append(Command(request, plan, radius))
@@ -138,7 +138,7 @@ class SequenceServices:
             end.name, end.position = list(request.group.joint_names), plan.path[-1].tolist()
             positions = update_positions(self._robot.model.joint_names, plan.start, end)
         return await self._planning.run(
-            scene, lambda planner: join_commands(planner, RobotModel(self._robot.robot), commands)
+            scene, lambda planner: join_commands(planner, RobotModel(self._robot.robot), commands), is_canceled
         )
 
     def _read_radii(self, items: Any) -> list[float]:

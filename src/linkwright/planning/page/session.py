@@ -340,9 +340,7 @@ class PlanningSession:
         self._is_stopped = False
         try:
             is_planned = command == "execute" or await self._plan()
-            if self._is_stopped and command == "plan_and_execute":
-                self.outcome = "stopped"
-            elif is_planned and command != "plan":
+            if is_planned and command != "plan":
                 await self._execute()
         finally:
             self.activity = "idle"
@@ -376,9 +374,9 @@ class PlanningSession:
             result = await client.plan(motion)
         self.planning_time_s = result.planning_time_s or asyncio.get_running_loop().time() - started
         self.fraction = result.fraction
-        self.error = result.error
-        if result.error:
-            self.outcome = "stopped" if result.error == "PREEMPTED" else "planning_failed"
+        self.error = "PREEMPTED" if self._is_stopped else result.error
+        if self.error:
+            self.outcome = "stopped" if self.error == "PREEMPTED" else "planning_failed"
         elif result.fraction < 1.0:
             self.outcome = "path_cut"
         else:
