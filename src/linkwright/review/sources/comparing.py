@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
@@ -19,12 +18,20 @@ from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
-from linkwright.review.sources.details import compare_details, format_name, format_names, make_required_reason
+from linkwright.review.sources.details import (
+    compare_computed,
+    compare_details,
+    format_name,
+    format_names,
+    format_rename,
+    make_required_reason,
+)
 from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
     PYTHON_SUFFIX,
     YES,
+    DefaultName,
     Detail,
     NameKind,
     SourceName,
@@ -34,6 +41,7 @@ from linkwright.review.sources.namespaces import compare_namespaces
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
 from linkwright.review.sources.pairing import compute_similarity, pair_similar, take_pairs
 from linkwright.review.sources.protected_members import compare_protected
+from linkwright.review.sources.rates import compare_rates
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.shared_constants import find_constant_users
@@ -44,10 +52,6 @@ from linkwright.review.versions import TEST_FOLDERS, Versions
 _SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
 _MAX_FUNCTION_CHANGES = 3
 """The maximum number of functions with changed arguments in a file that have lines of their own."""
-_UNIT_NAMES = re.compile(
-    r"\b(?:ros|rospy|rclcpp|rclpy|std|chrono|(?:nano|micro|milli)?seconds|duration|Duration|from_sec|to_sec|n?secs|"
-    r"[num]?s|Hz|from_seconds|float|int)\b"
-)
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -101,7 +105,8 @@ class _SourcePair:
         """Yield the differences."""
         old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
         changes = [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
-        changes += self._compare_rates(old_names, new_names)
+        rates = compare_rates(old_names, new_names, is_new=self.file.old_path is None)
+        changes += [self._make_change(text, span, self.new, None) for text, span in rates]
         changes += self._compare_imports(old_names, new_names)
         changes += self._find_undefined(old_names, new_names)
         changes += self._compare_header(old_names, new_names)
@@ -192,7 +197,7 @@ class _SourcePair:
         for old_item, new_item in pairs:
             is_harmless = old_item in remaining_old or _is_same_frame(old_item, new_item)
             reason = None if is_harmless else self._find_rename_reason(old_item, new_item, old_names)
-            yield self._make_change(_format_rename(old_item, new_item), new_item.span, self.new, reason)
+            yield self._make_change(format_rename(old_item, new_item), new_item.span, self.new, reason)
             removed = [item for item in removed if item is not old_item]
             added = [item for item in added if item is not new_item]
         yield from self._compare_expressions(kind, removed, added)
@@ -216,7 +221,7 @@ class _SourcePair:
                 continue
             if old.name.lstrip("/") not in known[1] and item.name.lstrip("/") not in known[0]:
                 reason = self._find_removal_reason([old], old_names)
-                yield self._make_change(_format_rename(old, item), item.span, self.new, reason)
+                yield self._make_change(format_rename(old, item), item.span, self.new, reason)
 
     def _is_reported(self, kind: NameKind) -> bool:
         """Return whether removed and added names of a kind matter outside of the file."""
@@ -449,37 +454,43 @@ class _SourcePair:
 
         Expressions of several names are left out.
         """
+        sources = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
         for item in new:
             matching = [[expression for expression in items if expression.name == item.name] for items in (old, new)]
             if len(matching[0]) == len(matching[1]) == 1 and matching[0][0].type and item.type:
-                for text, reason in compare_details(matching[0][0], item):
+                defaults = [names.defaults.get(item.name, "") for names in sources]
+                for text, reason in compare_computed(matching[0][0], item, defaults):
                     yield self._make_change(text, item.span, self.new, reason)
 
     def _compare_patterns(self, old: SourceName, new: SourceName) -> Iterator[Change]:
-        """Yield the change of the texts in an expression for a name."""
+        """Yield the change of the texts in an expression for a name, or of the parameter that gives it by default."""
+        old_default = self.old.get_names(self.file.old_path).find_default(old)
+        new_default = self.new.get_names(self.file.new_path).find_default(new)
+        if old_default is not None and new_default is not None:
+            yield from self._compare_defaults(old, new, old_default, new_default)
+            return
         patterns = extract_pattern(old.name), extract_pattern(new.name)
         if None in patterns or patterns[0] == patterns[1]:
             return
         reason = phrase("the name is a pattern; programs that use one of the old names do not find it")
         is_lost = self._find_removal_reason([old], self.old.get_names(self.file.old_path)) is not None
-        yield self._make_change(_format_rename(old, new), new.span, self.new, reason if is_lost else None)
+        yield self._make_change(format_rename(old, new), new.span, self.new, reason if is_lost else None)
 
-    def _compare_rates(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changed rates and periods, and all rates of a new node.
-
-        Rates are compared only if both versions have the same number.
-        """
-        old_rates, new_rates = old_names.rates, new_names.rates
-        if self.file.old_path is None and new_rates and new_names.makes_node:
-            texts = joined_first(dict.fromkeys(text for text, _ in new_rates), MAX_NAMES)
-            yield self._make_change(phrase("rates and periods: {texts}", texts=texts), new_rates[0][1], self.new, None)
-        if len(old_rates) != len(new_rates):
+    def _compare_defaults(
+        self, old: SourceName, new: SourceName, old_default: DefaultName, new_default: DefaultName
+    ) -> Iterator[Change]:
+        """Yield the name that another parameter gives now. Another default of the same parameter has its own line."""
+        if old_default.parameter == new_default.parameter or old_default.name == new_default.name:
             return
-        for (old_text, _), (new_text, span) in zip(old_rates, new_rates, strict=True):
-            is_same_call = old_text.partition("(")[0] == new_text.partition("(")[0]
-            if is_same_call and old_text != new_text and (_is_number(old_text) or _is_number(new_text)):
-                text = phrase("rate or period: {old} -> {new}", old=old_text, new=new_text)
-                yield self._make_change(text, span, self.new, None)
+        package = self.new.find_package(self.file.path)
+        is_set = any(
+            is_set_in_package(self.new.version, package, item.parameter) for item in (old_default, new_default)
+        )
+        names = self.old.get_names(self.file.old_path)
+        reason = None if is_set else self._find_default_reason(old, old_default.name, new_default.name, names)
+        reason = None if reason is None else phrase("by default, {reason}", reason=reason)
+        text = format_rename(replace(old, name=old_default.name), replace(new, name=new_default.name))
+        yield self._make_change(text, new.span, self.new, reason)
 
     def _compare_imports(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield new absolute imports of modules of the same package.
@@ -535,16 +546,6 @@ def _has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, ne
     """Return whether a function or member only has other names for the same types."""
     is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
     return is_member and old_names.resolve_aliases(old.type) == new_names.resolve_aliases(new.type)
-
-
-def _is_number(rate: str) -> bool:
-    """Return whether the argument of a rate has no names except units."""
-    argument = rate.partition("(")[2]
-    return re.search(r"[A-Za-z_]{2,}", _UNIT_NAMES.sub("", re.sub(r"(\d)[a-z]+", r"\1", argument))) is None
-
-
-def _format_rename(old: SourceName, new: SourceName) -> Phrase:
-    return phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=format_name(old), new=format_name(new))
 
 
 def _is_same_frame(old: SourceName, new: SourceName) -> bool:

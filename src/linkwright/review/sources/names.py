@@ -194,6 +194,12 @@ class SourceNames:
         self.defaults[expression] = default
         self.default_names.add(DefaultName(parameter, kind, default))
 
+    def find_default(self, item: SourceName) -> DefaultName | None:
+        """Return the name that an expression has by default and its parameter, or None if it is unknown."""
+        default = self.defaults.get(item.name)
+        found = (known for known in self.default_names if (known.kind, known.name) == (item.kind, default))
+        return min(found, key=lambda known: known.parameter, default=None)
+
     def has_default(self, item: SourceName) -> bool:
         """Return whether a parameter gives a frame by default."""
         is_frame = item.kind in (NameKind.FRAME, NameKind.MESSAGE_FRAME, NameKind.FRAME_LOOKUP)
