@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
@@ -13,9 +14,10 @@ from linkwright.messages.definitions.library import TrustedMessages, parse_sourc
 from linkwright.messages.definitions.parser import SECTIONS
 from linkwright.packages import MANIFEST, enclosing_package
 from linkwright.packages.readers.package_xml import Manifest
-from linkwright.review.changes import MAX_NAMES, Location
+from linkwright.review.changes import MAX_NAMES, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
+from linkwright.review.files.unbuilt_interfaces import is_unbuilt
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 
@@ -31,8 +33,15 @@ def compare_interfaces(pair: FilePair) -> None:
     """Compare two versions of the definition of a message, service or action.
 
     A change to a field is breaking: the hash of the type changes (REP 2016), and nodes that were built with different
-    versions do not exchange messages. In ROS 1, constants are a part of the MD5 sum of a type.
+    versions do not exchange messages. In ROS 1, constants are a part of the MD5 sum of a type. Nobody uses a definition
+    that the old version does not build.
     """
+    _compare(pair)
+    if not pair.is_lost and is_unbuilt(pair.versions.old, pair.old_path):
+        pair.changes = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
+
+
+def _compare(pair: FilePair) -> None:
     definitions = pair.read(_read)
     if definitions is None:
         return
@@ -68,7 +77,7 @@ def compare_interfaces(pair: FilePair) -> None:
 
 
 def interface_contents(version: Version, path: str) -> Phrase | None:
-    """Return the typed fields and the constants of an interface; None if there are none."""
+    """Return the typed fields and the constants of an interface, and whether it is not built; None for neither."""
     parts = _read(version.file(path))
     names = [
         f"{field.type.to_msg_text()} {part}{field.name}"
@@ -78,7 +87,12 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
     names += [
         f"{constant.name} = {constant.value!s}" for structure in parts.values() for constant in structure.constants
     ]
-    return joined_first(names, MAX_NAMES) if names else None
+    contents = joined_first(names, MAX_NAMES) if names else None
+    if not is_unbuilt(version, path):
+        return contents
+    if contents is None:
+        return phrase("CMakeLists.txt does not build it")
+    return phrase("{contents}; CMakeLists.txt does not build it", contents=contents)
 
 
 def _read(file: Path) -> Mapping[str, Structure]:

@@ -14,6 +14,7 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from linkwright.diagnostics import SourceText
+from linkwright.review.sources.cpp_conditions import Conditions
 from linkwright.review.sources.cpp_statements import is_output, read_cpp_blocks
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.python import parse_source
@@ -164,12 +165,13 @@ def is_skipped(node: ast.stmt) -> bool:
 def _read_cpp(source: SourceText) -> Code:
     blocks, functions = read_cpp_blocks(source.text)
     starts = [match.end() for match in re.finditer("\n", source.text)]
+    conditions = Conditions(source.text)
     code = Code()
     for name, statements in blocks.items():
         if name and not _FUNCTION_NAME.fullmatch(name):
             continue
         parts = [
-            _make_cpp_part(tokens, starts)
+            _make_cpp_part(tokens, starts, conditions)
             for statement in statements
             for tokens in _split_unbraced(statement)
             if not is_output(tokens) or _has_throw(tokens)
@@ -201,9 +203,15 @@ def _has_throw(tokens: Sequence[Token]) -> bool:
     return any(token.text == "throw" for token in tokens)
 
 
-def _make_cpp_part(tokens: Sequence[Token], starts: Sequence[int]) -> Part:
-    has_message = _has_throw(tokens)
-    texts = [_normalize_token(token, has_message=has_message) for token in tokens if token.text != "override"]
+def _make_cpp_part(tokens: Sequence[Token], starts: Sequence[int], conditions: Conditions) -> Part:
+    """Return a statement with the conditions of the preprocessor."""
+    has_message, texts, condition = _has_throw(tokens), [], ""
+    for token in tokens:
+        if token.text != "override":
+            if conditions.find(token.start) != condition:
+                condition = conditions.find(token.start)
+                texts.append(f"#if {condition}")
+            texts.append(_normalize_token(token, has_message=has_message))
     lines = [bisect.bisect_right(starts, token.start) + 1 for token in (tokens[0], tokens[-1])]
     return Part(" ".join(texts), *lines)
 

@@ -167,9 +167,10 @@ def _find_outside_change(old: Code, new: Code) -> CodeChange | None:
 
 def _find_module_change(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | None:
     """Return the change in the statements outside of functions and classes, or None if they are equal."""
-    if not new or _get_texts(old) == _get_texts(new):
+    if _get_texts(old) == _get_texts(new):
         return None
-    return CodeChange(phrase("code changed outside of functions"), _find_first_line(new, old), is_old=False)
+    line = _find_first_line(new, old) if new else _find_first_line(old, new)
+    return CodeChange(phrase("code changed outside of functions"), line, is_old=not new)
 
 
 def _compare_imports(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | None:

@@ -19,13 +19,21 @@ from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
 from linkwright.review.sources.conditions import compare_conditions
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
-from linkwright.review.sources.details import compare_details, format_name, format_names, make_required_reason
+from linkwright.review.sources.details import (
+    compare_computed,
+    compare_details,
+    format_name,
+    format_names,
+    format_rename,
+    make_required_reason,
+)
 from linkwright.review.sources.enumerators import compare_enumerations
 from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
     PYTHON_SUFFIX,
     YES,
+    DefaultName,
     Detail,
     NameKind,
     SourceName,
@@ -195,7 +203,7 @@ class _SourcePair:
         for old_item, new_item in pairs:
             is_harmless = old_item in remaining_old or _is_same_frame(old_item, new_item)
             reason = None if is_harmless else self._find_rename_reason(old_item, new_item, old_names)
-            yield self._make_change(_format_rename(old_item, new_item), new_item.span, self.new, reason)
+            yield self._make_change(format_rename(old_item, new_item), new_item.span, self.new, reason)
             removed = [item for item in removed if item is not old_item]
             added = [item for item in added if item is not new_item]
         yield from self._compare_expressions(kind, removed, added)
@@ -219,7 +227,7 @@ class _SourcePair:
                 continue
             if old.name.lstrip("/") not in known[1] and item.name.lstrip("/") not in known[0]:
                 reason = self._find_removal_reason([old], old_names)
-                yield self._make_change(_format_rename(old, item), item.span, self.new, reason)
+                yield self._make_change(format_rename(old, item), item.span, self.new, reason)
 
     def _is_reported(self, kind: NameKind) -> bool:
         """Return whether removed and added names of a kind matter outside of the file."""
@@ -460,20 +468,27 @@ class _SourcePair:
 
         Expressions of several names are left out.
         """
+        sources = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
         for item in new:
             matching = [[expression for expression in items if expression.name == item.name] for items in (old, new)]
             if len(matching[0]) == len(matching[1]) == 1 and matching[0][0].type and item.type:
-                for text, reason in compare_details(matching[0][0], item):
+                defaults = [names.defaults.get(item.name, "") for names in sources]
+                for text, reason in compare_computed(matching[0][0], item, defaults):
                     yield self._make_change(text, item.span, self.new, reason)
 
     def _compare_patterns(self, old: SourceName, new: SourceName) -> Iterator[Change]:
-        """Yield the change of the texts in an expression for a name."""
+        """Yield the change of the texts in an expression for a name, or of the parameter that gives it by default."""
+        old_default = self.old.get_names(self.file.old_path).find_default(old)
+        new_default = self.new.get_names(self.file.new_path).find_default(new)
+        if old_default is not None and new_default is not None:
+            yield from self._compare_defaults(old, new, old_default, new_default)
+            return
         patterns = extract_pattern(old.name), extract_pattern(new.name)
         if None in patterns or patterns[0] == patterns[1]:
             return
         reason = phrase("the name is a pattern; programs that use one of the old names do not find it")
         is_lost = self._find_removal_reason([old], self.old.get_names(self.file.old_path)) is not None
-        yield self._make_change(_format_rename(old, new), new.span, self.new, reason if is_lost else None)
+        yield self._make_change(format_rename(old, new), new.span, self.new, reason if is_lost else None)
 
     def _compare_rates(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changed rates and periods, and the removed and added timers."""
@@ -484,6 +499,22 @@ class _SourcePair:
             changes += compare_timers(old_names, new_names, others)
         for change in changes:
             yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, None)
+
+    def _compare_defaults(
+        self, old: SourceName, new: SourceName, old_default: DefaultName, new_default: DefaultName
+    ) -> Iterator[Change]:
+        """Yield the name that another parameter gives now. Another default of the same parameter has its own line."""
+        if old_default.parameter == new_default.parameter or old_default.name == new_default.name:
+            return
+        package = self.new.find_package(self.file.path)
+        is_set = any(
+            is_set_in_package(self.new.version, package, item.parameter) for item in (old_default, new_default)
+        )
+        names = self.old.get_names(self.file.old_path)
+        reason = None if is_set else self._find_default_reason(old, old_default.name, new_default.name, names)
+        reason = None if reason is None else phrase("by default, {reason}", reason=reason)
+        text = format_rename(replace(old, name=old_default.name), replace(new, name=new_default.name))
+        yield self._make_change(text, new.span, self.new, reason)
 
     def _compare_imports(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield new absolute imports of modules of the same package.
@@ -543,10 +574,6 @@ def _has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, ne
     """Return whether a function or member only has other names for the same types."""
     is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
     return is_member and old_names.resolve_aliases(old.type) == new_names.resolve_aliases(new.type)
-
-
-def _format_rename(old: SourceName, new: SourceName) -> Phrase:
-    return phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=format_name(old), new=format_name(new))
 
 
 def _is_same_frame(old: SourceName, new: SourceName) -> bool:

@@ -10,6 +10,7 @@ from pathlib import Path, PurePosixPath
 from linkwright.diagnostics import SourceText, Span
 from linkwright.review.sources.conditions import find_cpp_conditions
 from linkwright.review.sources.cpp_callbacks import find_message_type, find_service_type
+from linkwright.review.sources.cpp_conditions import Conditions
 from linkwright.review.sources.cpp_functions import (
     HIDDEN,
     PROTECTED,
@@ -70,6 +71,8 @@ _ROS1_CALLS = frozenset(
 _COMMUNICATION_KINDS = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT)
 _GRAPH_KINDS = frozenset({*_COMMUNICATION_KINDS, NameKind.ACTION, NameKind.ACTION_CLIENT})
 """The kinds of names that remappings change."""
+_DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
+"""The kinds of names that a header declares, perhaps several times under different conditions."""
 _FREE_INDEX = {"create_publisher": 1, "create_subscription": 1, "create_service": 2, "create_client": 3}
 """The index of the name in the free functions of rclcpp, behind the interfaces of the node."""
 _SERVICE_QOS_INDEX = {"create_service": 1, "create_client": 0}
@@ -136,6 +139,7 @@ class _Reader:
         self._source = source
         self._names = names
         self._text = _COMMENT_OR_TEXT.sub(_blank_comment, source.text)
+        self._conditions = Conditions(source.text)
         self._constants = _find_constants(self._text)
 
     def read(self) -> None:
@@ -517,6 +521,9 @@ class _Reader:
         if kind in _GRAPH_KINDS and type_name:
             full_type = find_cpp_type(type_name, [self._text, *self._headers])
             type_name = type_name.rpartition("::")[2]
+        condition = "" if kind in _DECLARED_KINDS else self._conditions.find(begin)
+        if condition:
+            details = (*details, (Detail.CONDITION, condition))
         return SourceName(kind, name, type_name, self._make_span(begin, end), details, full_type)
 
     def _make_span(self, begin: int, end: int) -> Span:

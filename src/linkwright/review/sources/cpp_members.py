@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from linkwright.packages import enclosing_package
+from linkwright.review.sources.cpp_conditions import blank_disabled
 from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind
 
 _CLASS = r"(?:\w+::)*(?:Simple(?P<action>ActionServer|ActionClient)|Subscriber)\s*<(?P<type>[^<>;(){}]*)>"
@@ -100,5 +101,5 @@ def read_included_headers(path: Path) -> list[str]:
         files = ((folder / match["path"]).resolve() for folder in folders)
         file = next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
         if file is not None and file.stat().st_size <= _MAX_BYTES:
-            texts.append(file.read_text("utf-8", errors="replace"))
+            texts.append(blank_disabled(file.read_text("utf-8", errors="replace")))
     return texts

@@ -6,11 +6,13 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from linkwright.review.sources.cpp_conditions import is_guard
 from linkwright.review.sources.statements import Statement, parse_statement
 from linkwright.review.sources.tokens import Token, TokenKind, match_brackets, tokenize_cpp
 
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n\\]|\\\r?\n|\\.)*", re.MULTILINE)
 _DEFINE = re.compile(r"[ \t]*#[ \t]*define[ \t]+(?P<name>\w+)[ \t]+(?=\S)")
+_EMPTY_DEFINE = re.compile(r"[ \t]*#[ \t]*(?P<word>define)[ \t]+(?P<name>\w+)\s*(?://.*|/\*.*?\*/\s*)?", re.DOTALL)
 _QUALIFIERS = frozenset({"const", "final", "noexcept", "override", "try", "volatile"})
 """The words between the parameters and the body of a function."""
 _SCOPES = frozenset({"namespace", "class", "struct", "union", "extern"})
@@ -75,6 +77,11 @@ def _read_source(text: str, reader: _Reader) -> bool:
             if value and not is_function:
                 equals_sign = Token(TokenKind.OPERATOR, "=", value[0].start, has_space=True)
                 reader.add("", [name[0], equals_sign, *value])
+        defined = _EMPTY_DEFINE.fullmatch(match[0])
+        if defined is not None and not is_guard(text[: match.start()], defined["name"]):
+            reader.add(
+                "", tokenize_cpp(text, match.start() + defined.start("word"), match.start() + defined.end("name"))
+            )
     code = _DIRECTIVE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     tokens = tokenize_cpp(code)
     reader.read(tokens)

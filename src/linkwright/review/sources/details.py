@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
@@ -37,10 +38,39 @@ def format_names(items: Sequence[SourceName]) -> Phrase:
     return joined_first(map(format_name, items), MAX_NAMES)
 
 
-def compare_details(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
-    """Yield the changes to a name, each with the reason why it is breaking or None."""
+def format_rename(old: SourceName, new: SourceName) -> Phrase:
+    """Return the change of a name."""
+    return phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=format_name(old), new=format_name(new))
+
+
+def compare_computed(
+    old: SourceName, new: SourceName, defaults: Sequence[str]
+) -> Iterator[tuple[Phrase, Phrase | None]]:
+    """Yield the changes to a name that the same expression computes, each with the reason why it is breaking or None.
+
+    Args:
+        old: the old name.
+        new: the new name.
+        defaults: the name that the expression has by default in each version; empty if it is unknown.
+    """
+    name = defaults[0] if len(set(defaults)) == 1 else ""
+    if name:
+        old, new = replace(old, name=name), replace(new, name=name)
+    yield from compare_details(old, new, is_computed=not name)
+
+
+def compare_details(
+    old: SourceName, new: SourceName, *, is_computed: bool = False
+) -> Iterator[tuple[Phrase, Phrase | None]]:
+    """Yield the changes to a name, each with the reason why it is breaking or None.
+
+    Args:
+        old: the old name.
+        new: the new name.
+        is_computed: whether the name is the text of an expression, which others do not know.
+    """
     if not new.has_type_of(old):
-        yield from _compare_types(old, new)
+        yield from _compare_types(old, new, is_computed=is_computed)
     old_details, new_details = dict(old.details), dict(new.details)
     for detail in Detail:
         before, after = old_details.get(detail), new_details.get(detail)
@@ -58,7 +88,7 @@ def compare_details(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, 
         yield text, _find_detail_reason(new, detail, before, after)
 
 
-def _compare_types(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
+def _compare_types(old: SourceName, new: SourceName, *, is_computed: bool) -> Iterator[tuple[Phrase, Phrase | None]]:
     if new.kind is NameKind.FUNCTION:
         reason = phrase("code that calls '{name}' with the old arguments does not build", name=new.name)
         yield (
@@ -80,8 +110,18 @@ def _compare_types(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, P
         text = phrase(
             "{kind} '{name}': type {old} -> {new}", kind=new.kind.title, name=new.name, old=types[0], new=types[1]
         )
-        reason = phrase("programs that use '{name}' with the old type get nothing", name=new.name)
-        yield text, None if new.kind is NameKind.MEMBER else reason
+        yield text, None if new.kind is NameKind.MEMBER else _make_type_reason(new, is_computed=is_computed)
+
+
+def _make_type_reason(item: SourceName, *, is_computed: bool) -> Phrase:
+    """Return the reason why another type of messages is breaking."""
+    if item.kind in _CLIENT_KINDS:
+        if is_computed:
+            return phrase("servers with the old type do not answer")
+        return phrase("servers of '{name}' with the old type do not answer", name=item.name)
+    if is_computed:
+        return phrase("programs that use the name with the old type get nothing")
+    return phrase("programs that use '{name}' with the old type get nothing", name=item.name)
 
 
 def format_overload_change(name: str, old: str, new: str) -> Phrase:

@@ -9,6 +9,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.sources.cpp_conditions import blank_disabled
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, NameKind
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Versions
@@ -105,8 +106,8 @@ def _make_change(path: str, header: str, name: str, line: int) -> Change:
 
 
 def blank_comments(text: str) -> str:
-    """Return a C++ source with spaces for comments and texts in quotation marks."""
-    return _COMMENT_OR_TEXT.sub(_blank_match, text)
+    """Return a C++ source with spaces for comments, disabled code and texts in quotation marks."""
+    return _COMMENT_OR_TEXT.sub(_blank_match, blank_disabled(text))
 
 
 def _blank_match(match: re.Match[str]) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import NamedTuple
 
@@ -71,6 +71,7 @@ class Detail(Enum):
     LEVEL = phrase("level")
     REQUIRED = phrase("required")
     ARGUMENTS = phrase("arguments")
+    CONDITION = phrase("condition")
 
     @property
     def title(self) -> Phrase:
@@ -225,8 +226,7 @@ class SourceNames:
         self.counts[name.kind, name.name] += 1
         for index, other in enumerate(self.names):
             if (other.kind, other.name) == (name.kind, name.name):
-                if name.type and not other.type:
-                    self.names[index] = name
+                self.names[index] = _merge(other, name)
                 return
         self.names.append(name)
 
@@ -239,6 +239,12 @@ class SourceNames:
         self.defaults[expression] = default
         self.default_names.add(DefaultName(parameter, kind, default))
 
+    def find_default(self, item: SourceName) -> DefaultName | None:
+        """Return the name that an expression has by default and its parameter, or None if it is unknown."""
+        default = self.defaults.get(item.name)
+        found = (known for known in self.default_names if (known.kind, known.name) == (item.kind, default))
+        return min(found, key=lambda known: known.parameter, default=None)
+
     def has_default(self, item: SourceName) -> bool:
         """Return whether a parameter gives a frame by default."""
         is_frame = item.kind in (NameKind.FRAME, NameKind.MESSAGE_FRAME, NameKind.FRAME_LOOKUP)
@@ -247,3 +253,19 @@ class SourceNames:
     def of_kind(self, kind: NameKind) -> Iterator[SourceName]:
         """Yield the literal names of a kind."""
         return (name for name in self.names if name.kind is kind)
+
+
+def _merge(first: SourceName, second: SourceName) -> SourceName:
+    """Return one name for two occurrences: the first one with a type.
+
+    If their conditions differ, the name has no condition, and no type unless both have the same.
+    """
+    name = second if second.type and not first.type else first
+    conditions = [dict(item.details).get(Detail.CONDITION) for item in (first, second)]
+    if conditions[0] == conditions[1]:
+        return name
+    details = tuple(item for item in name.details if item[0] is not Detail.CONDITION)
+    is_same = first.has_type_of(second) or not second.type or not first.type
+    return replace(
+        name, details=details, type=name.type if is_same else "", full_type=name.full_type if is_same else ""
+    )

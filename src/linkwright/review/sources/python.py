@@ -334,7 +334,7 @@ class _Reader:
             self._add(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 0, type_keyword), qos)
             if kind in _CALLBACK_KEYWORDS:
                 self._add_callback(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 2, "callback"))
-        elif function in _NODE_FIRST_CLASSES and len(call.args) > 2 and self._python.text(call.args[0]) is None:
+        elif self._has_node_first(call, function):
             self._add(
                 _NODE_FIRST_CLASSES[function],
                 _get_argument(call, 2, "action_name"),
@@ -357,9 +357,19 @@ class _Reader:
             self._names.makes_node |= function == "init_node"  # a node with a computed name
             self._read_other_call(call, function)
 
+    def _has_node_first(self, call: ast.Call, function: str) -> bool:
+        """Return whether the arguments of a call begin with a node of ROS 2, which a name of ROS 1 may look like."""
+        is_known = function in _NODE_FIRST_CLASSES and len(call.args) > 2
+        return is_known and self._python.text(call.args[0]) is None and not self._is_ros1(call)
+
+    def _is_ros1(self, call: ast.Call) -> bool:
+        """Return whether a call is one of ROS 1, by its written or imported name."""
+        names = called_name(call), self._types.resolve(call.func)
+        return any(name.partition(".")[0] in ("rospy", "actionlib") for name in names)
+
     def _read_ros1_call(self, call: ast.Call, function: str) -> None:
         name, types = _get_argument(call, 0, "name"), _get_argument(call, 1, "data_class")
-        if self._python.text(name) is None and not called_name(call).startswith(("rospy", "actionlib")):
+        if self._python.text(name) is None and not self._is_ros1(call):
             return
         details = []
         for keyword, detail in (("queue_size", Detail.QUEUE), ("latch", Detail.LATCH)):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import SourceText
 from linkwright.review.sources.cpp import read_cpp
+from linkwright.review.sources.cpp_conditions import blank_disabled
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX, SourceNames
 from linkwright.review.sources.python import read_dynamic_parameters, read_python
 
@@ -29,11 +30,15 @@ def is_generated(text: str) -> bool:
 
 
 def try_read_source(path: Path) -> SourceText | None:
-    """Return the text of a source, or None if it cannot be read or is too large."""
+    """Return the text of a source, or None if it cannot be read or is too large.
+
+    Disabled code in C++, such as under ``#if 0``, is blank.
+    """
     try:
         if path.stat().st_size > _MAX_BYTES:
             return None
-        return SourceText(str(path), path.read_text("utf-8", errors="replace"))
+        text = path.read_text("utf-8", errors="replace")
+        return SourceText(str(path), blank_disabled(text) if path.suffix in CPP_SUFFIXES else text)
     except OSError:
         return None
 

@@ -1,0 +1,99 @@
+"""The lines of a review about topics and services whose names are expressions."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+PATH = "arm/arm/arm.py"
+CPP_PATH = "arm/src/arm.cpp"
+ROSPY = """import rospy
+from std_msgs.msg import Int32, String
+
+
+class Arm:
+    def __init__(self):
+        self.a = rospy.get_param("~a", "state")
+        self.b = rospy.get_param("~b", "status")
+        self.c = compute()
+        {}
+
+    def stop(self, message):
+        pass
+"""
+SUBSCRIPTION = "self.s = rospy.Subscriber(self.a, String, self.stop)"
+RCLPY = """from rclpy.node import Node
+
+
+class Arm(Node):
+    def __init__(self):
+        self.a = self.declare_parameter("a", "state").value
+        self.b = self.declare_parameter("b", "status").value
+        self.create_subscription(String, self.a, self.stop, 10)
+"""
+CPP = """#include <ros/ros.h>
+Arm::Arm(ros::NodeHandle & n) {
+  name_ = compute();
+  client_ = n.serviceClient<arm_msgs::Move>(name_);
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        (SUBSCRIPTION, "self.a"),
+        ("self.s = rospy.Subscriber(self.c, String, self.stop, 1)", "self.c"),
+        ("from rospy import Subscriber as S, Subscriber; Subscriber(self.c, String, self.stop)", "self.c"),
+    ],
+)
+def test_computed_topic_of_rospy_is_not_its_callback(repository, compare, line, name):
+    repository.commit({**MANIFEST, PATH: ROSPY.format(line)})
+    repository.write({PATH: ROSPY.format("pass")})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == f"subscriptions with computed names removed: '{name}' (String)"
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "expected", "reason"),
+    [
+        (PATH, ROSPY.format(SUBSCRIPTION), ROSPY.format(SUBSCRIPTION.replace("String", "Int32")),
+         "subscription 'state': type String -> Int32", "programs that use 'state' with the old type get nothing"),
+        (PATH, ROSPY.format(SUBSCRIPTION.replace("self.a", "self.c")),
+         ROSPY.format(SUBSCRIPTION.replace("self.a", "self.c").replace("String", "Int32")),
+         "subscription 'self.c': type String -> Int32", "programs that use the name with the old type get nothing"),
+        (CPP_PATH, CPP, CPP.replace("Move", "Stop"),
+         "service client 'name_': type Move -> Stop", "servers with the old type do not answer"),
+        (CPP_PATH, CPP.replace("(name_)", '("move")'), CPP.replace("(name_)", '("move")').replace("Move", "Stop"),
+         "service client 'move': type Move -> Stop", "servers of 'move' with the old type do not answer"),
+        (PATH, ROSPY.format(SUBSCRIPTION), ROSPY.format(SUBSCRIPTION.replace("self.a", "self.b")),
+         "subscription 'state' (String) renamed to 'status' (String)",
+         "by default, programs that use the name 'state' do not find it"),
+        (PATH, RCLPY, RCLPY.replace("String, self.a", "String, self.b"),
+         "subscription 'state' (String) renamed to 'status' (String)",
+         "by default, programs that use the name 'state' do not find it"),
+    ],
+)  # fmt: skip
+def test_computed_names_are_compared(repository, compare, path, old, new, expected, reason):
+    repository.commit({**MANIFEST, path: old})
+    repository.write({path: new})
+    result = compare(repository)
+    assert breaking(result) == [expected]
+    (found,) = result.subjects
+    assert [str(change.reason) for change in found.changes if change.reason] == [reason]
+
+
+def test_another_name_for_the_same_parameter_is_no_other_topic(repository, compare):
+    repository.commit({**MANIFEST, PATH: RCLPY})
+    repository.write({PATH: RCLPY.replace("self.a", "self.topic")})
+    assert not breaking(compare(repository))
+
+
+def test_default_of_a_parameter_that_a_launch_file_sets_is_not_lost(repository, compare):
+    launch = '<launch>\n  <node pkg="arm" exec="arm">\n    <param name="b" value="state"/>\n  </node>\n</launch>\n'
+    repository.commit({**MANIFEST, PATH: RCLPY, "arm/launch/arm.launch.xml": launch})
+    repository.write({PATH: RCLPY.replace("String, self.a", "String, self.b")})
+    assert not breaking(compare(repository))

@@ -1,0 +1,55 @@
+"""The lines of a review about interfaces that the build file does not build."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+CMAKE = """cmake_minimum_required(VERSION 3.8)
+project(arm_msgs)
+find_package(rosidl_default_generators REQUIRED)
+{}
+rosidl_generate_interfaces(${{PROJECT_NAME}} msg/State.msg {})
+"""
+FILES = {
+    "arm_msgs/package.xml": PACKAGE_XML.replace("arm_description", "arm_msgs"),
+    "arm_msgs/msg/State.msg": "bool on\n",
+}
+PATH = "arm_msgs/srv/Move.srv"
+CMAKE_PATH = "arm_msgs/CMakeLists.txt"
+
+
+@pytest.mark.parametrize(
+    ("old", "is_breaking"),
+    [
+        (CMAKE.format("", ""), False),
+        (CMAKE.format("# srv/Move.srv", ""), False),
+        (CMAKE.format("", "srv/Move.srv"), True),
+        (CMAKE.format("file(GLOB services srv/*.srv)", "${services}"), True),
+        (CMAKE.format("my_services(Move)", ""), True),
+        (CMAKE.replace("rosidl_generate_interfaces", "my_interfaces").format("", ""), True),
+        (CMAKE.format("add_service_files()", ""), True),
+    ],
+)
+def test_interface_that_was_never_built_is_used_by_nobody(repository, compare, old, is_breaking):
+    repository.commit({**FILES, CMAKE_PATH: old, PATH: "float64 x\n---\n"})
+    repository.write({CMAKE_PATH: CMAKE.format("", "srv/Move.srv"), PATH: "float64 y\n---\n"})
+    result = compare(repository)
+    fields = ["field 'request y' of type float64 added", "field 'request x' removed"]
+    assert sentences(subject(result, PATH)) == fields
+    assert [text for text in breaking(result) if text in fields] == (fields if is_breaking else [])
+
+
+@pytest.mark.parametrize(
+    ("listed", "expected"),
+    [
+        ("", "interface added: float64 request x; CMakeLists.txt does not build it"),
+        ("srv/Move.srv", "interface added: float64 request x"),
+    ],
+)
+def test_added_interface_that_is_not_built_is_named(repository, compare, listed, expected):
+    repository.commit({**FILES, CMAKE_PATH: CMAKE.format("", "")})
+    repository.write({CMAKE_PATH: CMAKE.format("", listed), PATH: "float64 x\n---\n"})
+    assert sentences(subject(compare(repository), PATH)) == [expected]
