@@ -54,6 +54,7 @@ from linkwright.review.lost_controllers import find_lost_controllers
 from linkwright.review.lost_data import find_lost_data
 from linkwright.review.lost_files import find_lost_files
 from linkwright.review.lost_installs import find_lost_installs
+from linkwright.review.lost_interfaces import find_lost_interfaces
 from linkwright.review.lost_programs import find_lost_programs
 from linkwright.review.notes import (
     group_equal_problems,
@@ -258,6 +259,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_installs))
         result = _add_changes(result, self._run_step(find_lost_programs))
         result = _add_changes(result, self._run_step(find_missing_programs))
+        result = _add_changes(result, self._run_step(find_lost_interfaces))
         result = _add_changes(result, self._run_step(find_new_lookups))
         return sorted(result, key=lambda subject: subject.path)
 

@@ -33,7 +33,7 @@ def compare_interfaces(pair: FilePair) -> None:
     A change to a field is breaking: the hash of the type changes (REP 2016), and nodes that were built with different
     versions do not exchange messages. In ROS 1, constants are a part of the MD5 sum of a type.
     """
-    definitions = pair.read(_read)
+    definitions = pair.read(read_structures)
     if definitions is None:
         return
     old, new = definitions
@@ -69,7 +69,7 @@ def compare_interfaces(pair: FilePair) -> None:
 
 def interface_contents(version: Version, path: str) -> Phrase | None:
     """Return the typed fields and the constants of an interface; None if there are none."""
-    parts = _read(version.file(path))
+    parts = read_structures(version.file(path))
     names = [
         f"{field.type.to_msg_text()} {part}{field.name}"
         for part, structure in parts.items()
@@ -81,7 +81,7 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
     return joined_first(names, MAX_NAMES) if names else None
 
 
-def _read(file: Path) -> Mapping[str, Structure]:
+def read_structures(file: Path) -> Mapping[str, Structure]:
     """Return the structures of a file by the prefix of their field names."""
     kind = file.parent.name if file.suffix == _IDL else file.suffix.removeprefix(".")
     if kind not in SECTIONS:  # not a ROS file, so it can have any number of structures
