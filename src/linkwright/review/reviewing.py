@@ -71,6 +71,7 @@ from linkwright.review.renamed_packages import match_moved_files, remove_consequ
 from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.callers import find_broken_callers
 from linkwright.review.sources.comparing import source_subjects
+from linkwright.review.sources.left_types import find_left_types
 from linkwright.review.sources.lost_methods import find_lost_methods
 from linkwright.review.sources.lost_types import find_lost_types
 from linkwright.review.versions import Version, Versions
@@ -260,6 +261,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_programs))
         result = _add_changes(result, self._run_step(find_missing_programs))
         result = _add_changes(result, self._run_step(find_lost_interfaces))
+        result = _add_changes(result, self._run_step(find_left_types))
         result = _add_changes(result, self._run_step(find_new_lookups))
         return sorted(result, key=lambda subject: subject.path)
 
