@@ -451,14 +451,9 @@ class _SourcePair:
         """
         for item in new:
             matching = [[expression for expression in items if expression.name == item.name] for items in (old, new)]
-            if (
-                len(matching[0]) == len(matching[1]) == 1
-                and matching[0][0].type != item.type
-                and matching[0][0].type
-                and item.type
-            ):
-                ((_, text, reason),) = ((item, *change) for change in compare_details(matching[0][0], item))
-                yield self._make_change(text, item.span, self.new, reason)
+            if len(matching[0]) == len(matching[1]) == 1 and matching[0][0].type and item.type:
+                for text, reason in compare_details(matching[0][0], item):
+                    yield self._make_change(text, item.span, self.new, reason)
 
     def _compare_patterns(self, old: SourceName, new: SourceName) -> Iterator[Change]:
         """Yield the change of the texts in an expression for a name."""

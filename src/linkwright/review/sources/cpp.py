@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span
-from linkwright.review.sources.cpp_callbacks import find_message_type
+from linkwright.review.sources.cpp_callbacks import find_message_type, find_service_type
 from linkwright.review.sources.cpp_functions import (
     HIDDEN,
     PROTECTED,
@@ -20,6 +20,7 @@ from linkwright.review.sources.cpp_functions import (
 from linkwright.review.sources.cpp_handles import Handles, add_namespace
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
+from linkwright.review.sources.interface_types import find_cpp_type
 from linkwright.review.sources.name_patterns import find_format
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.node_options import Remappings, read_remappings
@@ -235,7 +236,8 @@ class _Reader:
             type_name = " ".join(text[start + 1 : end].split())
             if function == "advertiseService":
                 type_name = type_name.partition(",")[0].removesuffix("::Request")
-            type_name = type_name.rpartition("::")[2]
+            if kind not in _GRAPH_KINDS:
+                type_name = type_name.rpartition("::")[2]
             start = text.find("(", end, end + 20)
         if start < 0 or text[start : start + 1] != "(":
             return
@@ -278,10 +280,9 @@ class _Reader:
                 is_ros, type_name = True, self._find_literal_default(function, arguments)
             elif kind is not NameKind.PARAMETER:
                 is_ros = is_ros or bool(type_name) or _MEMBER_CALLBACK.search(text, start, arguments[-1][1]) is not None
-                if kind is NameKind.SUBSCRIPTION and not type_name:
-                    type_name = self._find_callback_type(arguments)
+                type_name = type_name or self._find_callback_type(kind, arguments)
             if is_ros:
-                self._names.expressions.append(SourceName(kind, name, type_name, self._make_span(begin, end)))
+                self._names.expressions.append(self._make_name(kind, name, type_name, begin, end))
 
     def _add_default(self, kind: NameKind, expression: str) -> bool:
         """Add the name that an expression has by default, and return whether a parameter gives it."""
@@ -305,7 +306,7 @@ class _Reader:
         pattern = None if variable is None else find_format(self._text[:begin], variable["name"])
         if pattern is None:
             return False
-        self._names.expressions.append(SourceName(kind, pattern, type_name, self._make_span(begin, end)))
+        self._names.expressions.append(self._make_name(kind, pattern, type_name, begin, end))
         return True
 
     def _add_named_call(
@@ -333,8 +334,8 @@ class _Reader:
             )
         if kind is NameKind.PUBLISHER and function in _ROS1_CALLS and other_arguments[-1:] == ["true"]:
             details.append((Detail.LATCH, YES))
-        if kind is NameKind.SUBSCRIPTION and not type_name:
-            type_name = self._find_callback_type(arguments)
+        if not type_name:
+            type_name = self._find_callback_type(kind, arguments)
         name = add_namespace(namespace, self._get_literal(*name_offsets) or "")
         self._add(kind, name, *name_offsets, type_name, tuple(details))
         if kind in (NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.ACTION):
@@ -350,12 +351,19 @@ class _Reader:
         if len(functions) == 1:
             self._names.callbacks.setdefault(functions.pop(), (kind, name))
 
-    def _find_callback_type(self, arguments: list[tuple[int, int]]) -> str:
-        """Return the message type of the only callback among the arguments, or an empty text."""
+    def _find_callback_type(self, kind: NameKind, arguments: list[tuple[int, int]]) -> str:
+        """Return the type of the messages or requests that the only callback among the arguments takes.
+
+        It is empty if it is unknown, and for other kinds than subscriptions and services.
+        """
+        find_type = {NameKind.SUBSCRIPTION: find_message_type, NameKind.SERVICE: find_service_type}.get(kind)
+        first = 2 if kind is NameKind.SUBSCRIPTION else 1
         functions = set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
-        words = (self._text[begin:end].strip().lstrip("&") for begin, end in arguments[2:3])
+        words = (self._text[begin:end].strip().lstrip("&") for begin, end in arguments[first : first + 1])
         functions = functions or {word for word in words if word.isidentifier()}
-        return find_message_type(functions.pop(), [self._text, *self._headers]) if len(functions) == 1 else ""
+        if find_type is None or len(functions) != 1:
+            return ""
+        return find_type(functions.pop(), [self._text, *self._headers])
 
     @cached_property
     def _headers(self) -> list[str]:
@@ -472,7 +480,23 @@ class _Reader:
         elif kind in _GRAPH_KINDS:
             name = self._remappings.resolve(name)
         if name:
-            self._names.add(SourceName(kind, name, type_name, self._make_span(begin, end), details))
+            self._names.add(self._make_name(kind, name, type_name, begin, end, details))
+
+    def _make_name(
+        self,
+        kind: NameKind,
+        name: str,
+        type_name: str,
+        begin: int,
+        end: int,
+        details: tuple[tuple[Detail, str], ...] = (),
+    ) -> SourceName:
+        """Return a name. Types of messages, services and actions are as written."""
+        full_type = ""
+        if kind in _GRAPH_KINDS and type_name:
+            full_type = find_cpp_type(type_name, [self._text, *self._headers])
+            type_name = type_name.rpartition("::")[2]
+        return SourceName(kind, name, type_name, self._make_span(begin, end), details, full_type)
 
     def _make_span(self, begin: int, end: int) -> Span:
         while begin < end and self._text[begin].isspace():

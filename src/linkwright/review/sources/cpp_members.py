@@ -28,7 +28,7 @@ class Construction(NamedTuple):
 
     Attributes:
         kind: the kind of the name.
-        type: the type of the action or messages.
+        type: the type of the action or messages as written.
         start: the offset of the parenthesis before its arguments.
     """
 
@@ -75,7 +75,7 @@ def _get_kind(action: str | None) -> NameKind:
 
 
 def _normalize_type(text: str) -> str:
-    return text.partition(",")[0].rpartition("::")[2].strip()
+    return text.partition(",")[0].strip()
 
 
 def read_included_headers(path: Path) -> list[str]:

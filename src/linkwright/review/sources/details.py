@@ -34,7 +34,7 @@ def format_names(items: Sequence[SourceName]) -> Phrase:
 
 def compare_details(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None]]:
     """Yield the changes to a name, each with the reason why it is breaking or None."""
-    if old.type != new.type:
+    if not new.has_type_of(old):
         yield from _compare_types(old, new)
     old_details, new_details = dict(old.details), dict(new.details)
     for detail in Detail:
@@ -71,8 +71,9 @@ def _compare_types(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, P
         if old.type and new.type:
             yield text, None
     elif old.type and new.type:
+        types = (old.type, new.type) if old.type != new.type else (old.full_type, new.full_type)
         text = phrase(
-            "{kind} '{name}': type {old} -> {new}", kind=new.kind.title, name=new.name, old=old.type, new=new.type
+            "{kind} '{name}': type {old} -> {new}", kind=new.kind.title, name=new.name, old=types[0], new=types[1]
         )
         reason = phrase("programs that use '{name}' with the old type get nothing", name=new.name)
         yield text, None if new.kind is NameKind.MEMBER else reason

@@ -86,6 +86,7 @@ class SourceName:
         type: the type of the messages, or the default of a parameter or option; empty if it is not literal.
         span: the location in the file.
         details: the other properties that are literal.
+        full_type: the type of the messages with its package, such as ``std_msgs/String``; empty if it is not certain.
     """
 
     kind: NameKind
@@ -93,6 +94,13 @@ class SourceName:
     type: str
     span: Span
     details: tuple[tuple[Detail, str], ...] = ()
+    full_type: str = ""
+
+    def has_type_of(self, other: SourceName) -> bool:
+        """Return whether two names have the same type. The packages count if both are known."""
+        if self.full_type and other.full_type:
+            return self.full_type == other.full_type
+        return self.type == other.type
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
+from linkwright.review.sources.interface_types import PythonTypes
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_defaults import find_parameter_default
@@ -225,6 +226,7 @@ class _Reader:
     def __init__(self, python: PythonFile, names: SourceNames) -> None:
         self._python = python
         self._names = names
+        self._types = PythonTypes(python.tree)
 
     def read(self) -> None:
         """Add the names."""
@@ -476,21 +478,22 @@ class _Reader:
         details: tuple[tuple[Detail, str], ...] = (),
         prefix: str = "",
     ) -> None:
-        text = self._python.text(node)
+        text, full_type = self._python.text(node), ""
         if kind is NameKind.PARAMETER:
             value = None if type_node is None else self._python.resolved(type_node)
             is_literal = isinstance(value, (ast.Constant, ast.List, ast.UnaryOp))
             type_name = ast.unparse(value) if is_literal and value is not None else ""
         else:
             type_name = "" if type_node is None else ast.unparse(type_node).rpartition(".")[2]
+            full_type = "" if type_node is None else self._types.find(type_node)
         if node is not None and text is None:
-            self._add_expression(kind, node, type_name)
+            self._add_expression(kind, node, type_name, full_type)
         elif node is not None and text:
-            self._names.add(SourceName(kind, prefix + text, type_name, self._python.span(node), details))
+            self._names.add(SourceName(kind, prefix + text, type_name, self._python.span(node), details, full_type))
 
-    def _add_expression(self, kind: NameKind, node: ast.expr, type_name: str) -> None:
+    def _add_expression(self, kind: NameKind, node: ast.expr, type_name: str, full_type: str = "") -> None:
         text = " ".join(ast.unparse(node).split())
-        self._names.expressions.append(SourceName(kind, text, type_name, self._python.span(node)))
+        self._names.expressions.append(SourceName(kind, text, type_name, self._python.span(node), full_type=full_type))
         parameter = None if kind is NameKind.PARAMETER else find_parameter_default(self._python, node)
         if parameter is not None:
             self._names.add_default(kind, text, *parameter)
