@@ -66,3 +66,18 @@ def test_a_client_with_the_old_type_is_named(repository, compare):
     assert "service client 'tags' still has the type Trigger; 'lamp/a.py' now uses Empty" in breaking(
         compare(repository)
     )
+
+
+def test_a_client_with_the_type_of_another_package_is_named(repository, compare):
+    service = "import rospy\nfrom {package}.srv import Tags\ns = rospy.Service('tags', Tags, print)\n"
+    client = "import rospy\nfrom old_msgs.srv import Tags\nc = rospy.ServiceProxy('tags', Tags)\n"
+    repository.commit(
+        {
+            "lamp/package.xml": MANIFEST.format(name="lamp"),
+            "lamp/a.py": service.format(package="old_msgs"),
+            "lamp/b.py": client,
+        }
+    )
+    repository.write({"lamp/a.py": service.format(package="new_msgs")})
+    line = "service client 'tags' still has the type old_msgs/Tags; 'lamp/a.py' now uses new_msgs/Tags"
+    assert line in breaking(compare(repository))

@@ -42,7 +42,7 @@ def _find_changed_types(versions: Versions, old_path: str, new_path: str) -> Ite
         if get_counterpart(item.kind) is None or not item.type or item.name in ("", "/"):
             continue
         matching = [other for other in new if (other.kind, other.name) == (item.kind, item.name)]
-        if len(matching) == 1 and matching[0].type and matching[0].type != item.type:
+        if len(matching) == 1 and matching[0].type and not matching[0].has_type_of(item):
             yield item, matching[0]
 
 
@@ -69,7 +69,7 @@ class _Sources:
             is_own = self._version.package_of(user) == package
             for other in self._read(user).of_kind(kind):
                 is_same = item.name == other.name and item.name.startswith("/")
-                if (is_same or (is_own and is_same_topic(item, other))) and other.type == item.type:
+                if (is_same or (is_own and is_same_topic(item, other))) and other.has_type_of(item):
                     yield user, other
 
     @property
@@ -90,13 +90,14 @@ def _is_searched(path: PurePosixPath) -> bool:
 
 
 def _make_change(path: str, item: SourceName, new: SourceName, source: str) -> Change:
+    types = (item.type, new.type) if item.type != new.type else (item.full_type, new.full_type)
     text = phrase(
         "{kind} '{name}' still has the type {old}; '{file}' now uses {new}",
         kind=item.kind.title,
         name=item.name,
-        old=item.type,
+        old=types[0],
         file=source,
-        new=new.type,
+        new=types[1],
     )
     return Change(text, Effect.BREAKING, _make_reason(item.kind), Location(path, item.span.line, item.span.column))
 
