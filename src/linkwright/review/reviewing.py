@@ -49,6 +49,7 @@ from linkwright.review.kinds import (
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import imports_actions
 from linkwright.review.launches.missing_programs import find_missing_programs
+from linkwright.review.launches.passed_arguments import find_passed_arguments
 from linkwright.review.launches.script_callers import find_lost_arguments
 from linkwright.review.lost_controllers import find_lost_controllers
 from linkwright.review.lost_data import find_lost_data
@@ -260,6 +261,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_installs))
         result = _add_changes(result, self._run_step(find_lost_programs))
         result = _add_changes(result, self._run_step(find_missing_programs))
+        result = _add_changes(result, self._run_step(find_passed_arguments))
         result = _add_changes(result, self._run_step(find_lost_interfaces))
         result = _add_changes(result, self._run_step(find_left_types))
         result = _add_changes(result, self._run_step(find_new_lookups))
