@@ -49,11 +49,13 @@ from linkwright.review.kinds import (
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import imports_actions
 from linkwright.review.launches.missing_programs import find_missing_programs
+from linkwright.review.launches.passed_arguments import find_passed_arguments
 from linkwright.review.launches.script_callers import find_lost_arguments
 from linkwright.review.lost_controllers import find_lost_controllers
 from linkwright.review.lost_data import find_lost_data
 from linkwright.review.lost_files import find_lost_files
 from linkwright.review.lost_installs import find_lost_installs
+from linkwright.review.lost_interfaces import find_lost_interfaces
 from linkwright.review.lost_programs import find_lost_programs
 from linkwright.review.notes import (
     group_equal_problems,
@@ -71,6 +73,7 @@ from linkwright.review.renamed_packages import match_moved_files, remove_consequ
 from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.callers import find_broken_callers
 from linkwright.review.sources.comparing import source_subjects
+from linkwright.review.sources.left_types import find_left_types
 from linkwright.review.sources.lost_methods import find_lost_methods
 from linkwright.review.sources.lost_types import find_lost_types
 from linkwright.review.versions import Version, Versions
@@ -259,6 +262,9 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_installs))
         result = _add_changes(result, self._run_step(find_lost_programs))
         result = _add_changes(result, self._run_step(find_missing_programs))
+        result = _add_changes(result, self._run_step(find_passed_arguments))
+        result = _add_changes(result, self._run_step(find_lost_interfaces))
+        result = _add_changes(result, self._run_step(find_left_types))
         result = _add_changes(result, self._run_step(find_new_lookups))
         return sorted(merge_removed_options(result), key=lambda subject: subject.path)
 

@@ -42,7 +42,7 @@ def compare_interfaces(pair: FilePair) -> None:
 
 
 def _compare(pair: FilePair) -> None:
-    definitions = pair.read(_read)
+    definitions = pair.read(read_structures)
     if definitions is None:
         return
     old, new = definitions
@@ -78,7 +78,7 @@ def _compare(pair: FilePair) -> None:
 
 def interface_contents(version: Version, path: str) -> Phrase | None:
     """Return the typed fields and the constants of an interface, and whether it is not built; None for neither."""
-    parts = _read(version.file(path))
+    parts = read_structures(version.file(path))
     names = [
         f"{field.type.to_msg_text()} {part}{field.name}"
         for part, structure in parts.items()
@@ -95,7 +95,7 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
     return phrase("{contents}; CMakeLists.txt does not build it", contents=contents)
 
 
-def _read(file: Path) -> Mapping[str, Structure]:
+def read_structures(file: Path) -> Mapping[str, Structure]:
     """Return the structures of a file by the prefix of their field names."""
     kind = file.parent.name if file.suffix == _IDL else file.suffix.removeprefix(".")
     if kind not in SECTIONS:  # not a ROS file, so it can have any number of structures

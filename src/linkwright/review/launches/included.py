@@ -84,7 +84,7 @@ class IncludedActions:
         queue = [(self._version.file(self._path), self.outline, 0)]
         for file, outline, depth in queue:
             for entry in outline.entries if depth < _MAX_INCLUDE_DEPTH else ():
-                included_file = self._find_included_file(entry, file)
+                included_file = self.find_included_file(entry, file)
                 path = None if included_file is None else self._version.relative(included_file)
                 if included_file is None or path is None or path in outlines or len(outlines) >= _MAX_INCLUDED_FILES:
                     continue
@@ -94,7 +94,7 @@ class IncludedActions:
                     queue.append((included_file, included_outline, depth + 1))
         return outlines
 
-    def _find_included_file(self, entry: Entry, includer: Path) -> Path | None:
+    def find_included_file(self, entry: Entry, includer: Path) -> Path | None:
         """Return the file that an action includes, or None if the repository does not have it."""
         if entry.kind != "include":
             return None
@@ -144,7 +144,7 @@ class IncludedActions:
     def _find_action_programs(self, entry: Entry, outline: LaunchOutline, file: Path, depth: int) -> Iterator[Program]:
         """Yield the shared programs that an include starts by default."""
         resolved = replace(entry, name=outline.resolve(entry.name))
-        included_file = self._find_included_file(resolved, file) if depth < _MAX_INCLUDE_DEPTH else None
+        included_file = self.find_included_file(resolved, file) if depth < _MAX_INCLUDE_DEPTH else None
         included_outline = None if included_file is None else self._read_outline(included_file)
         if included_file is None or included_outline is None:
             if not _FILE_WITHOUT_NODES.search(resolved.name):
@@ -177,7 +177,7 @@ class IncludedActions:
         unknown_include_lines = [
             entry.span.line
             for entry in entries
-            if entry.kind == "include" and self._find_included_file(entry, file) is None
+            if entry.kind == "include" and self.find_included_file(entry, file) is None
         ]
         undeclared: dict[str, Entry] = {}
         for entry in entries:

@@ -41,7 +41,13 @@ from linkwright.review.sources.names import (
 )
 from linkwright.review.sources.namespaces import compare_namespaces
 from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
-from linkwright.review.sources.pairing import compute_similarity, pair_similar, take_pairs
+from linkwright.review.sources.pairing import (
+    compute_similarity,
+    has_same_types,
+    is_same_frame,
+    pair_similar,
+    take_pairs,
+)
 from linkwright.review.sources.parameter_uses import ParameterUses
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.python_bases import select_methods
@@ -175,7 +181,7 @@ class _SourcePair:
         changed = [
             (item, *detail)
             for name, item in after.items()
-            if name in before and not _has_same_types(before[name], item, old_names, new_names)
+            if name in before and not has_same_types(before[name], item, old_names, new_names)
             for detail in compare_details(before[name], item)
         ]
         yield from self._report_details(kind, changed, old_names)
@@ -201,7 +207,7 @@ class _SourcePair:
         existing_new = [item for item in only_new.values() if self.old.has_in_unchanged(item, old_path)]
         pairs = self._pair_names(kind, [*removed, *remaining_old], [*added, *existing_new])
         for old_item, new_item in pairs:
-            is_harmless = old_item in remaining_old or _is_same_frame(old_item, new_item)
+            is_harmless = old_item in remaining_old or is_same_frame(old_item, new_item)
             reason = None if is_harmless else self._find_rename_reason(old_item, new_item, old_names)
             yield self._make_change(format_rename(old_item, new_item), new_item.span, self.new, reason)
             removed = [item for item in removed if item is not old_item]
@@ -568,17 +574,6 @@ class _SourcePair:
         path = side.version.relative(span.file)
         location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
         return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
-
-
-def _has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, new_names: SourceNames) -> bool:
-    """Return whether a function or member only has other names for the same types."""
-    is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
-    return is_member and old_names.resolve_aliases(old.type) == new_names.resolve_aliases(new.type)
-
-
-def _is_same_frame(old: SourceName, new: SourceName) -> bool:
-    """Return whether two names mean the same frame. tf ignores slashes at the ends of a name."""
-    return old.kind in (NameKind.FRAME, NameKind.MESSAGE_FRAME) and old.name.strip("/") == new.name.strip("/")
 
 
 def _find_required_reason(items: Sequence[SourceName]) -> Phrase | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 
-from linkwright.review.sources.names import NameKind, SourceName
+from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 
 _MIN_SIMILARITY = 0.6
 """The minimum ratio of equal characters of similar names of the same kind."""
@@ -83,3 +83,14 @@ def compute_similarity(old: SourceName, new: SourceName) -> float:
     """Return the ratio of equal characters of the last words of two names."""
     old_name, new_name = (item.name.rpartition("::")[2].casefold() for item in (old, new))
     return SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()
+
+
+def has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, new_names: SourceNames) -> bool:
+    """Return whether a function or member only has other names for the same types."""
+    is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
+    return is_member and old_names.resolve_aliases(old.type) == new_names.resolve_aliases(new.type)
+
+
+def is_same_frame(old: SourceName, new: SourceName) -> bool:
+    """Return whether two names mean the same frame. tf ignores slashes at the ends of a name."""
+    return old.kind in (NameKind.FRAME, NameKind.MESSAGE_FRAME) and old.name.strip("/") == new.name.strip("/")

@@ -1,0 +1,75 @@
+"""Find launch files that still pass an argument which the included file no longer declares."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launches.formats import is_launch_file
+from linkwright.review.launches.included import IncludedActions
+from linkwright.review.launches.outlines import CONDITION, LaunchOutline, without_condition
+from linkwright.review.launches.reading import read_outline
+from linkwright.review.launches.script_options import LAUNCH_SUFFIXES
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
+
+
+def find_passed_arguments(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the launch files that pass an argument which a changed file no longer declares, each with a change.
+
+    Of ROS 2, where an included file may use any argument of its caller, only files without includes count.
+    """
+    lost = {
+        file.new_path: names
+        for file in changed_files
+        if file.old_path and file.new_path and is_launch_file(file.path)
+        if (names := _find_lost_arguments(versions, file.old_path, file.new_path))
+    }
+    for path in versions.new.paths(LAUNCH_SUFFIXES) if lost else ():
+        text = versions.new.text(path)
+        if not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
+            continue
+        if any(PurePosixPath(file).name in text and any(name in text for name in lost[file]) for file in lost):
+            yield from ((path, change) for change in _check_caller(versions.new, path, lost))
+
+
+def _find_lost_arguments(versions: Versions, old_path: str, new_path: str) -> dict[str, Phrase]:
+    """Return the arguments that only the old version of a launch file declares, with the effect on callers."""
+    old, new = _try_read(versions.old, old_path), _try_read(versions.new, new_path)
+    if old is None or new is None or old.is_ros1 != new.is_ros1:
+        return {}
+    remaining = {entry.name for entry in new.entries if entry.has_value}
+    names = {entry.name for entry in old.entries if entry.kind == "argument"} - remaining
+    if new.is_ros1:
+        return {name: phrase("the include fails") for name in sorted(names)}
+    if any(entry.kind in ("include", "action") for entry in new.entries):
+        return {}
+    text = versions.new.text(new_path)
+    return {name: phrase("the value has no effect") for name in sorted(names) if name not in text}
+
+
+def _check_caller(version: Version, path: str, lost: dict[str, dict[str, Phrase]]) -> Iterator[Change]:
+    outline = _try_read(version, path)
+    actions = None if outline is None else IncludedActions(version, path, outline)
+    for entry in outline.entries if outline is not None else ():
+        if actions is None or outline is None or entry.kind != "include":
+            continue
+        file = actions.find_included_file(replace(entry, name=outline.resolve(entry.name)), version.file(path))
+        included_path = None if file is None else version.relative(file)
+        names = lost.get(included_path or "", {})
+        passed = {without_condition(name) for name in entry.settings} - {CONDITION}
+        for name in (name for name in names if name in passed):
+            values = {"name": name, "file": included_path}
+            text = phrase("passes '{name}' to '{file}', which no longer has the argument", **values)
+            yield Change(text, Effect.BREAKING, names[name], Location(path, entry.span.line, entry.span.column))
+
+
+def _try_read(version: Version, path: str) -> LaunchOutline | None:
+    try:
+        return read_outline(version.file(path), version.root)
+    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
+        return None
