@@ -159,6 +159,20 @@ def test_second_assignment_of_a_name_is_the_only_added_code(review_changes, adde
     assert [change for change in changes if change.startswith("other code")] == [f"other code removed: {code}"]
 
 
+def test_modules_that_a_launch_file_imports_for_the_first_time_are_reported(review_changes):
+    old, new = (
+        "from launch_ros",
+        "import os\nfrom launch.events import Shutdown\nfrom arm_lib import tool\nfrom launch_ros",
+    )
+    changes, _ = review_changes("arm.launch.py", PYTHON, old, new)
+    assert changes == ["imports added: 'from arm_lib import tool'"]
+    changes, _ = review_changes("arm.launch.py", PYTHON.replace(old, new), new, old)
+    assert changes == ["imports removed: 'from arm_lib import tool'"]
+    text = PYTHON.replace(old, new)
+    changes, _ = review_changes("arm.launch.py", text, "import tool", "import tool, rack")
+    assert changes == []
+
+
 def test_launch_file_with_name_of_a_test_is_compared(review_changes):
     changes, _ = review_changes("test_arm.launch.py", PYTHON, '"models"', '"worlds"')
     assert len(changes) == 1

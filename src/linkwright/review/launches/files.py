@@ -19,6 +19,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import find_addition_reason, find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
+from linkwright.review.launches.imports import compare_imports
 from linkwright.review.launches.included import IncludedActions, find_callers, find_file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
@@ -88,6 +89,8 @@ def compare_launch_files(pair: FilePair) -> None:
         _report_unpaired_entries(pair, removed, added, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
+        if pair.new_file.suffix == PYTHON_SUFFIX:
+            compare_imports(pair)
         _report_undefined_names(pair)
 
 
