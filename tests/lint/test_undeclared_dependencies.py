@@ -104,3 +104,8 @@ def test_fix_adds_a_depend_element(tmp_path):
     )
     (finding,) = examine_package(tmp_path, SETTINGS).diagnostics
     assert [edit.replacement for edit in finding.fix.edits] == ["\n  <depend>rosbag2_cpp</depend>"]
+
+
+def test_imports_of_python2_sources_are_read(tmp_path):
+    text = "import rospy\nfrom arm_msgs.msg import State\nprint 'arm'\ndef f():\n    print 'a'\n"
+    assert find(tmp_path, {"scripts/arm.py": text}) == ["arm_msgs"]

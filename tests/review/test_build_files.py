@@ -259,6 +259,14 @@ def test_changes_of_setup_files_are_reported(repository, compare, old, new, expe
     assert bool(breaking(result)) is is_breaking
 
 
+def test_new_files_of_another_folder_are_installed_now(repository, compare):
+    repository.commit(PYTHON_FILES)
+    text = SETUP.replace("['package.xml']", "['package.xml'] + glob('rviz/*')")
+    repository.write({"a/setup.py": text, "a/rviz/arm.rviz": "Panels: []\n", "a/config/tool.yaml": "a: 1\n"})
+    found = subject(compare(repository), "a/setup.py")
+    assert sentences(found) == ["installed now: 'share/arm/arm.rviz'"]
+
+
 def test_setup_file_that_is_no_longer_python_is_breaking(repository, compare):
     repository.commit(PYTHON_FILES)
     repository.write({"a/setup.py": SETUP + "setup("})

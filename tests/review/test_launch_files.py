@@ -144,6 +144,35 @@ def test_other_code_is_reported_besides_actions(review_changes):
     assert changes[1:] == ["other code: print('starting') -> print('started')"]
 
 
+@pytest.mark.parametrize(
+    ("added", "code"),
+    [
+        ("    pose = swap(pose)\n", "pose = swap(pose)"),
+        ("    frame = Frame()\n    pose = frame.swap(pose)\n", "frame = Frame() and 1 more statement"),
+    ],
+)
+def test_second_assignment_of_a_name_is_the_only_added_code(review_changes, added, code):
+    text = PYTHON.replace("    return Launch", "    pose = [1, 2]\n    return Launch").replace('"-v"', "pose")
+    changes, _ = review_changes("arm.launch.py", text, "    return Launch", f"{added}    return Launch")
+    assert [change for change in changes if change.startswith("other code")] == [f"other code added: {code}"]
+    changes, _ = review_changes("arm.launch.py", text.replace("    return", f"{added}    return"), added, "")
+    assert [change for change in changes if change.startswith("other code")] == [f"other code removed: {code}"]
+
+
+def test_modules_that_a_launch_file_imports_for_the_first_time_are_reported(review_changes):
+    old, new = (
+        "from launch_ros",
+        "import os\nfrom launch.events import Shutdown\nfrom arm_lib import tool\nfrom launch_ros",
+    )
+    changes, _ = review_changes("arm.launch.py", PYTHON, old, new)
+    assert changes == ["imports added: 'from arm_lib import tool'"]
+    changes, _ = review_changes("arm.launch.py", PYTHON.replace(old, new), new, old)
+    assert changes == ["imports removed: 'from arm_lib import tool'"]
+    text = PYTHON.replace(old, new)
+    changes, _ = review_changes("arm.launch.py", text, "import tool", "import tool, rack")
+    assert changes == []
+
+
 def test_launch_file_with_name_of_a_test_is_compared(review_changes):
     changes, _ = review_changes("test_arm.launch.py", PYTHON, '"models"', '"worlds"')
     assert len(changes) == 1

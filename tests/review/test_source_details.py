@@ -9,7 +9,7 @@ import ast
 
 import pytest
 
-from linkwright.review.sources.python2 import as_python3
+from linkwright.packages.readers.python2 import as_python3
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 

@@ -268,3 +268,28 @@ def test_missing_folder_is_named_instead_of_git(tmp_path):
         open_versions(tmp_path / "nowhere", "HEAD~1..HEAD")
     (diagnostic,) = error.value.diagnostics
     assert (diagnostic.code, str(diagnostic.message).endswith("nowhere' is not a folder")) == ("CLI342", True)
+
+
+def test_build_files_of_colcon_are_not_checked_out_unless_they_change(repository):
+    kept = ["build/b/a.yaml", "build/b/other.yaml", "install/a.yaml", "log/a.yaml", "arm/build/a.yaml"]
+    unused = ["build/COLCON_IGNORE", "build/a/a.yaml", "arm/log/COLCON_IGNORE", "arm/log/x/a.yaml"]
+    repository.commit({**dict.fromkeys(kept + unused, "a: 1\n"), "install/COLCON_IGNORE": ""})
+    repository.commit({"build/b/a.yaml": "a: 2\n"})
+    repository.write({"build/b/a.yaml": "a: 3\n"})
+    versions = open_versions(repository.root, "HEAD~1..HEAD")
+    try:
+        for version in (versions.old, versions.new):
+            assert [path for path in kept if not version.file(path).is_file()] == []
+            assert [path for path in unused if version.file(path).exists()] == ["build/COLCON_IGNORE"]
+            assert version.commit.missing_files == []
+    finally:
+        versions.close()
+
+
+def test_links_out_of_build_folders_are_still_noted(package, compare, tmp_path):
+    package.write({"log/COLCON_IGNORE": ""})
+    (package.root / "log/latest").symlink_to(tmp_path)
+    package.commit({})
+    package.commit({"log/a.yaml": "a: 1\n"})
+    notes = [str(note) for note in compare(package, "HEAD~1..HEAD").notes]
+    assert notes == ["symbolic link 'log/latest' points outside the repository and is ignored"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
@@ -18,7 +18,7 @@ from linkwright.packages.share_layout import find_share_of_sources
 
 
 class CommitFiles:
-    """All files of a commit in a temporary folder, including included files and meshes.
+    """The files of a commit in a temporary folder, including included files and meshes.
 
     Neither the repository nor its working tree is changed. Packages that are not in the commit are found from the
     working tree. Symbolic links that point outside the folder are removed, because a commit must not show other
@@ -29,6 +29,7 @@ class CommitFiles:
         require_commit: the hash of the commit.
         name: the commit in git's notation, for users.
         must_be_complete: whether it is an error if git cannot write some of the files.
+        find_unused: returns those of the given paths whose files are not needed; None if all are.
 
     Attributes:
         name: the commit in git's notation.
@@ -40,14 +41,26 @@ class CommitFiles:
         LinkwrightError: CLI345 if git cannot write the files.
     """
 
-    def __init__(self, repository: GitRepository, commit: str, name: str, *, must_be_complete: bool = True) -> None:
+    def __init__(
+        self,
+        repository: GitRepository,
+        commit: str,
+        name: str,
+        *,
+        must_be_complete: bool = True,
+        find_unused: Callable[[Sequence[str]], Collection[str]] | None = None,
+    ) -> None:
         self.name = name
         self._repository_root = repository.root
         self._folder = ScratchFolder("revision")
         self.root = Path(self._folder.name).resolve() / "files"
         try:
             self.missing_files = repository.write_files(
-                commit, self.root, self.root.parent / "index", must_be_complete=must_be_complete
+                commit,
+                self.root,
+                self.root.parent / "index",
+                must_be_complete=must_be_complete,
+                find_unused=find_unused,
             )
             self.removed_links = tuple(self._remove_outward_links(repository.list_symbolic_links(commit)))
         except BaseException:

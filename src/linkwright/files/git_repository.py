@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import subprocess
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, phrase
@@ -87,11 +87,18 @@ class GitRepository:
             raise LinkwrightError(Diagnostic("CLI342", message, hint=hint))
         self.root = Path(result.stdout.rstrip("\r\n")).resolve()
 
-    def run(self, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
+    def run(
+        self, *arguments: str, environment: Mapping[str, str] | None = None, text: str | None = None
+    ) -> subprocess.CompletedProcess[str]:
         """Run git in the repository with English output, and return the completed process.
 
         Bytes of its output that are not UTF-8 become surrogates, as in the names of files that Python reads.
         Otherwise, files and symbolic links with such names would not be found.
+
+        Args:
+            arguments: the arguments of git.
+            environment: variables of git's environment.
+            text: the text that git reads.
 
         Raises:
             LinkwrightError: CLI341 if git is not installed, or CLI342 if the folder does not exist.
@@ -103,6 +110,7 @@ class GitRepository:
                 cwd=self.root,
                 env={**variables, "LC_ALL": "C", **self._variables, **(environment or {})},
                 capture_output=True,
+                input=text,
                 encoding="utf-8",
                 errors="surrogateescape",
                 check=False,
@@ -170,8 +178,16 @@ class GitRepository:
         entries = self.run("ls-tree", "-r", "-z", commit).stdout.split("\0")
         return [entry.partition("\t")[2] for entry in entries if entry.startswith(_LINK_MODE)]
 
-    def write_files(self, commit: str, folder: Path, index: Path, *, must_be_complete: bool = True) -> list[str]:
-        """Write all files of a commit into a folder.
+    def write_files(
+        self,
+        commit: str,
+        folder: Path,
+        index: Path,
+        *,
+        must_be_complete: bool = True,
+        find_unused: Callable[[Sequence[str]], Collection[str]] | None = None,
+    ) -> list[str]:
+        """Write the files of a commit into a folder.
 
         Args:
             commit: the hash of the commit.
@@ -179,9 +195,11 @@ class GitRepository:
             index: a file for an index of git, which is created.
             must_be_complete: whether it is an error if git cannot write some of the files, such as large ones that a
                 partial clone has not downloaded.
+            find_unused: returns those of the given paths whose files are not written, relative to the root; None to
+                write all. Symbolic links are always written.
 
         Returns:
-            The paths of the files that are missing, relative to the root.
+            The paths of the files that git could not write, relative to the root.
 
         Raises:
             LinkwrightError: CLI345 if git cannot write the files.
@@ -191,14 +209,21 @@ class GitRepository:
         is_read = result.returncode == 0
         if is_read:
             folder.mkdir(exist_ok=True)
-            arguments = ("checkout-index", "--all", "--quiet", f"--prefix={folder}{os.sep}")
-            result = self.run(*arguments, environment=environment)
+            names = self.run("ls-files", "-z", environment=environment).stdout.split("\0")[:-1]
+            unused = find_unused(names) if find_unused is not None else ()
+            selection: Sequence[str] = ("--all",)
+            text = None
+            if unused:
+                links = set(self.list_symbolic_links(commit))
+                names = [name for name in names if name not in unused or name in links]
+                selection, text = ("-z", "--stdin"), "".join(f"{name}\0" for name in names)
+            arguments = ("checkout-index", *selection, "--quiet", f"--prefix={folder}{os.sep}")
+            result = self.run(*arguments, environment=environment, text=text)
         if result.returncode == 0:
             return []
         if is_read and not must_be_complete:
-            names = self.run("ls-files", "-z", environment=environment).stdout.split("\0")
-            missing = [name for name in names if name and not os.path.lexists(folder / name)]
-            if len(missing) < len(names) - 1:
+            missing = [name for name in names if not os.path.lexists(folder / name)]
+            if len(missing) < len(names):
                 return missing
         message = phrase(
             "git cannot write the files of commit '{name}': {reason}",

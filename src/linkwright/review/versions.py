@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
 
@@ -20,6 +20,7 @@ from linkwright.lint.targets import find_targets
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST, SKIPPED_FOLDERS, SourceScan, package_name
 from linkwright.packages.share_layout import find_share_of_sources
+from linkwright.review.build_folders import find_build_files
 
 TEST_FOLDERS = frozenset({"test", "tests"})
 """The names of test folders, whose files do not belong to a robot."""
@@ -239,14 +240,16 @@ def open_versions(folder: Path, range_text: str) -> Versions:
     if "..." in range_text or not range_text:
         old_commit = _find_common_commit(repository, old_commit, old_name, new_name or "HEAD")
     changed_files = repository.changed_files(old_commit, new_commit)
+    changed = {path for file in changed_files for path in (file.old_path, file.new_path) if path is not None}
+    find_unused = partial(find_build_files, changed=changed)
     with ExitStack() as stack:
-        old_files = CommitFiles(repository, old_commit, old_name, must_be_complete=False)
+        old_files = CommitFiles(repository, old_commit, old_name, must_be_complete=False, find_unused=find_unused)
         stack.callback(old_files.close)
         old = Version(old_name, old_files.root, old_files, is_old=True)
         if new_commit is None or _is_checked_out(repository, new_commit):
             new = Version(new_name, repository.root, None, is_old=False)
         else:
-            new_files = CommitFiles(repository, new_commit, new_name, must_be_complete=False)
+            new_files = CommitFiles(repository, new_commit, new_name, must_be_complete=False, find_unused=find_unused)
             stack.callback(new_files.close)
             new = Version(new_name, new_files.root, new_files, is_old=False)
         stack.pop_all()

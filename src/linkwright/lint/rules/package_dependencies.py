@@ -16,6 +16,7 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.readers.python2 import as_python3
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
@@ -213,9 +214,14 @@ def _find_imports(source: SourceText) -> Iterator[_Use]:
 
 
 def _list_import_lines(text: str) -> frozenset[int]:
-    """Return the lines at which statements of a module import; empty if it is not Python 3."""
+    """Return the lines at which statements of a module import; empty if it is neither Python 3 nor Python 2."""
+    tree = _parse(text) or _parse(as_python3(text))
+    body = [] if tree is None else tree.body
+    return frozenset(node.lineno for node in body if isinstance(node, ast.ImportFrom))
+
+
+def _parse(text: str) -> ast.Module | None:
     try:
-        tree = ast.parse(text)
+        return ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return frozenset()
-    return frozenset(node.lineno for node in tree.body if isinstance(node, ast.ImportFrom))
+        return None

@@ -463,8 +463,10 @@ def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence
 
 
 def _report_newly_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts, added: Sequence[str]) -> None:
-    """Report newly installed folders, and newly installed files of the old version."""
-    known = [target for target in added if _is_in_old_version(pair, old, new.files[target])]
+    """Report newly installed folders, newly installed files of the old version, and files of other folders."""
+    read = {_get_folder(source) for source in old.files.values()}
+    known = [name for name in added if _is_in_old_version(pair, old, new.files[name])]
+    known += [name for name in added if name not in known and _get_folder(new.files[name]) not in read]
     folders = [name for name in summarize_files(added, old.files) if name.endswith("/")]
     names = list(dict.fromkeys([*folders, *summarize_files(known, old.files)]))
     if names:

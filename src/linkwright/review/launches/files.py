@@ -19,6 +19,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import find_addition_reason, find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
+from linkwright.review.launches.imports import compare_imports
 from linkwright.review.launches.included import IncludedActions, find_callers, find_file_with_moved_action
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
@@ -88,6 +89,8 @@ def compare_launch_files(pair: FilePair) -> None:
         _report_unpaired_entries(pair, removed, added, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
+        if pair.new_file.suffix == PYTHON_SUFFIX:
+            compare_imports(pair)
         _report_undefined_names(pair)
 
 
@@ -241,6 +244,7 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
         old_sources, new_sources = ({part.source for part in outline.definitions} for outline in (old, new))
         removed += [part for part in old.definitions if part.source not in new_sources]
         added += [part for part in new.definitions if part.source not in old_sources]
+    removed, added = _drop_definitions(removed, new), _drop_definitions(added, old)
     added = _report_failures(pair, added, old, new)
     if not removed and not added:
         return
@@ -256,8 +260,28 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
                 phrase("other code: {old} -> {new}", old=old_excerpt, new=new_excerpt), pair.location(new_part.span)
             )
     else:
+        removed, added = _add_definitions(removed, old, new), _add_definitions(added, new, old)
         functions = [*_find_functions(pair.new_file, added), *_find_functions(pair.old_file, removed)]
         pair.add(_format_code_change(removed, added, list(dict.fromkeys(functions))), location)
+
+
+def _drop_definitions(parts: Sequence[CodePart], other: LaunchOutline) -> list[CodePart]:
+    """Return the statements without those that assign a name in the other version, where it is assigned only once."""
+    sources = {part.source for part in other.definitions}
+    return [part for part in parts if part.source not in sources]
+
+
+def _add_definitions(parts: Sequence[CodePart], own: LaunchOutline, other: LaunchOutline) -> list[CodePart]:
+    """Return changed statements and the assignments, which the other version lacks, of the names that they use."""
+    sources = {part.source for part in (*parts, *other.code, *other.definitions)}
+    result = list(parts)
+    used = " ".join(part.source for part in parts)
+    for part in reversed(own.definitions):
+        name = re.match(r"\w+", part.source)
+        if part.source not in sources and name is not None and re.search(rf"\b{name[0]}\b", used):
+            result.append(part)
+            used += f" {part.source}"
+    return sorted(result, key=lambda part: (part.span.line, part.span.column))
 
 
 def _report_failures(

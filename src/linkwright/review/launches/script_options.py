@@ -10,6 +10,7 @@ from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.readers.python2 import as_python3
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
@@ -18,7 +19,6 @@ from linkwright.review.launches.formats import is_launch_file
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.list_changes import list_items
-from linkwright.review.sources.python2 import as_python3
 from linkwright.review.sources.reading import try_read_source
 from linkwright.review.versions import Version, Versions
 

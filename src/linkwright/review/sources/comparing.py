@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 
@@ -18,6 +18,7 @@ from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_code_change
 from linkwright.review.sources.conditions import compare_conditions
+from linkwright.review.sources.cpp_members import has_class
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import (
     compare_computed,
@@ -269,8 +270,8 @@ class _SourcePair:
             {item.name for item in names.of_kind(NameKind.CLASS)} for names in (old_names, new_names)
         )
         common = old_classes & new_classes
-        return [item for item in removed if _has_class(item, common)], [
-            item for item in added if _has_class(item, common)
+        return [item for item in removed if has_class(item, common)], [
+            item for item in added if has_class(item, common)
         ]
 
     def _pair_names(
@@ -593,9 +594,3 @@ def _drop_defined_imports(items: Sequence[SourceName], names: SourceNames) -> li
     """
     defined = {item.name for kind in (NameKind.CLASS, NameKind.FUNCTION) for item in names.of_kind(kind)}
     return [] if names.has_star_import else [item for item in items if item.name not in defined]
-
-
-def _has_class(function: SourceName, classes: Collection[str]) -> bool:
-    """Return whether a C++ function belongs to one of the given classes or to none."""
-    names = function.name.split("::")[:-1]
-    return not names or names[-1] in classes

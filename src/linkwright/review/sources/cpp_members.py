@@ -1,15 +1,15 @@
-"""Find the action servers, action clients and filtered subscriptions of C++ classes."""
+"""Find the action servers, action clients and filtered subscriptions of C++ classes, and the classes of functions."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from linkwright.packages import enclosing_package
 from linkwright.review.sources.cpp_conditions import blank_disabled
-from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind
+from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind, SourceName
 
 _CLASS = r"(?:\w+::)*(?:Simple(?P<action>ActionServer|ActionClient)|Subscriber)\s*<(?P<type>[^<>;(){}]*)>"
 _MEMBER = re.compile(rf"(?<![\w:])(?P<class>{_CLASS})\s*(?P<variable>\w+)\b")
@@ -103,3 +103,9 @@ def read_included_headers(path: Path) -> list[str]:
         if file is not None and file.stat().st_size <= _MAX_BYTES:
             texts.append(blank_disabled(file.read_text("utf-8", errors="replace")))
     return texts
+
+
+def has_class(function: SourceName, classes: Collection[str]) -> bool:
+    """Return whether a C++ function belongs to one of the given classes or to none."""
+    names = function.name.split("::")[:-1]
+    return not names or names[-1] in classes

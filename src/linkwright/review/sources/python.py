@@ -12,6 +12,7 @@ from functools import cached_property
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
+from linkwright.packages.readers.python2 import as_python3
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
 from linkwright.review.sources.conditions import find_python_conditions
 from linkwright.review.sources.details import read_service_qos
@@ -20,7 +21,6 @@ from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, S
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_defaults import find_parameter_default
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
-from linkwright.review.sources.python2 import as_python3
 from linkwright.review.sources.python_bases import find_inherited_names
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
 from linkwright.review.sources.required_parameters import is_required_parameter
