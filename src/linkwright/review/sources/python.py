@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
+from linkwright.review.sources.frame_helpers import find_frame_arguments
 from linkwright.review.sources.interface_types import PythonTypes
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
@@ -227,6 +228,7 @@ class _Reader:
         self._python = python
         self._names = names
         self._types = PythonTypes(python.tree)
+        self._frame_arguments = find_frame_arguments(python.tree, _FRAME_FIELDS)
 
     def read(self) -> None:
         """Add the names."""
@@ -318,6 +320,11 @@ class _Reader:
             self._add(NameKind.PARAMETER, key, value, prefix=prefix)
 
     def _read_call(self, call: ast.Call, function: str) -> None:
+        if isinstance(call.func, ast.Name) or ast.unparse(call.func) == f"self.{function}":
+            for argument in self._frame_arguments.get(function, ()):
+                node = _get_argument(call, argument.index, argument.name)
+                if node is not None:
+                    self._add_frame(_FRAME_FIELDS[argument.field], node)
         for keyword in call.keywords:
             if keyword.arg in _FRAME_FIELDS and function not in _PARAMETER_CALLS:
                 self._add_frame(_FRAME_FIELDS[keyword.arg], keyword.value)
