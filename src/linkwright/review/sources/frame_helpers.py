@@ -12,12 +12,12 @@ class FrameArgument(NamedTuple):
 
     Attributes:
         field: the field of the message, such as ``child_frame_id``.
-        index: the index of the argument, without the object of a method.
+        position: the index of the argument, without the object of a method.
         name: the name of the argument.
     """
 
     field: str
-    index: int
+    position: int
     name: str
 
 

@@ -322,7 +322,7 @@ class _Reader:
     def _read_call(self, call: ast.Call, function: str) -> None:
         if isinstance(call.func, ast.Name) or ast.unparse(call.func) == f"self.{function}":
             for argument in self._frame_arguments.get(function, ()):
-                node = _get_argument(call, argument.index, argument.name)
+                node = _get_argument(call, argument.position, argument.name)
                 if node is not None:
                     self._add_frame(_FRAME_FIELDS[argument.field], node)
         for keyword in call.keywords:
