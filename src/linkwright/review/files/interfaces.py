@@ -33,8 +33,8 @@ def compare_interfaces(pair: FilePair) -> None:
     """Compare two versions of the definition of a message, service or action.
 
     A change to a field is breaking: the hash of the type changes (REP 2016), and nodes that were built with different
-    versions do not exchange messages. In ROS 1, constants are a part of the MD5 sum of a type. Nobody uses a definition
-    that the old version does not build.
+    versions do not exchange messages. In ROS 1, constants are a part of the MD5 sum of a type. No program uses a
+    definition that the old version does not build.
     """
     _compare(pair)
     if not pair.is_lost and is_unbuilt(pair.versions.old, pair.old_path):

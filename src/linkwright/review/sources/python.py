@@ -16,6 +16,7 @@ from linkwright.packages.readers.python2 import as_python3
 from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
 from linkwright.review.sources.conditions import find_python_conditions
 from linkwright.review.sources.details import read_service_qos
+from linkwright.review.sources.frame_helpers import find_frame_arguments
 from linkwright.review.sources.interface_types import PythonTypes
 from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
@@ -230,6 +231,7 @@ class _Reader:
         self._python = python
         self._names = names
         self._types = PythonTypes(python.tree)
+        self._frame_arguments = find_frame_arguments(python.tree, _FRAME_FIELDS)
 
     def read(self) -> None:
         """Add the names."""
@@ -325,6 +327,11 @@ class _Reader:
             self._add(NameKind.PARAMETER, key, value, prefix=prefix)
 
     def _read_call(self, call: ast.Call, function: str) -> None:
+        if isinstance(call.func, ast.Name) or ast.unparse(call.func) == f"self.{function}":
+            for argument in self._frame_arguments.get(function, ()):
+                node = _get_argument(call, argument.position, argument.name)
+                if node is not None:
+                    self._add_frame(_FRAME_FIELDS[argument.field], node)
         for keyword in call.keywords:
             if keyword.arg in _FRAME_FIELDS and function not in _PARAMETER_CALLS:
                 self._add_frame(_FRAME_FIELDS[keyword.arg], keyword.value)
