@@ -13,6 +13,7 @@ from linkwright.review.excerpts import shorten
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.bridges import compare_bridges, read_bridges
 from linkwright.review.files.key_readers import KeyReaders
+from linkwright.review.files.lost_groups import find_group_reason
 from linkwright.review.files.moveit_names import MoveItRules
 from linkwright.review.files.parameter_names import (
     NameRules,
@@ -142,6 +143,7 @@ def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Nod
         )
         reason = next((reason for reason in reasons if reason is not None), None)
         reason = reason or readers.find_key_reason(_find_lost_keys(next(iter(values_below)), new_keys))
+        reason = reason or find_group_reason(pair, name, values_below)
         yield ValueChange(name, "removed", _list_values(name, values_below), location, reason)
 
 

@@ -1,0 +1,45 @@
+"""Decide whether removing a group of parameters from a file without nodes is breaking."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.file_pair import FilePair
+from linkwright.review.files.parameter_names import is_parameter
+
+_MIN_GROUP_SIZE = 2
+_LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
+
+
+def find_group_reason(pair: FilePair, name: str, values: Collection[str]) -> Phrase | None:
+    """Return the reason why removing a group at the top of a file is breaking, or None.
+
+    A group that moved to a file which launch files load is not lost. A list is not a group.
+
+    Args:
+        pair: both versions of the file.
+        name: the path of the removed part.
+        values: the paths of its values.
+    """
+    if len(values) < _MIN_GROUP_SIZE or "." in name or any("[" in value or is_parameter(value) for value in values):
+        return None
+    if any(path != pair.new_path and _has_group(pair, path, name) for path in _list_changed_files(pair)):
+        return None
+    return phrase("programs that read '{name}' from the file do not find it", name=name)
+
+
+def _list_changed_files(pair: FilePair) -> list[str]:
+    paths = (file.new_path for file in pair.versions.changed_files)
+    return [path for path in paths if path and path.endswith((".yaml", ".yml"))]
+
+
+def _has_group(pair: FilePair, path: str, name: str) -> bool:
+    """Return whether a file that a launch file names contains a group."""
+    version = pair.versions.new
+    if not re.search(rf"^['\"]?{re.escape(name)}['\"]?\s*:", version.text(path), re.MULTILINE):
+        return False
+    file_name = PurePosixPath(path).name
+    return any(file_name in version.text(launch) for launch in version.paths(_LAUNCH_SUFFIXES))

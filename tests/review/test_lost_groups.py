@@ -1,0 +1,29 @@
+"""The lines of a review about removed groups of parameters in files without nodes."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import breaking
+
+MANIFEST = "<package><name>lamp</name><version>1.0.0</version></package>\n"
+REST = "model: a\n"
+GROUP = "devices:\n  lamp:\n    id: 1\n    bus: main\n"
+LAUNCH = '<launch><rosparam file="$(find lamp)/config/{name}" command="load"/></launch>\n'
+
+
+@pytest.mark.parametrize(
+    ("group", "files", "is_breaking"),
+    [
+        (GROUP, {}, True),
+        ("devices:\n  lamp: 1\n", {}, False),
+        (GROUP, {"lamp/config/more.yaml": GROUP}, True),
+        (GROUP, {"lamp/config/more.yaml": GROUP, "lamp/launch/a.launch": LAUNCH.format(name="more.yaml")}, False),
+    ],
+)
+def test_a_removed_group_of_parameters_is_breaking(repository, compare, group, files, is_breaking):
+    repository.commit({"lamp/package.xml": MANIFEST, "lamp/config/lamp.yaml": REST + group})
+    repository.write({"lamp/config/lamp.yaml": REST, **files})
+    assert [line.partition(":")[0] for line in breaking(compare(repository))] == (
+        ["devices removed"] if is_breaking else []
+    )
