@@ -51,6 +51,10 @@ class AllowedCollisions:
     pairs: dict[frozenset[str], bool] = field(default_factory=dict)
     defaults: dict[str, bool] = field(default_factory=dict)
 
+    def copy(self) -> AllowedCollisions:
+        """Return a copy that can be changed."""
+        return AllowedCollisions(dict(self.pairs), dict(self.defaults))
+
     def allows(self, first: str, second: str) -> bool:
         """Return whether two links or objects may collide."""
         listed = self.pairs.get(frozenset((first, second)))

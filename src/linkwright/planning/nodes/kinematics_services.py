@@ -9,6 +9,7 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array, compose, invert
 from linkwright.graph import Node
+from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.graph.time.values import Duration
 from linkwright.messages import get_message, get_service
 from linkwright.planning.cartesian import MAX_JOINT_STEP, follow_poses, line_poses
@@ -24,7 +25,9 @@ from linkwright.planning.nodes.conversions import (
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
+from linkwright.planning.nodes.worker import MustStop, PlanningWorker
 from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
+from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.timing import Trajectory
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -35,6 +38,8 @@ _BODY_TYPES = {"link": 0, "world": 1, "attached": 2}
 
 class KinematicsServices:
     """The services compute_fk, compute_ik, check_state_validity and compute_cartesian_path.
+
+    All but compute_fk compute in another thread than the event loop and the planner, one request at a time.
 
     Args:
         node: the node that offers the services.
@@ -55,13 +60,19 @@ class KinematicsServices:
         self._node, self._robot, self._monitor, self._ik_timeout = node, robot, monitor, ik_timeout
         self._publish_path = publish_path
         self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
+        self._worker = PlanningWorker(robot, monitor)
+        node.create_service(get_service("moveit_msgs/srv/GetPositionFK"), "compute_fk", self._compute_fk)
+        group = ReentrantCallbackGroup()  # The joint states of the node do not wait for these services.
         for name, kind, callback in (
-            ("compute_fk", "GetPositionFK", self._compute_fk),
             ("compute_ik", "GetPositionIK", self._compute_ik),
             ("check_state_validity", "GetStateValidity", self._check_validity),
             ("compute_cartesian_path", "GetCartesianPath", self._compute_cartesian_path),
         ):
-            node.create_service(get_service(f"moveit_msgs/srv/{kind}"), name, callback)
+            node.create_service(get_service(f"moveit_msgs/srv/{kind}"), name, callback, callback_group=group)
+
+    def stop(self) -> None:
+        """End the current computation and those that wait."""
+        self._worker.stop()
 
     def _compute_fk(self, request: Any, response: Any) -> Any:
         positions = self._robot.positions_of(request.robot_state)
@@ -87,10 +98,10 @@ class KinematicsServices:
         response.error_code.val = self._error_codes.SUCCESS
         return response
 
-    def _compute_ik(self, request: Any, response: Any) -> Any:
+    async def _compute_ik(self, request: Any, response: Any) -> Any:
         ik_request = request.ik_request
         try:
-            solution = self._solve_ik(ik_request)
+            solution = await self._solve_ik(ik_request)
         except RequestError as error:
             response.error_code.val = getattr(self._error_codes, error.code)
             return response
@@ -98,7 +109,7 @@ class KinematicsServices:
         response.error_code.val = self._error_codes.SUCCESS
         return response
 
-    def _solve_ik(self, request: Any) -> Array:
+    async def _solve_ik(self, request: Any) -> Array:
         group = self._robot.groups.get(request.group_name)
         if group is None:
             raise RequestError("INVALID_GROUP_NAME", f"there is no group '{request.group_name}'")
@@ -111,29 +122,31 @@ class KinematicsServices:
         target = compose(self._robot.frame_pose(stamped.header.frame_id, start), pose_row(stamped.pose))
         timeout = Duration.from_msg(request.timeout).nanoseconds / NANOSECONDS_PER_SECOND
         goal = self._monitor.read_goal(request.constraints, start, tip)
-        scene = self._collision_scene(request, request.robot_state, start)
+        timeout = timeout or self._ik_timeout(group.name)
 
-        def is_valid(positions: Array) -> bool:
-            return (scene is None or scene.is_free(positions)) and goal.is_met(self._robot.model, positions)
+        def solve(model: RobotModel, scene: CollisionScene, _must_stop: MustStop) -> Array | None:
+            def is_valid(positions: Array) -> bool:
+                return scene.is_free(positions) and goal.is_met(model, positions)
 
-        solver = ChainSolver(self._robot.model, group, tip)
-        solution = solver.solve(target, start, timeout or self._ik_timeout(group.name), is_valid)
+            return ChainSolver(model, group, tip).solve(target, start, timeout, is_valid)
+
+        solution = await self._worker.run(self._scene_of(request, request.robot_state, start), solve)
         if solution is None:
             raise RequestError("NO_IK_SOLUTION", "no solution was found")
         return solution
 
-    def _collision_scene(self, request: Any, state: Any, positions: Array) -> CollisionScene | None:
+    def _scene_of(self, request: Any, state: Any, positions: Array) -> SceneState | None:
         """Return the scene of a request that avoids collisions, or None."""
         if not request.avoid_collisions:
             return None
-        return self._monitor.collisions(self._monitor.scene_with(state, positions))
+        return self._monitor.scene_with(state, positions)
 
-    def _check_validity(self, request: Any, response: Any) -> Any:
+    async def _check_validity(self, request: Any, response: Any) -> Any:
         positions = self._robot.positions_of(request.robot_state)
         scene_state = self._monitor.scene_with(request.robot_state, positions)
-        contacts = self._monitor.collisions(scene_state).contacts(positions)
-        response.contacts = [self._contact_message(contact, scene_state) for contact in contacts]
         try:
+            contacts = await self._worker.run(scene_state, lambda _model, scene, _must_stop: scene.contacts(positions))
+            response.contacts = [self._contact_message(contact, scene_state) for contact in contacts]
             goal = self._monitor.read_goal(request.constraints, positions, None)
         except RequestError as error:
             self._node.get_logger().error(str(error))
@@ -159,10 +172,10 @@ class KinematicsServices:
         )
         return message
 
-    def _compute_cartesian_path(self, request: Any, response: Any) -> Any:
+    async def _compute_cartesian_path(self, request: Any, response: Any) -> Any:
         start = self._robot.positions_of(request.start_state)
         try:
-            group, trajectory, response.fraction = self._follow_waypoints(request, start)
+            group, trajectory, response.fraction = await self._follow_waypoints(request, start)
         except RequestError as error:
             self._node.get_logger().error(str(error))
             response.error_code.val = getattr(self._error_codes, error.code)
@@ -173,13 +186,13 @@ class KinematicsServices:
         self._publish_path(start, [(group, trajectory)])
         return response
 
-    def _follow_waypoints(self, request: Any, start: Array) -> tuple[JointGroup, Trajectory, float]:
+    async def _follow_waypoints(self, request: Any, start: Array) -> tuple[JointGroup, Trajectory, float]:
         """Return the group, its trajectory through the waypoints, and the covered fraction.
 
         Raises:
             RequestError: a name, a frame or the step is not valid, or the trajectory collides.
         """
-        group, model = self._robot.groups.get(request.group_name), self._robot.model
+        group = self._robot.groups.get(request.group_name)
         if group is None:
             raise RequestError("INVALID_GROUP_NAME", f"there is no group '{request.group_name}'")
         tip: str = request.link_name or group.tip or ""
@@ -188,16 +201,8 @@ class KinematicsServices:
         if not request.max_step > 0.0:
             raise RequestError("FAILURE", "max_step must be positive")
         constraint = self._monitor.read_goal(request.path_constraints, start, tip)
-        scene = self._collision_scene(request, request.start_state, start)
-        indexes = np.array([model.index(name) for name in group.joint_names])
-        path, fraction = follow_poses(
-            ChainSolver(model, group, tip),
-            start,
-            self._interpolate_waypoints(request, start, tip),
-            indexes,
-            lambda positions: (scene is None or scene.is_free(positions)) and constraint.is_met(model, positions),
-            request.revolute_jump_threshold or MAX_JOINT_STEP,
-        )
+        poses = self._interpolate_waypoints(request, start, tip)
+        max_joint_step = request.revolute_jump_threshold or MAX_JOINT_STEP
         plan_request = PlanRequest(
             group,
             start,
@@ -207,9 +212,19 @@ class KinematicsServices:
             interval_s=_CARTESIAN_INTERVAL_S,
             max_link_speeds=self._robot.read_link_speeds(request, tip),
         )
-        planner = MotionPlanner(model, scene or self._monitor.compile(None))
+
+        def follow(model: RobotModel, scene: CollisionScene, must_stop: MustStop) -> tuple[Trajectory, float]:
+            def is_valid(positions: Array) -> bool:
+                return not must_stop() and scene.is_free(positions) and constraint.is_met(model, positions)
+
+            indexes = np.array([model.index(name) for name in group.joint_names])
+            solver = ChainSolver(model, group, tip)
+            path, fraction = follow_poses(solver, start, poses, indexes, is_valid, max_joint_step)
+            planner = MotionPlanner(model, scene, must_stop)
+            return planner.time_path(plan_request, start, path[:, indexes]), fraction
+
         try:
-            return group, planner.time_path(plan_request, start, path[:, indexes]), fraction
+            return group, *await self._worker.run(self._scene_of(request, request.start_state, start), follow)
         except PlanError as error:
             raise RequestError("INVALID_MOTION_PLAN", f"the path collides between two poses: {error}") from None
 

@@ -52,6 +52,7 @@ class MoveGroup(SingleNode):
     def close(self) -> None:
         """Stop the planning and the execution, and destroy the node."""
         self._planning.stop()
+        self._kinematics.stop()
         self._execution.stop()
         super().close()
 
@@ -69,7 +70,9 @@ class MoveGroup(SingleNode):
         publishes_states = parameters.get("publish_state_updates", parameters.get("publish_planning_scene", True))
         self._monitor = SceneMonitor(node, self._robot, publishes_states=bool(publishes_states))
         self._planning = PlanningServices(node, self._robot, self._monitor, Pipelines(parameters), self._default_scale)
-        KinematicsServices(node, self._robot, self._monitor, self._ik_timeout, self._planning.publish_path)
+        self._kinematics = KinematicsServices(
+            node, self._robot, self._monitor, self._ik_timeout, self._planning.publish_path
+        )
         self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
         group = ReentrantCallbackGroup()
         for name, kind, callback in (

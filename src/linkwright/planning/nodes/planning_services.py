@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
-import threading
 from collections.abc import Callable, Iterable
 from time import perf_counter
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -15,25 +13,19 @@ from linkwright.geometry.arrays import Array
 from linkwright.graph import Node, Publisher
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_message, get_service
+from linkwright.planning.collision_scene import CollisionScene
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.nodes.conversions import RequestError, trajectory_message, update_positions
 from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
-from linkwright.planning.planner import Failure, MotionPlanner, PlanError, PlanRequest
+from linkwright.planning.nodes.worker import MustStop, PlanningWorker, Result, never
+from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.timing import Trajectory
 
-Result = TypeVar("Result")
-
 _DEFAULT_PLANNING_TIME_S = 5.0
-_POLL_S = 0.02
-"""The time in s between two checks of whether a plan that waits for others is canceled."""
-
-
-def _never() -> bool:
-    return False
 
 
 class PlanningServices:
@@ -59,8 +51,7 @@ class PlanningServices:
     ) -> None:
         self._node, self._robot, self._monitor, self._pipelines = node, robot, monitor, pipelines
         self._default_scale = default_scale
-        self._planning = asyncio.Lock()
-        self._is_stopped = threading.Event()
+        self._worker = PlanningWorker(robot, monitor)
         self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
         self._path_publisher: Publisher[Any] = node.create_publisher(
             "moveit_msgs/msg/DisplayTrajectory", "display_planned_path", 10
@@ -74,7 +65,7 @@ class PlanningServices:
 
     def stop(self) -> None:
         """Cancel the current plan and those that wait."""
-        self._is_stopped.set()
+        self._worker.stop()
 
     async def _plan_path(self, request: Any, response: Any) -> Any:
         motion_request = request.motion_plan_request
@@ -94,7 +85,7 @@ class PlanningServices:
         return response
 
     async def plan(
-        self, request: Any, scene: SceneState, is_canceled: Callable[[], bool] = _never
+        self, request: Any, scene: SceneState, is_canceled: MustStop = never
     ) -> tuple[Array, Trajectory, tuple[str, ...]]:
         """Plan a motion, and return the start, the trajectory and the names of its joints.
 
@@ -136,7 +127,7 @@ class PlanningServices:
         return self._make_request(request, group, start), scene
 
     async def run(
-        self, scene: SceneState, work: Callable[[MotionPlanner], Result], is_canceled: Callable[[], bool] = _never
+        self, scene: SceneState, work: Callable[[MotionPlanner], Result], is_canceled: MustStop = never
     ) -> Result:
         """Return what a function computes with a planner in another thread, after other plans.
 
@@ -149,32 +140,15 @@ class PlanningServices:
             RequestError: there is no plan, or the planning was canceled.
         """
 
-        def must_stop() -> bool:
-            return self._is_stopped.is_set() or is_canceled()
+        def compute(model: RobotModel, collisions: CollisionScene, must_stop: MustStop) -> Result:
+            return work(MotionPlanner(model, collisions, must_stop))
 
-        if not await self._wait_for_turn(must_stop):
-            raise RequestError(Failure.PREEMPTED.name, Failure.PREEMPTED.value)
         try:
-            planner = MotionPlanner(RobotModel(self._robot.robot), self._monitor.compile(scene), must_stop)
-            return await asyncio.to_thread(work, planner)
+            return await self._worker.run(scene, compute, is_canceled)
         except PlanError as error:
             raise RequestError(error.failure.name, self._explain(error)) from None
         except LinkwrightError as error:  # OMPL is not installed.
             raise RequestError("FAILURE", render(error.diagnostics[0])) from None
-        finally:
-            self._planning.release()
-
-    async def _wait_for_turn(self, must_stop: Callable[[], bool]) -> bool:
-        """Acquire the lock of the planning after other plans, and return whether the plan was not canceled before."""
-        turn = asyncio.ensure_future(self._planning.acquire())
-        try:
-            while not turn.done() and not must_stop():
-                await asyncio.wait({turn}, timeout=_POLL_S)
-        except asyncio.CancelledError:
-            if not turn.cancel():
-                self._planning.release()
-            raise
-        return not turn.cancel()
 
     def _make_request(self, request: Any, group: JointGroup, start: Array) -> PlanRequest:
         """Return the request of a moveit_msgs/msg/MotionPlanRequest.

@@ -50,7 +50,6 @@ class SceneMonitor:
         warn = node.get_logger().warning
         self.scene = SceneState(robot.frame, robot.allowed_collisions(), robot.robot.links, warn, robot.margins)
         self._robot = robot
-        self._collision_scene: CollisionScene | None = None
         self._publisher: Publisher[Any] = node.create_publisher("moveit_msgs/msg/PlanningScene", topic, 10)
         for topic, kind, callback in (
             ("planning_scene", "PlanningScene", self._on_scene),
@@ -141,14 +140,6 @@ class SceneMonitor:
         changed.apply(message, self.frame_lookup(self._robot.positions))
         return changed
 
-    def collisions(self, scene: SceneState) -> CollisionScene:
-        """Return the compiled scene; that of the current scene is cached."""
-        if scene is not self.scene:
-            return self.compile(scene)
-        if self._collision_scene is None:
-            self._collision_scene = self.compile(scene)
-        return self._collision_scene
-
     def compile(self, scene: SceneState | None) -> CollisionScene:
         """Return the robot among the objects of a scene, or alone and without shapes for None."""
         robot = self._robot
@@ -158,7 +149,6 @@ class SceneMonitor:
 
     def announce_change(self) -> None:
         """Publish the scene after a change of `scene`."""
-        self._collision_scene = None
         self._publish()
 
     def _get_scene(self, request: Any, response: Any) -> Any:

@@ -67,7 +67,7 @@ class SceneState:
 
     def copy(self) -> SceneState:
         """Return a copy that can be changed."""
-        other = SceneState(self.frame, deepcopy(self.allowed), self._links, self._warn, self.margins)
+        other = SceneState(self.frame, self.allowed.copy(), self._links, self._warn, self.margins)
         other.name, other._initial_allowed = self.name, self._initial_allowed
         other.objects, other.attached, other._colors = dict(self.objects), dict(self.attached), dict(self._colors)
         return other
@@ -188,6 +188,15 @@ class SceneState:
         self.objects.pop(name, None)
         self.attached[name] = attached
         return True
+
+    def collides_like(self, other: SceneState) -> bool:
+        """Return whether all that matters for collisions is equal in another scene."""
+        return (self.objects, self.attached, self.allowed, self.margins) == (
+            other.objects,
+            other.attached,
+            other.allowed,
+            other.margins,
+        )
 
     def scene_objects(self) -> list[SceneObject]:
         """Return the objects for the detection of collisions."""

@@ -20,6 +20,7 @@ from linkwright.planning.nodes.planning_services import PlanningServices
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
+from linkwright.planning.nodes.worker import MustStop, never
 from linkwright.planning.planner import MotionPlanner, Plan, PlanError, PlanRequest
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.sequences import Command, SequenceMotion, check_radii, join_commands
@@ -66,7 +67,7 @@ class SequenceServices:
 
     async def _plan_path(self, request: Any, response: Any) -> Any:
         try:
-            await self._plan_into(response.response, request.request, self._monitor.scene, lambda: False)
+            await self._plan_into(response.response, request.request, self._monitor.scene)
         except RequestError as error:
             self._report(response.response, error)
         return response
@@ -103,7 +104,7 @@ class SequenceServices:
         self._node.get_logger().error(str(error))
         response.error_code.val = getattr(self._error_codes, error.code)
 
-    async def _plan_into(self, response: Any, request: Any, scene: SceneState, is_canceled: Callable[[], bool]) -> None:
+    async def _plan_into(self, response: Any, request: Any, scene: SceneState, is_canceled: MustStop = never) -> None:
         """Plan a moveit_msgs/msg/MotionSequenceRequest, and write the result into a MotionSequenceResponse.
 
         Raises:
@@ -122,7 +123,7 @@ class SequenceServices:
         response.planning_time = perf_counter() - started
         self._planning.publish_path(motions[0].start, [(motion.group, motion.trajectory) for motion in motions])
 
-    async def _plan(self, items: Any, scene: SceneState, is_canceled: Callable[[], bool]) -> list[SequenceMotion]:
+    async def _plan(self, items: Any, scene: SceneState, is_canceled: MustStop) -> list[SequenceMotion]:
         radii = self._read_radii(items)
         _check_start_states(items)
         positions, commands = self._robot.positions, []

@@ -1,0 +1,102 @@
+"""Computations of move_group in another thread, so that they do not block controllers on the event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable
+from typing import TypeVar
+
+from linkwright.planning.collision_scene import CollisionScene
+from linkwright.planning.nodes.conversions import RequestError
+from linkwright.planning.nodes.robot_context import RobotContext
+from linkwright.planning.nodes.scene_monitor import SceneMonitor
+from linkwright.planning.nodes.scene_state import SceneState
+from linkwright.planning.planner import Failure
+from linkwright.planning.robot_model import RobotModel
+
+Result = TypeVar("Result")
+MustStop = Callable[[], bool]
+Work = Callable[[RobotModel, CollisionScene, MustStop], Result]
+"""A computation with a robot and a scene, which it may move; the function tells it to stop."""
+
+_POLL_S = 0.02
+"""The time in s between two checks of whether a computation that waits for others is canceled."""
+
+
+def never() -> bool:
+    """Return False, for what cannot be canceled."""
+    return False
+
+
+class PlanningWorker:
+    """Runs computations in another thread, one at a time, in the order in which they were requested.
+
+    The robot and the scene are those of the worker alone. A scene is compiled only if its content differs from that of
+    the scene before.
+
+    Args:
+        robot: the robot.
+        monitor: the planning scene, which compiles scenes.
+    """
+
+    def __init__(self, robot: RobotContext, monitor: SceneMonitor) -> None:
+        self._robot, self._monitor = robot, monitor
+        self._turns = asyncio.Lock()
+        self._is_stopped = threading.Event()
+        self._model: RobotModel | None = None
+        self._scene: tuple[SceneState, CollisionScene] | None = None
+        self._robot_alone: CollisionScene | None = None
+
+    def stop(self) -> None:
+        """Cancel the current computation and those that wait."""
+        self._is_stopped.set()
+
+    async def run(self, scene: SceneState | None, work: Work[Result], is_canceled: MustStop = never) -> Result:
+        """Return what a function computes in the other thread.
+
+        Args:
+            scene: the scene, as it is when the function starts; None for the robot without shapes.
+            work: the function.
+            is_canceled: returns whether the computation must stop; it is also called in the other thread.
+
+        Raises:
+            RequestError: the computation was canceled while it waited for others.
+        """
+
+        def must_stop() -> bool:
+            return self._is_stopped.is_set() or is_canceled()
+
+        if not await self._wait_for_turn(must_stop):
+            raise RequestError(Failure.PREEMPTED.name, Failure.PREEMPTED.value)
+        content = None if scene is None else scene.copy()
+        computation = asyncio.ensure_future(asyncio.to_thread(self._compute, content, work, must_stop))
+        # The turn ends with the thread, also if the caller was canceled.
+        computation.add_done_callback(lambda _: self._turns.release())
+        return await asyncio.shield(computation)
+
+    async def _wait_for_turn(self, must_stop: MustStop) -> bool:
+        """Acquire the lock after others, and return whether the computation was not canceled before."""
+        turn = asyncio.ensure_future(self._turns.acquire())
+        try:
+            while not turn.done() and not must_stop():
+                await asyncio.wait({turn}, timeout=_POLL_S)
+        except asyncio.CancelledError:
+            if not turn.cancel():
+                self._turns.release()
+            raise
+        return not turn.cancel()
+
+    def _compute(self, scene: SceneState | None, work: Work[Result], must_stop: MustStop) -> Result:
+        if self._model is None:
+            self._model = RobotModel(self._robot.robot)
+        return work(self._model, self._compile(scene), must_stop)
+
+    def _compile(self, scene: SceneState | None) -> CollisionScene:
+        if scene is None:
+            if self._robot_alone is None:
+                self._robot_alone = self._monitor.compile(None)
+            return self._robot_alone
+        if self._scene is None or not scene.collides_like(self._scene[0]):
+            self._scene = scene, self._monitor.compile(scene)
+        return self._scene[1]
