@@ -165,7 +165,7 @@ def test_lesson_texts_fit_and_only_commands_have_copy_button(start, open_page, w
     until(page, f"{CHECKS}?.checked_at")
     assert page.locator(".source-heading").first.is_hidden()
     position = page.locator(".lesson-place")
-    assert "0 of 80 steps passed" in position.inner_text()
+    assert "0 of 86 steps passed" in position.inner_text()
     assert position.evaluate("element => element.scrollWidth <= element.clientWidth")
     page.get_by_role("button", name="Steps").click()
     page.locator(".outline-step", has_text="A package for nodes").click()

@@ -58,10 +58,11 @@ CAPABILITIES = types.ClientCapabilities(
 )
 
 
-def manifest_text(name: str) -> str:
+def manifest_text(name: str, *dependencies: str) -> str:
+    depends = "".join(f"<exec_depend>{dependency}</exec_depend>" for dependency in dependencies)
     return (
         f'<package format="3"><name>{name}</name><version>0.1.0</version><description>A package.</description>'
-        '<maintainer email="a@example.org">A</maintainer><license>MIT</license></package>\n'
+        f'<maintainer email="a@example.org">A</maintainer><license>MIT</license>{depends}</package>\n'
     )
 
 
@@ -71,8 +72,8 @@ def workspace(tmp_path: Path) -> Path:
     (package / "my_package").mkdir(parents=True)
     (package / "launch").mkdir()
     (messages / "msg").mkdir(parents=True)
-    for folder in (package, messages):
-        (folder / "package.xml").write_text(manifest_text(folder.name))
+    (package / "package.xml").write_text(manifest_text(package.name, "std_msgs", messages.name))
+    (messages / "package.xml").write_text(manifest_text(messages.name))
     (messages / "msg" / "Count.msg").write_text("int32 number\n")
     (package / "setup.py").write_text("from setuptools import setup\n\nsetup(name='my_package')\n")
     (package / "my_package" / "__init__.py").write_text("")
