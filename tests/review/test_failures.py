@@ -37,7 +37,7 @@ def fail_for(function, name):
 
 @pytest.fixture
 def broken_reader(monkeypatch):
-    monkeypatch.setattr(interfaces, "_read", fail_for(interfaces._read, "Broken.msg"))
+    monkeypatch.setattr(interfaces, "read_structures", fail_for(interfaces.read_structures, "Broken.msg"))
 
 
 @pytest.mark.usefixtures("broken_reader")
@@ -73,7 +73,7 @@ def test_a_bug_does_not_change_the_exit_status(two_messages, capsys, tmp_path):
 
 
 def test_a_bug_in_an_added_file_costs_one_file(package, compare, monkeypatch):
-    monkeypatch.setattr(interfaces, "_read", fail_for(interfaces._read, "Broken.msg"))
+    monkeypatch.setattr(interfaces, "read_structures", fail_for(interfaces.read_structures, "Broken.msg"))
     package.write({f"arm_description/msg/{name}.msg": "int64 speed\n" for name in ("Broken", "Good")})
     result = compare(package)
     assert sentences(subject(result, "arm_description/msg/Broken.msg")) == ["interface added"]
