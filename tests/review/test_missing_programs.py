@@ -65,7 +65,12 @@ def test_a_launch_file_that_starts_a_removed_executable_is_named(repository, com
 
 @pytest.mark.parametrize("launch", LAUNCHES)
 @pytest.mark.parametrize(
-    ("body", "is_found"), [(SCRIPTS, True), (SCRIPTS + "configure_file(new.in scripts/new.py)\n", False)]
+    ("body", "is_found"),
+    [
+        (SCRIPTS, True),
+        (SCRIPTS + "configure_file(new.in scripts/new.py)\n", False),
+        (SCRIPTS + "## Rename C++ executable without prefix\n# configure_file(new.in scripts/new.py)\n", True),
+    ],
 )
 def test_a_changed_launch_file_that_starts_a_script_which_does_not_exist_is_named(
     repository, compare, launch, body, is_found

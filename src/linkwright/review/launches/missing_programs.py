@@ -33,6 +33,7 @@ _GENERATION = re.compile(
     re.IGNORECASE,
 )
 """A command of a build file that can make a script with another name."""
+_COMMENT = re.compile(r"#[^\n]*")
 _SUBMODULE = re.compile(r"^\s*path\s*=\s*(?P<path>\S+)", re.MULTILINE)
 
 
@@ -93,9 +94,8 @@ class _Package:
     def _may_generate(self) -> bool:
         """Whether the build can make scripts, or a part of the package is in another repository."""
         submodules = (PurePosixPath(match["path"]) for match in _SUBMODULE.finditer(self.version.text(".gitmodules")))
-        return _GENERATION.search(self.build_text) is not None or any(
-            path.is_relative_to(self.folder) for path in submodules
-        )
+        commands = _COMMENT.sub("", self.build_text)  # the comments of catkin's template tell how to rename a program
+        return _GENERATION.search(commands) is not None or any(path.is_relative_to(self.folder) for path in submodules)
 
     def _names_foreign_path(self, name: str) -> bool:
         """Return whether a build file names a script by a path that may lead out of the package."""
