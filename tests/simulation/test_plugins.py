@@ -78,6 +78,7 @@ def test_built_in_systems_are_recognized():
     assert is_built_in("libignition-gazebo-physics-system.so")
     assert is_built_in("libgazebo_ros_factory.so")
     assert is_built_in("libRayPlugin.so")
+    assert is_built_in("libWaveVisual.so")
     assert is_built_in("dummyfile")
     assert not is_built_in("gz-sim-diff-drive-system")
     assert is_gz_library("gz-sim7-diff-drive-system")
@@ -91,7 +92,11 @@ def test_systems_listed_as_built_in_are_simulated():
     ] == []
     for library in _BUILT_IN:
         name = library.removeprefix("gz-sim-").removesuffix("-system")
-        assert name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM) or library in (*CLASSIC_SYSTEMS, "RayPlugin"), library
+        assert name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM) or library in (
+            *CLASSIC_SYSTEMS,
+            "RayPlugin",
+            "WaveVisual",
+        ), library
 
 
 @pytest.mark.parametrize("name", UNSIMULATED)

@@ -48,6 +48,7 @@ _BUILT_IN = frozenset(
     (
         *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM)),
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
+        "WaveVisual",  # the page draws the water from what the floating bodies publish
         *_LIBRARIES_WITHOUT_EFFECT,
     )
 )
