@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from linkwright.diagnostics import phrase
@@ -22,7 +21,7 @@ from linkwright.page.protocol.controllers import (
     HardwareRow,
     WatchControllers,
 )
-from linkwright.panels.page_feature import FeatureHost, PageFeature
+from linkwright.panels.monitor.watched_items import WatchedItemsFeature
 
 _LIST_SUFFIX = "/list_controllers"
 _PERIOD_S = 1.0
@@ -32,73 +31,29 @@ _STRICT = 2
 _TYPE_PARAMETER = ".type"
 
 
-class ControllersFeature(PageFeature):
+class ControllersFeature(WatchedItemsFeature["_Manager"]):
     """The feature that sends the controllers of a manager to pages, and changes their states."""
-
-    def __init__(self, viewer: FeatureHost) -> None:
-        super().__init__(viewer)
-        self._requests: dict[Page, _Request] = {}
-        self._managers: dict[str, _Manager] = {}
 
     def receive(self, page: Page, message: WatchControllers | ChangeController | ChangeHardware) -> None:
         """Handle a request. A page can change only the manager that it watches."""
-        if isinstance(message, WatchControllers):
-            self._watch(page, message)
+        if not isinstance(message, WatchControllers):
+            manager = self.find_watched(page, message.manager)
+            if manager is not None:
+                manager.change(message, page.send)
             return
-        request = self._requests.get(page)
-        if request is not None and request.manager == message.manager:
-            self._managers[message.manager].change(message, page.send)
+        manager = self.watch(page, message.manager, wants_list=message.wants_list)
+        if manager is not None and manager.list is not None:
+            page.send(manager.list)
 
-    def remove_page(self, page: Page) -> None:
-        """Discard the page's requests, and close the clients that no other page needs."""
-        if self._requests.pop(page, None) is not None:
-            self._update()
+    def create_item(self, name: str) -> _Manager:
+        """Start to follow the controllers of a manager."""
+        return _Manager(self.context.node, name, lambda controllers: self.publish(name, controllers))
 
-    def close(self) -> None:
-        """Close all clients."""
-        self._requests.clear()
-        self._update()
-
-    def _watch(self, page: Page, message: WatchControllers) -> None:
-        name = message.manager
-        self._requests[page] = _Request(message.wants_list, name)
-        if name is not None and name not in self._managers:
-            self._managers[name] = _Manager(self.context.node, name, self._publish)
-        self._update()
-        self._send_managers()
-        known_list = None if name is None else self._managers[name].list
-        if known_list is not None:
-            page.send(known_list)
-
-    def _update(self) -> None:
-        requests = self._requests.values()
-        for name in self._managers.keys() - {request.manager for request in requests}:
-            self._managers.pop(name).close()
-        if any(request.wants_list for request in requests):
-            self.context.graph_changes.watch(self._send_managers)
-        else:
-            self.context.graph_changes.unwatch(self._send_managers)
-
-    def _publish(self, controllers: ControllerList) -> None:
-        for page, request in self._requests.items():
-            if request.manager == controllers.manager:
-                page.send(controllers)
-
-    def _send_managers(self) -> None:
+    def make_list(self) -> ControllerManagers:
+        """Return the names of the managers."""
         services = self.context.node.get_service_names_and_types()
         names = [name.removesuffix(_LIST_SUFFIX) for name, _ in services if name.endswith(_LIST_SUFFIX)]
-        managers = ControllerManagers(sorted(names))
-        for page, request in self._requests.items():
-            if request.wants_list and request.sent != managers:
-                request.sent = managers
-                page.send(managers)
-
-
-@dataclass(slots=True)
-class _Request:
-    wants_list: bool
-    manager: str | None
-    sent: ControllerManagers | None = None
+        return ControllerManagers(sorted(names))
 
 
 class _ManagerError(Exception):

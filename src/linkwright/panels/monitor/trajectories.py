@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import isfinite, pi
 from typing import Any
 
@@ -22,7 +21,7 @@ from linkwright.page.protocol.controllers import (
     WatchTrajectory,
 )
 from linkwright.panels.monitor.topic_tap import RateLimiter, TopicTap
-from linkwright.panels.page_feature import FeatureHost, PageFeature
+from linkwright.panels.monitor.watched_items import WatchedItemsFeature
 from linkwright.rviz.context import ViewerContext
 from linkwright.rviz.parameter_responses import NoParameterResponseError, wait_for_response, wait_for_services
 from linkwright.urdf import Joint
@@ -34,77 +33,33 @@ _PUBLISH_PERIOD_S = 0.1
 _MIN_SECONDS = 0.05
 
 
-class TrajectoriesFeature(PageFeature):
+class TrajectoriesFeature(WatchedItemsFeature["_Controller"]):
     """The feature that shows the joints of trajectory controllers, and moves them."""
-
-    def __init__(self, viewer: FeatureHost) -> None:
-        super().__init__(viewer)
-        self._requests: dict[Page, _Request] = {}
-        self._controllers: dict[str, _Controller] = {}
 
     def receive(self, page: Page, message: WatchTrajectory | MoveJoints) -> None:
         """Handle a request. A page can move only the joints of the controller that it watches."""
-        if isinstance(message, WatchTrajectory):
-            self._watch(page, message)
+        if not isinstance(message, WatchTrajectory):
+            controller = self.find_watched(page, message.controller)
+            if controller is not None:
+                controller.move(message.positions, message.seconds)
             return
-        request = self._requests.get(page)
-        if request is not None and request.controller == message.controller:
-            self._controllers[message.controller].move(message.positions, message.seconds)
+        controller = self.watch(page, message.controller, wants_list=message.wants_list)
+        if controller is not None:
+            controller.request_state()
 
-    def remove_page(self, page: Page) -> None:
-        """Discard the page's requests, and close what no other page needs."""
-        if self._requests.pop(page, None) is not None:
-            self._update()
+    def create_item(self, name: str) -> _Controller:
+        """Start to follow the joints of a controller."""
+        return _Controller(self.context, name, lambda joints: self.publish(name, joints))
 
-    def close(self) -> None:
-        """Close all subscriptions."""
-        self._requests.clear()
-        self._update()
-
-    def _watch(self, page: Page, message: WatchTrajectory) -> None:
-        name = message.controller
-        self._requests[page] = _Request(message.wants_list, name)
-        if name is not None and name not in self._controllers:
-            self._controllers[name] = _Controller(self.context, name, self._publish)
-        self._update()
-        self._send_lists()
-        if name is not None:
-            self._controllers[name].request_state()
-
-    def _update(self) -> None:
-        requests = self._requests.values()
-        for name in self._controllers.keys() - {request.controller for request in requests}:
-            self._controllers.pop(name).close()
-        if any(request.wants_list for request in requests):
-            self.context.graph_changes.watch(self._send_lists)
-        else:
-            self.context.graph_changes.unwatch(self._send_lists)
-
-    def _publish(self, controller: TrajectoryController) -> None:
-        for page, request in self._requests.items():
-            if request.controller == controller.controller:
-                page.send(controller)
-
-    def _send_lists(self) -> None:
-        topics = self.context.node.graph.topics()
-        controllers = TrajectoryControllers(
+    def make_list(self) -> TrajectoryControllers:
+        """Return the names of the controllers that accept trajectories."""
+        return TrajectoryControllers(
             sorted(
                 name.removesuffix(_TOPIC_SUFFIX)
-                for name, kinds in topics.items()
+                for name, kinds in self.context.node.graph.topics().items()
                 if name.endswith(_TOPIC_SUFFIX) and _TRAJECTORY in kinds
             )
         )
-        for page, request in self._requests.items():
-            if request.wants_list and request.sent != controllers:
-                request.sent = controllers
-                page.send(controllers)
-
-
-@dataclass(slots=True)
-class _Request:
-    wants_list: bool
-    controller: str | None
-    sent: TrajectoryControllers | None = None
 
 
 class _Controller:
