@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.messages import get_message
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.standins.numpy_api.registry import converts_from_numpy, converts_to_numpy
 
 _PointCloud2 = get_message("sensor_msgs/msg/PointCloud2")
@@ -193,7 +194,7 @@ def array_to_point_cloud2(
     if intensity is not None:
         points[_INTENSITY] = intensity
     if stamp is None:
-        seconds, nanoseconds = divmod(time.time_ns(), 1_000_000_000)
+        seconds, nanoseconds = divmod(time.time_ns(), NANOSECONDS_PER_SECOND)
         stamp = get_message("builtin_interfaces/msg/Time")(sec=seconds, nanosec=nanoseconds)
     return array_to_pointcloud2(points, stamp, "base_link" if frame_id is None else frame_id)
 
