@@ -55,7 +55,7 @@ describe("publishers", () => {
     expect(kept).toMatchObject({ topic: "/speed", rate: 5, is_on: false });
   });
 
-  it("ignore a storage that is no list", () => {
+  it("ignore stored values that are not a list", () => {
     expect(new PublishersState(connection, { ...storage, getItem: () => "{" }).publishers).toEqual([]);
   });
 });

@@ -12,7 +12,7 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 
 class WatchedItem(Protocol):
-    """What a feature follows under a name."""
+    """The clients and subscriptions for one name of the list."""
 
     def close(self) -> None:
         """Close all clients and subscriptions."""
