@@ -38,3 +38,31 @@ def test_scene_is_drawn_when_it_is_opened(browser, tmp_path):
     assert page.locator("iframe").count() == 1
     context.close()
     assert errors == []
+
+
+def test_slider_moves_the_border_between_the_labeled_versions(browser, tmp_path):
+    repository = Repository(tmp_path / "repository")
+    repository.commit(PACKAGE)
+    repository.commit(
+        {"arm_description/urdf/arm.urdf.xacro": ARM.replace('parent="middle"', 'parent="middle" length="0.7"')}
+    )
+    path = tmp_path / "review.html"
+    arguments = ["--repository", str(repository.root), "HEAD~1..HEAD", "--html", str(path)]
+    subprocess.run([sys.executable, "-m", "linkwright", "review", *arguments], check=True, capture_output=True)
+    page = browser.new_page(viewport={"width": 1000, "height": 900})
+    page.goto(path.as_uri())
+    slider, versions = page.locator("input[type=range]").first, page.locator(".versions").first
+    shown = versions.evaluate("(box) => [...box.querySelectorAll('span')].map((label) => label.textContent)")
+    assert sorted(shown) == ["after", "before"]
+
+    def clips() -> list[str]:
+        return [
+            versions.locator(f".{name}").evaluate("(part) => getComputedStyle(part).clipPath")
+            for name in ("old", "new")
+        ]
+
+    slider.press("Home")
+    assert clips() == ["inset(0px 100% 0px 0px)", "inset(0px 0px 0px 0%)"]
+    slider.press("End")
+    assert clips() == ["inset(0px 0% 0px 0px)", "inset(0px 0px 0px 100%)"]
+    page.close()

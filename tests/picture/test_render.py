@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from linkwright.picture.bodies import Color
 from linkwright.picture.camera import VIEWS, View
 from linkwright.picture.rendering import Style, render
 from linkwright.picture.robots import GHOST_COLOR, OUTLINE_COLOR
@@ -138,13 +139,31 @@ def test_box_edges_are_drawn_dark() -> None:
     assert row[left : left + 4].min() < 530 < row[100]
 
 
-def test_outline_is_visible_behind_other_links() -> None:
+def count_outline_pixels(view: str, **outlined: Color) -> int:
+    """Return the number of pixels with the full color of the outline."""
+    shown = render(make_scene(two_boxes(RED, BLUE), outlined=outlined), VIEWS[view], (240, 180))
+    distance = np.abs(shown[:, :, :3].astype(int) - [round(value * 255) for value in OUTLINE_COLOR]).max(axis=2)
+    return int((distance < 6).sum())
+
+
+def test_outline_is_faint_behind_other_links() -> None:
     text = two_boxes(RED, BLUE)
     shown = render(make_scene(text, outlined={"other": OUTLINE_COLOR}), VIEWS["iso"], (240, 180))
     plain = render(make_scene(text), VIEWS["iso"], (240, 180))
-    orange = np.abs(shown[:, :, :3].astype(int) - [round(value * 255) for value in OUTLINE_COLOR]).max(axis=2) < 6
-    assert orange.sum() > 150
-    assert not (np.abs(plain[:, :, :3].astype(int) - shown[:, :, :3]).max(axis=2) > 0)[:5].any()
+    changed = np.abs(plain[:, :, :3].astype(int) - shown[:, :, :3]).max(axis=2) > 0
+    assert changed.sum() > 150
+    assert not changed[:5].any()
+    hidden, in_front = (count_outline_pixels("front", **{name: OUTLINE_COLOR}) for name in ("other", "base"))
+    assert hidden == 0
+    assert in_front > 150
+
+
+def test_view_from_above_has_no_shadow_on_the_ground() -> None:
+    tall = urdf(link("base", '<box size="0.1 0.1 3"/>', RED, "0 0 1.5"))
+    image = render_image(tall, "top", (120, 90), transparent=True)
+    alpha = image[:, :, 3]
+    assert set(np.unique(alpha[:, :15])) == {0}
+    assert alpha[45, 60] == 255
 
 
 def test_ghost_is_translucent_without_shadow() -> None:

@@ -53,6 +53,11 @@ def test_world_with_same_appearance_has_no_images(render_images):
     assert render_images("w/worlds/w.sdf", world_text(FIXED), world_text(FIXED, step=0.002)) == []
 
 
+def test_model_that_only_has_another_name_is_not_shown(render_images):
+    old, new = (world_text(FIXED, BOX.format(name=name, x=3)) for name in ("old_name", "new_name"))
+    assert render_images("w/worlds/w.sdf", old, new) == []
+
+
 def test_changed_mesh_is_shown(render_images):
     images = render_images("w/meshes/m.stl", make_stl(1.0), make_stl(2.0))
     assert len(images) == 4

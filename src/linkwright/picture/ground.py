@@ -34,6 +34,8 @@ _AXIS_COLORS: tuple[Color, Color] = ((0.80, 0.20, 0.18), (0.22, 0.60, 0.22))
 """The colors of the lines along x and along y through the origin."""
 _MIN_ELEVATION_SINE = 0.06
 """The minimum sine of the camera's elevation at which the ground is drawn."""
+_MIN_SINE_FROM_ABOVE = 0.985
+"""The minimum sine of the camera's elevation at which it counts as above the scene."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -114,6 +116,14 @@ def _blur(mask: NDArray[np.bool_], reach: int) -> Floats:
 def is_ground_visible(camera: Camera) -> bool:
     """Return whether the camera looks at the ground from above."""
     return camera.toward[2] >= _MIN_ELEVATION_SINE
+
+
+def is_from_above(camera: Camera) -> bool:
+    """Return whether the camera looks straight down.
+
+    The shadow of a tall body on the ground would then be larger than the body, and look like a part of it.
+    """
+    return camera.toward[2] >= _MIN_SINE_FROM_ABOVE
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,26 +13,37 @@ from linkwright.picture.vectors import Floats
 _WIDTH_PIXELS = 2.2
 """The width of an outline in pixels."""
 _TINT = np.float32(0.20)
-"""The strength with which the outline's color tints the body."""
+"""The strength with which the outline's color tints the visible parts of the body."""
+_HIDDEN_STRENGTH = np.float32(0.40)
+"""The opacity of the line around parts that other bodies hide."""
 
 
-def draw_outline(light: Floats, alpha: Floats, mask: NDArray[np.bool_], color: Color, per_pixel: int) -> None:
-    """Draw a line around a mask, and tint the area inside.
+def draw_outline(
+    light: Floats, alpha: Floats, mask: NDArray[np.bool_], is_visible: NDArray[np.bool_], color: Color, per_pixel: int
+) -> None:
+    """Draw a line around a body, and tint the area inside.
+
+    Where other bodies hide it, the line is faint, and nothing is tinted, so that it does not look like a part in front.
 
     Args:
         light: the light of samples multiplied by their opacity, shape (rows, width, 3), which is changed.
         alpha: the opacity of samples, shape (rows, width), which is changed.
         mask: the samples of the body, shape (rows, width).
+        is_visible: the samples at which nothing hides the body, shape (rows, width).
         color: the color of the line.
         per_pixel: the samples per pixel along a row.
     """
     reach = max(1, round(_WIDTH_PIXELS * per_pixel))
     line = _dilate(mask, reach) & ~mask
+    visible_line = line & _dilate(is_visible, reach)
+    hidden_line = line & ~visible_line
     paint = np.array(color, np.float32)
     paint *= paint
-    light[mask] = light[mask] * (1 - _TINT) + paint * (alpha[mask] * _TINT)[:, None]
-    light[line] = paint
-    alpha[line] = 1.0
+    light[is_visible] = light[is_visible] * (1 - _TINT) + paint * (alpha[is_visible] * _TINT)[:, None]
+    light[visible_line] = paint
+    alpha[visible_line] = 1.0
+    light[hidden_line] = light[hidden_line] * (1 - _HIDDEN_STRENGTH) + paint * _HIDDEN_STRENGTH
+    alpha[hidden_line] = alpha[hidden_line] * (1 - _HIDDEN_STRENGTH) + _HIDDEN_STRENGTH
 
 
 def _dilate(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:

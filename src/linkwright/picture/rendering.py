@@ -11,7 +11,13 @@ from numpy.typing import NDArray
 from linkwright.picture.camera import VIEWS, Camera, View
 from linkwright.picture.cast_shadows import CastShadows
 from linkwright.picture.edges import compute_edge_strength
-from linkwright.picture.ground import GroundGrid, compute_ground_points, compute_shadow_map, is_ground_visible
+from linkwright.picture.ground import (
+    GroundGrid,
+    compute_ground_points,
+    compute_shadow_map,
+    is_from_above,
+    is_ground_visible,
+)
 from linkwright.picture.labels import draw_labels
 from linkwright.picture.occlusion import compute_ambient_light, compute_occlusion_reach
 from linkwright.picture.outlines import draw_outline
@@ -93,7 +99,7 @@ class _Renderer:
         self._shader = Shader(mesh, self._screen, lights)
         self._cast = CastShadows(mesh, lights.key) if len(mesh.solid) else None
         is_on_ground = is_ground_visible(camera)
-        self._shadow = compute_shadow_map(mesh, lights.key) if is_on_ground else None
+        self._shadow = None if not is_on_ground or is_from_above(camera) else compute_shadow_map(mesh, lights.key)
         self._grid = GroundGrid.around(scene.points) if style.grid and is_on_ground else None
         self._anchors = {None: (), "links": scene.labels.links, "joints": scene.labels.joints}[style.labels]
         numbers = {id(body): index for index, body in enumerate(dict.fromkeys(mesh.bodies))}
@@ -144,7 +150,9 @@ class _Renderer:
         for color, triangles in mesh.outlined_triangles().items():
             layer = opaque.make_empty_copy()
             layer.add(self._screen, triangles)
-            draw_outline(light, alpha, (layer.keys != NOTHING).reshape(alpha.shape), color, scale)
+            mask = (layer.keys != NOTHING).reshape(alpha.shape)
+            is_visible = mask & (layer.keys <= opaque.keys).reshape(alpha.shape)
+            draw_outline(light, alpha, mask, is_visible, color, scale)
         return _filter_samples(light, scale), _filter_samples(alpha, scale)
 
     def _peel(self, transparent: Indices, opaque: DepthBuffer) -> list[DepthBuffer]:

@@ -18,15 +18,18 @@ _LENGTH_TOLERANCE = 1e-4
 
 
 def compare_quantity(name: Phrase, unit: str, old: object, new: object) -> Iterator[Figure]:
-    """Yield a quantity if it differs by more than the tolerance."""
+    """Yield a quantity if it differs by more than the tolerance.
+
+    Quantities without a unit are counts.
+    """
     if old is None or new is None:
         return
     values = np.atleast_1d(np.asarray(old, float)), np.atleast_1d(np.asarray(new, float))
     tolerance = _LENGTH_TOLERANCE if unit == "m" else 0.0
     if not np.allclose(*values, rtol=_RELATIVE_TOLERANCE, atol=tolerance):
+        formats = [f".{digits}g" for digits in _DIGITS] if unit else [".0f"]
         texts = [
-            tuple(" x ".join(f"{number:.{digits}g}" for number in quantity) for quantity in values)
-            for digits in _DIGITS
+            tuple(" x ".join(format(number, form) for number in quantity) for quantity in values) for form in formats
         ]
         old_text, new_text = next((pair for pair in texts if pair[0] != pair[1]), texts[-1])
         yield Figure(name, old_text, new_text, unit)

@@ -18,12 +18,14 @@ from linkwright.picture import OUTLINE_COLOR, VIEWS, Scene, SurfaceLibrary, came
 from linkwright.picture.link_frames import placement_from_pose
 from linkwright.review.changes import ViewImages
 from linkwright.review.frames import SharedFrames
-from linkwright.urdf import Mesh, Robot, Visual
+from linkwright.urdf import Material, Mesh, Robot, Visual
 
 Array = NDArray[np.float64]
 
 _SIZE = (480, 360)
 _COLLISION_VIEWS = ("iso", "front")
+_COLLISION_MATERIAL = Material("", (0.62, 0.67, 0.74, 1.0))
+"""The material of collision shapes: without a hue, so that the outlines of changed ones can be told from it."""
 _POSE_PROPERTIES = ("origin xyz", "origin rpy")
 """The name endings of pose properties. Poses are compared as seen in the image."""
 _MOTION_TOLERANCE = 1e-5
@@ -111,7 +113,10 @@ def _show_collisions(robot: Robot) -> Robot:
     links = {
         name: replace(
             link,
-            visuals=tuple(Visual(shape.geometry, shape.origin, element=shape.element) for shape in link.collisions),
+            visuals=tuple(
+                Visual(shape.geometry, shape.origin, material=_COLLISION_MATERIAL, element=shape.element)
+                for shape in link.collisions
+            ),
         )
         for name, link in robot.links.items()
     }

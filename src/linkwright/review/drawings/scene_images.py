@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -121,13 +121,27 @@ def _render_pair(old: Scene, new: Scene, *, has_outlines: bool = True) -> list[V
 
 
 def _find_changed_bodies(scene: Scene, other: Scene) -> list[Body]:
-    """Return the links of a scene that are missing, moved or look different in the other scene."""
+    """Return the links of a scene that are missing, moved or look different in the other scene.
+
+    A link that only has another name is not changed.
+    """
     other_bodies = {body.name: body for body in other.bodies}
-    return [
-        body
-        for body in scene.bodies
-        if body.name not in other_bodies or not _are_equal_bodies(body, other_bodies[body.name])
-    ]
+    names = {body.name for body in scene.bodies}
+    others_by_place: dict[Hashable, list[Body]] = {}
+    for body in other.bodies:
+        if body.name not in names:
+            others_by_place.setdefault(_make_place_key(body), []).append(body)
+
+    def is_changed(body: Body) -> bool:
+        if body.name in other_bodies:
+            return not _are_equal_bodies(body, other_bodies[body.name])
+        return not any(_are_equal_bodies(body, same) for same in others_by_place.get(_make_place_key(body), ()))
+
+    return [body for body in scene.bodies if is_changed(body)]
+
+
+def _make_place_key(body: Body) -> Hashable:
+    return body.frame.position, len(body.surfaces)
 
 
 def _are_equal_bodies(body: Body, other: Body) -> bool:

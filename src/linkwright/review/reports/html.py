@@ -17,6 +17,7 @@ from linkwright.review.reports.sections import (
     format_alike,
     format_cases,
     format_change,
+    format_location,
     format_paths,
     format_repeated,
     format_summary,
@@ -43,10 +44,16 @@ ul { padding-left: 20px; } li { margin: 2px 0; }
 .images { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 12px; margin: 12px 0; }
 figure { margin: 0; } figcaption { color: var(--soft); }
 .versions { position: relative; background: #fff; border: 1px solid var(--line); border-radius: 6px; overflow: hidden; }
-.versions img { display: block; width: 100%; } .versions img + img { position: absolute; inset: 0; }
+.versions img { display: block; width: 100%; } .versions div { position: absolute; inset: 0; }
+.versions .old { clip-path: inset(0 calc(100% - var(--share, 50%)) 0 0); }
 .versions .new { clip-path: inset(0 0 0 var(--share, 50%)); }
+.versions:not(.single)::after { content: ""; position: absolute; width: 2px; background: #5c6a7d;
+  inset: 0 auto 0 calc(var(--share, 50%) - 1px); }
+.versions span { position: absolute; top: 6px; padding: 0 8px; border-radius: 9px; background: #1d2733cc; color: #fff;
+  font-size: 12px; }
+.versions .old span, .single span { left: 8px; } .versions .new span { right: 8px; }
 input[type=range] { width: 100%; margin: 4px 0 0; }
-figcaption { display: flex; justify-content: space-between; }
+figcaption { text-align: center; }
 @media (max-width: 600px) { main { padding: 12px 12px 40px; } .images { grid-template-columns: 1fr; } }
 """
 
@@ -92,16 +99,17 @@ def _render_other_file(path: str, state: Phrase | None) -> str:
 
 def _render_breaking_changes(review: Review) -> Iterator[str]:
     subjects = {subject.path: subject for subject in review.subjects}
-    items = [
-        f"{_render_change(change, subjects[paths[0]])} <code>{_escape_text(format_paths(paths))}</code>"
-        for paths, change in merge_breaking_changes(review)
-    ]
+    items = []
+    for paths, change in merge_breaking_changes(review):
+        line = f":{change.location.line}" if change.location is not None and [change.location.file] == paths else ""
+        place = f"{localized(format_paths(paths))}{line}"
+        items.append(f"{_render_change(change, subjects[paths[0]])} <code class='soft'>{escape(place)}</code>")
     yield from _render_list(phrase("Breaking changes"), items)
 
 
 def _render_section(section: Section, scenes: Scenes) -> str:
     subject = section.subject
-    items = [_render_change(change, subject) for change in section.changes]
+    items = [_render_change(change, subject) + _render_place(change, subject) for change in section.changes]
     items += [_escape_text(format_repeated(path, count)) for path, count in section.repeated]
     alike = format_alike(section)
     items += [] if alike is None else [_escape_text(alike)]
@@ -123,9 +131,13 @@ def _render_change(change: Change, subject: Subject) -> str:
     cases = format_cases(change, subject)
     if cases is not None:
         text += f" <span class='soft' title='{escape(', '.join(change.cases))}'>{_escape_text(cases)}</span>"
-    if change.location is not None:
-        text += f" <code class='soft'>{escape(change.location.file)}:{change.location.line}</code>"
     return text
+
+
+def _render_place(change: Change, subject: Subject) -> str:
+    if change.location is None:
+        return ""
+    return f" <code class='soft'>{_escape_text(format_location(change.location, subject.path))}</code>"
 
 
 def _render_figures(figures: Sequence[Figure]) -> str:
@@ -150,17 +162,20 @@ def _render_images(images: Sequence[ViewImages]) -> str:
 def _render_image(view: ViewImages) -> str:
     """Return a view of both versions.
 
-    A slider moves the border between the old version (left) and the new version.
+    A slider moves the border between the old version, which is left of it, and the new version. A label on each half
+    says which one it is.
     """
     if not view.old or not view.new:
         return _render_single_image(view)
     old, new = (f"data:image/png;base64,{b64encode(image).decode()}" for image in (view.old, view.new))
     label = escape(localized(phrase("old and new version, {view} view", view=view.name)))
+    border = escape(localized(phrase("border between the old and the new version, {view} view", view=view.name)))
     return (
-        f"<figure><div class='versions'><img src='{old}' alt='{label}'><img class='new' src='{new}' alt=''></div>"
-        f"<input type='range' min='0' max='100' value='50' aria-label='{label}'>"
-        f"<figcaption><span>{_escape_text(phrase('before'))}</span><span>{escape(view.name)}</span>"
-        f"<span>{_escape_text(phrase('after'))}</span></figcaption></figure>"
+        f"<figure><div class='versions'><img src='{old}' alt='{label}'><div class='new'><img src='{new}' alt=''>"
+        f"<span>{_escape_text(phrase('after'))}</span></div>"
+        f"<div class='old'><span>{_escape_text(phrase('before'))}</span></div></div>"
+        f"<input type='range' min='0' max='100' value='50' aria-label='{border}'>"
+        f"<figcaption>{escape(view.name)}</figcaption></figure>"
     )
 
 
@@ -170,8 +185,8 @@ def _render_single_image(view: ViewImages) -> str:
     version = phrase("before") if view.old else phrase("after")
     label = escape(localized(phrase("{view} view", view=view.name)))
     return (
-        f"<figure><img src='data:image/png;base64,{image}' alt='{label}'>"
-        f"<figcaption><span>{_escape_text(version)}</span><span>{escape(view.name)}</span></figcaption></figure>"
+        f"<figure><div class='versions single'><img src='data:image/png;base64,{image}' alt='{label}'>"
+        f"<span>{_escape_text(version)}</span></div><figcaption>{escape(view.name)}</figcaption></figure>"
     )
 
 

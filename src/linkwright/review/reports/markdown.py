@@ -8,13 +8,14 @@ from collections.abc import Iterator, Sequence
 from linkwright.diagnostics import Diagnostic, Phrase, counted, phrase
 from linkwright.diagnostics.render import make_printable
 from linkwright.diagnostics.translation import localized
-from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject
+from linkwright.review.changes import Change, Effect, Figure, Review, Subject
 from linkwright.review.reports.sections import (
     Section,
     divide_report,
     format_alike,
     format_cases,
     format_change,
+    format_location,
     format_paths,
     format_repeated,
     format_summary,
@@ -118,12 +119,9 @@ def _format_section(section: Section) -> str:
 
 def _format_change(change: Change, subject: Subject) -> str:
     cases = format_cases(change, subject)
-    location = "" if change.location is None else f" ({_format_code(_format_location(change.location))})"
+    place = None if change.location is None else format_location(change.location, subject.path)
+    location = "" if place is None else f" ({_escape(place) if isinstance(place, Phrase) else _format_code(place)})"
     return f"- {_escape(format_change(change))}{'' if cases is None else ' ' + _escape(cases)}{location}"
-
-
-def _format_location(location: Location) -> str:
-    return f"{location.file}:{location.line}"
 
 
 def _format_figures(figures: Sequence[Figure]) -> list[str]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 from linkwright.diagnostics import Diagnostic, Phrase, counted, joined_first, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.review.changes import Change, Effect, Review, Subject
+from linkwright.review.changes import Change, Effect, Location, Review, Subject
 from linkwright.review.other_files import group_files
 
 _MAX_NAMES = 24
@@ -229,6 +229,13 @@ def _add_count(text: Phrase, count: int) -> Phrase:
 def format_paths(paths: Sequence[str]) -> Phrase:
     """Return paths in one line, with the number of the remaining ones."""
     return joined_first(paths, _MAX_PATHS)
+
+
+def format_location(location: Location, path: str) -> Phrase | str:
+    """Return a place as the line of a file, or with its path if it is in another file than `path`."""
+    if location.file == path:
+        return phrase("line {line}", line=location.line)
+    return f"{location.file}:{location.line}"
 
 
 def format_alike(section: Section) -> Phrase | None:
