@@ -259,10 +259,10 @@ def test_real_time_world_publishes_judge_status(tmp_path):
         assert json.loads(status.last.data)["time"] < 0.5
 
 
-_SEED_OF_BLUE = 2
+_SEED_OF_BLUE = 3
 WRONG_PICKS = {
     "a fixed color": ("color, place_x, place_y = order.split()", "color, (_, place_x, place_y) = 'red', order.split()"),
-    "a fixed place": ("float(place_x), float(place_y)", "0.53, 0.1"),
+    "a fixed place": ("float(place_x), float(place_y)", "0.63, -0.02"),
     "no release": ("GRASP + 0.004, straight=True)\n        self.grip(OPEN)", "GRASP + 0.004, straight=True)"),
     "a grip in the air": ("GRASP, ABOVE = TABLE + 0.032", "GRASP, ABOVE = TABLE + 0.09"),
 }

@@ -11,9 +11,10 @@ from linkwright.messages import String
 TABLE, BLOCK, MASS = 0.3, 0.04, 0.06  # m, m, kg
 COLORS = {"red": RED, "green": GREEN, "blue": BLUE, "yellow": YELLOW}
 CHINESE = {"red": "红色", "green": "绿色", "blue": "蓝色", "yellow": "黄色"}
-BLOCKS = (0.53, -0.22), (0.66, 0.22)  # m: where blocks lie at the start
-PLACES = (0.53, -0.3), (0.66, 0.3)  # m: where they are ordered to
-GAP = 0.12  # m between the middles of two blocks or places
+BLOCKS = (0.53, -0.27), (0.61, 0.27)  # m: where blocks lie at the start; farther away, the fingers hide them
+PLACES = (0.53, -0.3), (0.64, 0.3)  # m: where they are ordered to
+GAP = 0.11  # m between the middles of two blocks or places
+TRIES = 100
 TOLERANCE = 0.03  # m
 WRONG_BLOCK_COST = 20.0
 STEP, REST = 0.02, 0.4  # s
@@ -32,26 +33,31 @@ class PickPlace(Judge):
     PUBLISHED = (("/order", "std_msgs/msg/String"),)
 
     def arrange(self, scene):
-        self.starts = {color: self.choose(BLOCKS) for color in self.begin_choosing()}
+        places = None
+        while places is None:
+            places = self.choose_places()
+        self.starts = dict(zip(COLORS, places, strict=False))
         for color, (x, y) in self.starts.items():
             yaw = self.random.uniform(-0.7, 0.7)
             size = (BLOCK, BLOCK, BLOCK)
             scene.add_box(color, (x, y, TABLE + BLOCK / 2), size, COLORS[color], yaw=yaw, mass=MASS)
         colors = self.random.permutation(list(COLORS))[:2]
-        self.orders = [Order(str(color), self.choose(PLACES)) for color in colors]
+        self.orders = [
+            Order(str(color), place) for color, place in zip(colors, places[len(COLORS) :], strict=True)
+        ]
 
-    def begin_choosing(self):
-        """Return the colors, and forget the places that were chosen."""
-        self.chosen = []
-        return COLORS
-
-    def choose(self, corners):
-        """Return a place between two corners that is free, in whole millimeters."""
-        while True:
-            place = tuple(round(float(value), 3) for value in self.random.uniform(*corners))
-            if all(math.dist(place, other) > GAP for other in self.chosen):
-                self.chosen.append(place)
-                return place
+    def choose_places(self):
+        """Return places for the blocks and for the orders, or None if the first ones leave no room for others."""
+        chosen = []
+        for corners in (*[BLOCKS] * len(COLORS), PLACES, PLACES):
+            for _ in range(TRIES):
+                place = tuple(round(float(value), 3) for value in self.random.uniform(*corners))
+                if all(math.dist(place, other) > GAP for other in chosen):
+                    chosen.append(place)
+                    break
+            else:
+                return None
+        return chosen
 
     def start(self):
         self.number = 0
