@@ -42,9 +42,7 @@ class PickPlace(Judge):
             size = (BLOCK, BLOCK, BLOCK)
             scene.add_box(color, (x, y, TABLE + BLOCK / 2), size, COLORS[color], yaw=yaw, mass=MASS)
         colors = self.random.permutation(list(COLORS))[:2]
-        self.orders = [
-            Order(str(color), place) for color, place in zip(colors, places[len(COLORS) :], strict=True)
-        ]
+        self.orders = [Order(str(color), place) for color, place in zip(colors, places[len(COLORS) :], strict=True)]
 
     def choose_places(self):
         """Return places for the blocks and for the orders, or None if the first ones leave no room for others."""

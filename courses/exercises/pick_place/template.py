@@ -13,10 +13,10 @@ from std_msgs.msg import String
 
 class PickPlace(Node):
     def __init__(self):
-        super().__init__('pick_place')
-        self.motions = ActionClient(self, MoveGroup, 'move_action')
-        self.gripper = ActionClient(self, GripperCommand, 'gripper_controller/gripper_cmd')
-        self.create_subscription(String, 'order', self.on_order, 10)
+        super().__init__("pick_place")
+        self.motions = ActionClient(self, MoveGroup, "move_action")
+        self.gripper = ActionClient(self, GripperCommand, "gripper_controller/gripper_cmd")
+        self.create_subscription(String, "order", self.on_order, 10)
 
     def on_order(self, order):
         pass  # order.data is the color, x and y, such as 'red 0.620 0.300'
@@ -27,5 +27,5 @@ def main():
     rclpy.spin(PickPlace())
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     main()
