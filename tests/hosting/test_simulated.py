@@ -14,7 +14,7 @@ from linkwright.descriptions import examine
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
 from linkwright.hosting.sensor_topics import find_image_topics, find_scan_topics
-from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
+from linkwright.hosting.simulated import PlannedNode, SimulatedView, SimulatedWorld
 from linkwright.messages import get_service
 from linkwright.packages import PackageFinder
 from linkwright.testing import Recording
@@ -51,6 +51,19 @@ async def test_headless_robot_publishes_odometry_joint_states_and_tf():
         name: len(recording) for name, recording in recordings.items()
     }
     assert recordings["/joint_states"].last.header.stamp.sec >= 1
+
+
+async def test_nodes_of_a_world_run_beside_the_simulator():
+    node = PlannedNode("tf2_ros", "static_transform_publisher", {}, ("--frame-id", "here", "--child-frame-id", "there"))
+    view = SimulatedView(
+        replace(simulate_mbot(), nodes=(node,)),
+        PackageFinder(start=MBOT.parent),
+        OPTIONS,
+        LaunchLog(io.StringIO(), err := io.StringIO()),
+    )
+    frames = Recording(view.host.graph, view.host.graph.create_node("listener"), "/tf_static", "tf2_msgs/msg/TFMessage")
+    assert await view.run(None), err.getvalue()
+    assert "there" in {transform.child_frame_id for message in frames for transform in message.transforms}
 
 
 async def test_viewer_uses_world_frame_and_simulated_time():

@@ -5,6 +5,7 @@ Their judges are fair, their solutions score as they should, and results repeat.
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -17,6 +18,8 @@ import pytest
 
 from linkwright.cli.entry import main
 from linkwright.diagnostics import LinkwrightError
+from linkwright.learning.judging import Scene
+from linkwright.learning.judging.companions import plan_companions
 from linkwright.learning.judging.exercise import Figure, find_exercise, list_exercise_names, load_exercise
 from linkwright.learning.judging.runs import RunResult, judge_program
 from linkwright.learning.judging.world import create_judge, write_world
@@ -254,6 +257,60 @@ def test_real_time_world_publishes_judge_status(tmp_path):
         test.reset()
         test.advance(0.4)
         assert json.loads(status.last.data)["time"] < 0.5
+
+
+_SEED_OF_BLUE = 3
+WRONG_PICKS = {
+    "a fixed color": ("color, place_x, place_y = order.split()", "color, (_, place_x, place_y) = 'red', order.split()"),
+    "a fixed place": ("float(place_x), float(place_y)", "0.63, -0.02"),
+    "no release": ("GRASP + 0.004, straight=True)\n        self.grip(OPEN)", "GRASP + 0.004, straight=True)"),
+    "a grip in the air": ("GRASP, ABOVE = TABLE + 0.032", "GRASP, ABOVE = TABLE + 0.09"),
+}
+REASONS = {
+    "a fixed color": "the robot moved the red block, but the order was for the",
+    "a fixed place": "m from its place",
+    "no release": "the block is still in the air",
+    "a grip in the air": "the block is still where it was",
+}
+
+
+@pytest.mark.slow
+@pytest.mark.extra("arm")
+@pytest.mark.parametrize("name", WRONG_PICKS)
+def test_wrong_pick_is_told_what_is_wrong(tmp_path, name):
+    exercise = find_exercise("pick_place")
+    text, (old, new) = exercise.solution("simple").read_text(encoding="utf-8"), WRONG_PICKS[name]
+    assert text.count(old) == 1
+    program = tmp_path / "wrong.py"
+    program.write_text(text.replace(old, new), encoding="utf-8")
+    judge = create_judge(exercise, _SEED_OF_BLUE)
+    judge.arrange(Scene())
+    assert judge.orders[0].color == "blue"
+    (result,) = judge_program(exercise, program, [_SEED_OF_BLUE])
+    assert result.error is None
+    assert result.score == 0.0
+    assert REASONS[name] in " ".join(reason["en"] for reason in result.data["reasons"])
+
+
+def test_nodes_of_an_exercise_get_its_robot_and_their_moveit_files(tmp_path):
+    exercise = find_exercise("pick_place")
+    arrangement = write_world(exercise, 0, tmp_path, publishes=False)
+    spawner, move_group = plan_companions(exercise, arrangement.robot)
+    assert spawner.arguments[-1] == "gripper_controller"
+    assert spawner.parameters == {"use_sim_time": True}
+    assert move_group.parameters["robot_description"] == arrangement.robot.read_text(encoding="utf-8")
+    assert 'group name="arm"' in move_group.parameters["robot_description_semantic"]
+    assert move_group.parameters["use_sim_time"] is True
+
+
+def test_unknown_node_of_an_exercise_is_reported(tmp_path):
+    folder = tmp_path / "copy"
+    shutil.copytree(find_exercise(FAST_EXERCISES).folder, folder)
+    with (folder / "exercise.toml").open("a", encoding="utf-8") as file:
+        file.write('\n[[nodes]]\npackage = "no_package"\nexecutable = "no_node"\n')
+    exercise = load_exercise(folder)
+    with pytest.raises(LinkwrightError, match="there is no node 'no_package/no_node'"):
+        list(judge_program(exercise, exercise.template, [0]))
 
 
 def test_points_between_figures_are_linear():

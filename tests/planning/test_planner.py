@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import inf, pi
-from time import perf_counter
+from time import perf_counter, sleep
 
 import numpy as np
 import pytest
@@ -12,6 +12,7 @@ import pytest
 from linkwright.geometry.arrays import quaternion_from_rpy
 from linkwright.geometry.shapes import Box, Sphere
 from linkwright.planning.collision_scene import CollisionScene, SceneObject
+from linkwright.planning.effort import counted_effort
 from linkwright.planning.goals import Goal, JointTarget, LinkTarget
 from linkwright.planning.library import load_ompl
 from linkwright.planning.planner import Failure, Method, MotionPlanner, PlanError, PlanRequest
@@ -70,6 +71,25 @@ class TestSampling:
         assert is_free(trajectory, WALL)
         assert np.all(np.abs(trajectory.velocities) <= arm().group.max_velocities)
         assert np.all(np.abs(trajectory.accelerations) <= arm().group.max_accelerations)
+
+    def test_counted_effort_repeats_a_plan_exactly(self) -> None:
+        plans = []
+        for pause_s in (0.0, 0.0005):  # A slower computer finds the same plan.
+
+            def is_canceled(pause_s: float = pause_s) -> bool:
+                sleep(pause_s)
+                return False
+
+            planner = MotionPlanner(arm().model, scene(WALL), is_canceled)
+            with counted_effort():
+                plans.append(planner.plan(request(joint_goal(**RIGHT), timeout_s=1.0)))
+        np.testing.assert_array_equal(plans[0].positions, plans[1].positions)
+        np.testing.assert_array_equal(plans[0].times, plans[1].times)
+
+    def test_counted_effort_ends_a_search_without_a_path(self) -> None:
+        with counted_effort(), pytest.raises(PlanError) as caught:
+            plan(request(joint_goal(**RIGHT), timeout_s=0.2), *WALLS)
+        assert caught.value.failure is Failure.PLANNING_FAILED
 
     def test_fingers_with_a_short_range_are_planned_for(self) -> None:
         positions = arm().positions(**LEFT)

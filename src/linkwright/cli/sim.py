@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,6 +21,7 @@ from linkwright.cli.view import add_viewer_options, find_terminal_folder
 from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
+    from linkwright.hosting.simulated import PlannedNode
     from linkwright.viewer import Viewer
 
 
@@ -44,12 +45,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_viewer_options(parser)
 
 
-def run(arguments: argparse.Namespace, viewer_started: Callable[[Viewer], object] | None = None) -> int:
+def run(
+    arguments: argparse.Namespace,
+    viewer_started: Callable[[Viewer], object] | None = None,
+    nodes: Sequence[PlannedNode] = (),
+) -> int:
     """Simulate until the user interrupts the command.
 
     Args:
         arguments: the arguments of the command.
         viewer_started: called with the viewer after its start; None if no call is needed.
+        nodes: the nodes to run beside the simulator.
 
     Returns:
         The exit status, which is 1 if the world or the robot has errors.
@@ -77,6 +83,7 @@ def run(arguments: argparse.Namespace, viewer_started: Callable[[Viewer], object
         paused=arguments.pause,
         headless=arguments.headless,
         gazebo_mistakes=arguments.gazebo_mistakes,
+        nodes=tuple(nodes),
     )
     if arguments.robot is not None:
         values = parse_assignments(arguments.values)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -47,6 +47,23 @@ def _complete_description(description: Description, inference: Inference) -> str
 
 
 @dataclass(frozen=True, slots=True)
+class PlannedNode:
+    """A node to run beside a simulated world.
+
+    Attributes:
+        package: the package of the node.
+        executable: the name of its executable.
+        parameters: the values of the parameters by name.
+        arguments: the command line without the name of the program.
+    """
+
+    package: str
+    executable: str
+    parameters: Mapping[str, Any]
+    arguments: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class SimulatedWorld:
     """A world to simulate, and the robot or model in it.
 
@@ -66,6 +83,7 @@ class SimulatedWorld:
         gazebo_mistakes: whether plugins reproduce known bugs of Gazebo.
         particles_topic: the topic of the particles of emitters; empty for none.
         arguments: the names and values of the robot's xacro arguments.
+        nodes: the nodes to run beside the simulator.
         complete: returns the text to simulate, for a description that was read again after the robot's file was saved.
     """
 
@@ -84,6 +102,7 @@ class SimulatedWorld:
     gazebo_mistakes: bool = False
     particles_topic: str = ""
     arguments: tuple[tuple[str, str], ...] = ()
+    nodes: tuple[PlannedNode, ...] = ()
     complete: Callable[[Description], str] = _to_text
 
     @classmethod
@@ -194,6 +213,8 @@ class SimulatedView(ModelView):
 
     def _plan_other_nodes(self) -> None:
         self._plan_node(*_SIMULATOR_NODE, self._world.parameters, output="screen", waits_for_fix=False)
+        for node in self._world.nodes:
+            self._plan_node(node.package, node.executable, dict(node.parameters), arguments=node.arguments)
         if not self._world.headless:
             self._plan_node(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._create_viewer_config)
 

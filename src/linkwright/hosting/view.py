@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import re
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import count
@@ -287,6 +287,7 @@ class ModelView:
         output: str = "log",
         waits_for_fix: bool = True,
         owner: object = None,
+        arguments: Sequence[str] = (),
     ) -> None:
         config_path = self.options.rviz
         if viewer_config is not None and config_path is not None:
@@ -299,6 +300,7 @@ class ModelView:
             name,
             "/",
             parameters or {},
+            arguments=list(arguments),
             viewer_config=viewer_config,
             viewer_started=viewer_started,
             destinations=output_destinations(output),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from time import perf_counter
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from linkwright.geometry.arrays import (
 )
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.planning.effort import ATTEMPT_S, elapsed_s, spend
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
 from linkwright.planning.robot_model import PlacedShape, RobotModel
@@ -160,13 +160,14 @@ def goal_configurations(
     random = np.random.default_rng(seed)
     model.move(start)
     current = model.link_pose(target.link)
-    deadline = perf_counter() + timeout_s
+    deadline = elapsed_s() + timeout_s
     found: list[Array] = []
     attempt: np.random.Generator | None = None
     origin = positions
-    while len(found) < _MAX_GOALS and (remaining := deadline - perf_counter()) > 0.0 and not is_canceled():
+    while len(found) < _MAX_GOALS and (remaining := deadline - elapsed_s()) > 0.0 and not is_canceled():
         pose = target.sample(attempt, current)
         solution = solver.solve(pose, origin, min(remaining, 0.05), is_valid)
+        spend(ATTEMPT_S)
         attempt = random
         origin = start.copy()
         origin[solver.indexes] = group.sample(random)

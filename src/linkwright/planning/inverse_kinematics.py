@@ -8,11 +8,11 @@ singularities and large near the solution.
 from __future__ import annotations
 
 from collections.abc import Callable
-from time import perf_counter
 
 import numpy as np
 
 from linkwright.geometry.arrays import Array
+from linkwright.planning.effort import ATTEMPT_S, elapsed_s, spend
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.robot_model import RobotModel
 from linkwright.simulation.library import load_mujoco
@@ -66,7 +66,7 @@ class ChainSolver:
             timeout_s: the time after which no new attempt starts.
             is_valid: returns whether a solution is acceptable, such as free of collisions.
         """
-        deadline = perf_counter() + timeout_s
+        deadline = elapsed_s() + timeout_s
         target_quaternion = np.array((target[6], *target[3:6]))
         positions = start.copy()
         while True:
@@ -74,7 +74,8 @@ class ChainSolver:
                 positions[self.indexes] = self._group.unwind(positions[self.indexes], start[self.indexes])
                 if is_valid is None or is_valid(positions):
                     return positions
-            if perf_counter() >= deadline:
+            spend(ATTEMPT_S)
+            if elapsed_s() >= deadline:
                 return None
             positions[self.indexes] = self._group.sample(self._random)
 

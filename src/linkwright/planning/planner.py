@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from itertools import islice, pairwise
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.planning.cartesian import ArcError, ArcPoint, arc_poses, follow_poses, line_poses
 from linkwright.planning.collision_scene import CollisionScene, Contact
+from linkwright.planning.effort import elapsed_s
 from linkwright.planning.goals import Goal, goal_configurations
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
@@ -158,7 +158,7 @@ class MotionPlanner:
         Raises:
             PlanError: there is no plan.
         """
-        deadline = perf_counter() + request.timeout_s
+        deadline = elapsed_s() + request.timeout_s
         indexes = np.array([self._model.index(name) for name in request.group.joint_names])
         start = self._checked_start(request, indexes)
 
@@ -170,7 +170,7 @@ class MotionPlanner:
             trajectory = self._find_free_trajectory(request, start, path)
             if trajectory is not None:
                 return Plan(start, path, trajectory)
-            if request.method is not Method.SAMPLING or perf_counter() >= deadline:
+            if request.method is not Method.SAMPLING or elapsed_s() >= deadline:
                 break
         self._stop_if_canceled()
         raise PlanError(Failure.PLANNING_FAILED, reason=_explain_turns(request.group, start[indexes], goals, indexes))
@@ -334,7 +334,7 @@ class MotionPlanner:
         if request.method is Method.JOINT_LINE:
             path = np.array((start[indexes], min(ends, key=lambda end: float(np.linalg.norm(end - start[indexes])))))
             return path if problem.is_path_free(path, _CHECK_STEP) else None
-        return problem.solve(start[indexes], ends, max(deadline - perf_counter(), 0.1))
+        return problem.solve(start[indexes], ends, max(deadline - elapsed_s(), 0.1))
 
     def _follow_curve(self, request: PlanRequest, start: Array, indexes: Any, is_valid: Any) -> Array | None:
         """Return the path on which the tip of the group moves on a straight line or an arc to the goal."""

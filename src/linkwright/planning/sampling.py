@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from math import pi
-from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from linkwright.geometry.arrays import Array
+from linkwright.planning.effort import CHECK_S, elapsed_s, is_counted, next_seed, spend
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.library import load_ompl
 
@@ -33,6 +33,8 @@ _SEARCH_SHARE = 0.3
 _MIN_SEARCH_SHARE = 0.05
 """The minimum share of the planning time for one search."""
 _MAX_SIMPLIFICATION_S = 0.15
+_MAX_EXTENSION = 1000.0
+"""The maximum real time of a search whose work is counted, as a share of its time limit."""
 
 
 def planner_class(name: str) -> str | None:
@@ -83,9 +85,9 @@ class SamplingProblem:
         Returns:
             The corners of the path, shape (n, joints). The straight lines between them are free of collisions.
         """
-        deadline = perf_counter() + timeout_s
+        deadline = elapsed_s() + timeout_s
         step = _MAX_STEP
-        while (remaining := deadline - perf_counter()) > 0.0 and not self._is_canceled():
+        while (remaining := deadline - elapsed_s()) > 0.0 and not self._is_canceled():
             search_s = max(_SEARCH_SHARE * remaining, _MIN_SEARCH_SHARE * timeout_s)
             path = self._search(start, goals, step, min(remaining, search_s))
             if path is None:
@@ -114,12 +116,18 @@ class SamplingProblem:
         space.setBounds(bounds)
         setup = geometric.SimpleSetup(space)
         is_free, is_canceled, indexes = self._is_free, self._is_canceled, range(count)
-        condition = base.timedPlannerTerminationCondition(timeout_s)
+        seed = next_seed()
+        if seed is not None:
+            self._ompl.util.RNG.setSeed(seed)
+        condition, deadline = self._limit(timeout_s)
 
         def is_valid(state: Any) -> bool:
             if is_canceled():  # OMPL cannot raise an error of Python, and a condition in Python would block it.
                 condition.terminate()
                 return False
+            spend(CHECK_S)
+            if elapsed_s() >= deadline:
+                condition.terminate()
             return is_free(np.array([state[index] for index in indexes]))
 
         setup.setStateValidityChecker(is_valid)
@@ -136,10 +144,15 @@ class SamplingProblem:
         setup.solve(condition)
         if not setup.haveExactSolutionPath() or is_canceled():
             return None
-        condition = base.timedPlannerTerminationCondition(min(_MAX_SIMPLIFICATION_S, timeout_s))
+        condition, deadline = self._limit(min(_MAX_SIMPLIFICATION_S, timeout_s))
         setup.simplifySolution(condition)
         path = setup.getSolutionPath()
         return np.array([[state[index] for index in indexes] for state in path.getStates()])
+
+    def _limit(self, timeout_s: float) -> tuple[Any, float]:
+        """Return a condition of OMPL for the end of a search, and the time at which the search ends."""
+        real_s = timeout_s * _MAX_EXTENSION if is_counted() else timeout_s
+        return self._ompl.base.timedPlannerTerminationCondition(real_s), elapsed_s() + timeout_s
 
     def _bounds(self, start: Array) -> tuple[Array, Array]:
         """Return the bounds of the search; continuous joints may make a turn in both directions."""

@@ -62,7 +62,7 @@ class AsyncSteppedGraph:
     """
 
     def __init__(self, *, start: float = 1_700_000_000.0, strict: bool = True) -> None:
-        self.clock = JumpClock(round(start * 1e9))
+        self.clock = JumpClock(round(start * 1e9), is_lockstep=True)
         self.log: list[LogRecord] = []
         self.errors: list[BaseException] = []
         self._strict = strict

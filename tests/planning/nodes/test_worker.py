@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from linkwright.planning.effort import is_counted
 from linkwright.planning.nodes.worker import PlanningWorker
 from tests.planning.nodes.bench import Bench, box, closed_room, message
 
@@ -15,7 +16,7 @@ pytestmark = pytest.mark.extra("arm")
 
 
 def worker_of(bench: Bench) -> PlanningWorker:
-    return PlanningWorker(bench.move_group._robot, bench.move_group._monitor)
+    return PlanningWorker(bench.move_group._robot, bench.move_group._monitor, is_lockstep=False)
 
 
 async def compiled(worker: PlanningWorker, scene: Any) -> Any:
@@ -35,6 +36,19 @@ async def test_equal_scenes_are_compiled_once(bench) -> None:
     changed.world.collision_objects = [box("front", 1.05, 0.1, 0.0, size=(1.9, 0.02, 3.0))]
     await bench.call("ApplyPlanningScene", "apply_planning_scene", scene=changed)
     assert await compiled(worker, scene) is not walls
+
+
+async def test_computations_in_lockstep_are_done_at_once(bench) -> None:
+    worker = PlanningWorker(bench.move_group._robot, bench.move_group._monitor, is_lockstep=True)
+
+    def compute(*_: Any) -> bool:
+        assert threading.current_thread() is threading.main_thread()
+        return is_counted()
+
+    with pytest.raises(StopIteration) as ended:
+        worker.run(None, compute).send(None)
+    assert ended.value.value is True
+    assert not is_counted()
 
 
 async def test_computations_run_in_order_beside_the_event_loop(bench) -> None:

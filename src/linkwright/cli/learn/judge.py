@@ -147,6 +147,7 @@ def run_world(arguments: argparse.Namespace) -> int:
     """Simulate the world of an exercise in real time, with its robot and its judge."""
     from linkwright.cli.command import create_parser
     from linkwright.cli.sim import run
+    from linkwright.learning.judging.companions import plan_companions
     from linkwright.learning.judging.exercise import find_exercise
     from linkwright.learning.judging.world import write_world
 
@@ -164,7 +165,8 @@ def run_world(arguments: argparse.Namespace) -> int:
         vars(sim_arguments).update(vars(arguments), terminal=not arguments.headless)
         sim_arguments.x, sim_arguments.y, sim_arguments.z, _, _, sim_arguments.Y = arrangement.pose
         with _running_rival(exercise, rival):
-            return run(sim_arguments, partial(_show_exercise, exercise, program, rival))
+            nodes = plan_companions(exercise, arrangement.robot)
+            return run(sim_arguments, partial(_show_exercise, exercise, program, rival), nodes)
 
 
 @contextmanager

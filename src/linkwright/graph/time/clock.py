@@ -57,7 +57,12 @@ class Timebase(ABC):
     """The two clocks of a graph: system time and steady time.
 
     System time stamps messages and may jump; timers use steady time.
+
+    Attributes:
+        is_lockstep: whether time waits for all computations, also for long ones, so that runs repeat exactly.
     """
+
+    is_lockstep = False
 
     @abstractmethod
     def now_ns(self) -> int:
@@ -107,9 +112,11 @@ class JumpClock(Timebase):
 
     Args:
         start_ns: the initial value of `now_ns`, in nanoseconds since the epoch.
+        is_lockstep: whether nodes finish long computations before time advances, instead of in other threads.
     """
 
-    def __init__(self, start_ns: int = 1_700_000_000 * NANOSECONDS_PER_SECOND) -> None:
+    def __init__(self, start_ns: int = 1_700_000_000 * NANOSECONDS_PER_SECOND, *, is_lockstep: bool = False) -> None:
+        self.is_lockstep = is_lockstep
         self._now_ns = start_ns
         self._steady_ns = 0
         self._alarms: list[ScheduledAlarm] = []

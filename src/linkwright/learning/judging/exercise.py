@@ -72,6 +72,38 @@ class Rival:
 
 
 @dataclass(frozen=True)
+class MoveItFiles:
+    """A MoveIt configuration package, whose files are the parameters of a node.
+
+    Attributes:
+        package: the name of the package.
+        robot: the name of the robot in it, from which the names of its files derive.
+    """
+
+    package: str
+    robot: str
+
+
+@dataclass(frozen=True)
+class ExerciseNode:
+    """A node that runs beside the program, such as one that plans motions.
+
+    Attributes:
+        package: the package of the node.
+        executable: the name of its executable.
+        arguments: the command line without the name of the program.
+        parameters: the values of parameters.
+        moveit: the package with further parameters, and None for a node without them.
+    """
+
+    package: str
+    executable: str
+    arguments: tuple[str, ...] = ()
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    moveit: MoveItFiles | None = None
+
+
+@dataclass(frozen=True)
 class Exercise:
     """A programming exercise whose result a judge measures in simulation.
 
@@ -88,6 +120,7 @@ class Exercise:
         collision_cost: the points subtracted for each collision of the robot.
         figure: the number by which a program is judged.
         rival: the other robot, or None.
+        nodes: the nodes that run beside the program.
         settings: further values for the judge.
     """
 
@@ -103,6 +136,7 @@ class Exercise:
     collision_cost: float
     figure: Figure
     rival: Rival | None = None
+    nodes: tuple[ExerciseNode, ...] = ()
     settings: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -210,7 +244,19 @@ def _exercise_from_data(folder: Path, data: Mapping[str, Any]) -> Exercise:
         float(data.get("collision_cost", 10.0)),
         Figure(LocalText(figure["name"]), str(figure["unit"]), none, half, full, int(figure.get("decimals", 1))),
         _rival_from_data(folder, data["rival"]) if "rival" in data else None,
+        tuple(map(_node_from_data, data.get("nodes", ()))),
         dict(data.get("settings", {})),
+    )
+
+
+def _node_from_data(data: Mapping[str, Any]) -> ExerciseNode:
+    moveit = data.get("moveit")
+    return ExerciseNode(
+        str(data["package"]),
+        str(data["executable"]),
+        tuple(map(str, data.get("arguments", ()))),
+        dict(data.get("parameters", {})),
+        None if moveit is None else MoveItFiles(str(moveit["package"]), str(moveit["robot"])),
     )
 
 

@@ -36,6 +36,7 @@ class Judge:
 
     Attributes:
         TOPICS: the topics on which the program publishes its answers, with their types; see `on_message`.
+        PUBLISHED: the topics on which the judge publishes tasks, with their types; see `publish`.
         exercise: the exercise that is judged.
         random: the random numbers of the run.
         time: the simulated time since the start, in s.
@@ -48,6 +49,7 @@ class Judge:
     """
 
     TOPICS: ClassVar[tuple[tuple[str, str], ...]] = ()
+    PUBLISHED: ClassVar[tuple[tuple[str, str], ...]] = ()
 
     def __init__(self, exercise: Exercise, seed: int) -> None:
         self.exercise = exercise
@@ -62,6 +64,7 @@ class Judge:
         self._penalty = 0.0
         self._last_contact = -_COLLISION_PAUSE_S
         self._simulation: Simulation | None = None
+        self._publish: Callable[[str, Any], object] | None = None
         self._geom_models: tuple[int, list[str]] = (-1, [])
 
     # --- methods for judges to override -------------------------------------------------------------------------------
@@ -93,6 +96,11 @@ class Judge:
         """The simulation, with the ground truth of the world."""
         assert self._simulation is not None, "the run has not started"
         return self._simulation
+
+    def publish(self, topic: str, message: Any) -> None:
+        """Publish a message on one of `PUBLISHED`."""
+        assert self._publish is not None, "the run has not started"
+        self._publish(topic, message)
 
     def pose(self, model: str = "") -> tuple[float, float, float]:
         """Return the true x and y in m and yaw in rad of a model, by default of the robot."""
@@ -145,9 +153,14 @@ class Judge:
         earned = figure.points(self.figure) if self.is_solved else _MAX_UNSOLVED_POINTS * self.progress
         return round(max(0.0, min(100.0, earned - self._penalty)), 1)
 
-    def begin(self, simulation: Simulation) -> None:
-        """Start to judge a run in a simulation that contains the robot."""
-        self._simulation = simulation
+    def begin(self, simulation: Simulation, publish: Callable[[str, Any], object] | None = None) -> None:
+        """Start to judge a run.
+
+        Args:
+            simulation: the simulation, which contains the robot.
+            publish: publishes a message on a topic of `PUBLISHED`.
+        """
+        self._simulation, self._publish = simulation, publish
         self.start()
 
     def watch(self) -> None:

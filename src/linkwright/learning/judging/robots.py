@@ -36,7 +36,7 @@ def write_robot(address: str, arguments: Mapping[str, object], exercise_folder: 
         LinkwrightError: there is no such file, or it has errors.
         OSError: the file cannot be written.
     """
-    finder = _create_finder(exercise_folder)
+    finder = create_finder(exercise_folder)
     path = finder.resolve(address, exercise_folder)
     if path.suffix == ".sdf":
         return path
@@ -61,7 +61,7 @@ def include_robot(robot: OtherRobot, exercise_folder: Path, folder: Path) -> str
         LinkwrightError: there is no such file, or it has errors.
         OSError: the file cannot be written.
     """
-    finder = _create_finder(exercise_folder)
+    finder = create_finder(exercise_folder)
     path = finder.resolve(robot.file, exercise_folder)
     converted = as_sdf(path, finder, lump_fixed_joints=False, folder=folder)
     if converted.sdf is None or not converted.sdf.models:
@@ -73,5 +73,6 @@ def include_robot(robot: OtherRobot, exercise_folder: Path, folder: Path) -> str
     return f"<include><uri>{escape(file.as_uri())}</uri><pose>{x:.5f} {y:.5f} 0 0 0 {yaw:.5f}</pose></include>"
 
 
-def _create_finder(exercise_folder: Path) -> PackageFinder:
+def create_finder(exercise_folder: Path) -> PackageFinder:
+    """Return a finder of packages that prefers those that Linkwright ships."""
     return PackageFinder(start=[exercise_folder], extra=find_shipped_packages())

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.files.scratch_folders import ScratchFolder
+from linkwright.learning.judging.companions import start_companions
 from linkwright.learning.judging.exercise import Exercise
 from linkwright.learning.judging.judge import Judge
 from linkwright.learning.judging.world import JudgePlugin, status, write_world
@@ -87,6 +88,7 @@ def _run_in_world(
         strict=False,
     ) as test:
         judge = _find_judge(test)
+        companions = test.run(start_companions(exercise, arrangement.robot, test.graph))
         arguments = [str(argument) for argument in exercise.settings.get("program_arguments", ())]
         started = test.start_program(program, [*arguments, *_SIMULATED_TIME], budget=budget, seed=seed)
         rival = None
@@ -95,6 +97,8 @@ def _run_in_world(
             rival = test.start_program(rival_program or exercise.rival.program, words, budget=budget, seed=seed)
         error = _advance_to_end(test, judge, started, rival)
         data, score = status(judge), judge.score
+        for companion in companions:
+            companion.close()
     lines = None if error is None else "".join(_format_user_traceback(error, program))
     return RunResult(seed, score, data, lines)
 

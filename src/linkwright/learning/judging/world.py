@@ -115,6 +115,7 @@ class JudgePlugin(SimulatedPlugin[Parameters]):
         self.reset()
         for topic, msg_type in self.judge.TOPICS:
             self.node.subscribe(msg_type, topic, partial(self._receive, topic))
+        self._outputs = {topic: self.node.publisher(msg_type, topic) for topic, msg_type in self.judge.PUBLISHED}
         self.every(_UPDATE_RATE_HZ, self._watch)
         if self.parameters.publish:
             self._status = self.node.publisher("std_msgs/msg/String", STATUS_TOPIC, 10)
@@ -130,7 +131,7 @@ class JudgePlugin(SimulatedPlugin[Parameters]):
         if not self._has_begun:
             if not all(model in self.simulation.scene.models for model in self._exercise.models):
                 return
-            self.judge.begin(self.simulation)
+            self.judge.begin(self.simulation, lambda topic, message: self._outputs[topic].publish(message))
             self._has_begun = True
         self.judge.watch()
 

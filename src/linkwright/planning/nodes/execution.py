@@ -15,6 +15,7 @@ from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_action, get_message
 from linkwright.planning.nodes.conversions import RequestError, joint_state_message, update_positions
 from linkwright.planning.nodes.robot_context import RobotContext
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _ACTIONS = {
     "FollowJointTrajectory": "control_msgs/action/FollowJointTrajectory",
@@ -91,6 +92,7 @@ class TrajectoryExecution:
 
     def __init__(self, node: Node, controllers: Sequence[ControllerSettings]) -> None:
         self._controllers = controllers
+        self._timebase = node.graph.timebase
         group = ReentrantCallbackGroup()
         self._clients = {
             controller.name: ActionClient(node, _ACTIONS[controller.type], controller.action, callback_group=group)
@@ -123,7 +125,7 @@ class TrajectoryExecution:
             if self._is_stopped or is_canceled():
                 self._cancel_all()
                 raise RequestError("PREEMPTED", "the execution was stopped")
-            await asyncio.sleep(_POLL_S)
+            await self._pause()
         for controller, result in zip(controllers, pending, strict=True):
             response = result.result()
             if response.status != GoalStatus.SUCCEEDED:
@@ -133,6 +135,16 @@ class TrajectoryExecution:
     def stop(self) -> None:
         """Stop the current execution."""
         self._is_stopped = True
+
+    async def _pause(self) -> None:
+        """Wait until the next check; in lockstep, on the clock of the graph."""
+        if not self._timebase.is_lockstep:
+            await asyncio.sleep(_POLL_S)
+            return
+        loop = asyncio.get_running_loop()
+        due = asyncio.Event()
+        self._timebase.call_at(loop, self._timebase.steady_ns() + round(_POLL_S * NANOSECONDS_PER_SECOND), due.set)
+        await due.wait()
 
     def _cancel_all(self) -> None:
         for handle in self._handles:
@@ -163,7 +175,7 @@ class TrajectoryExecution:
         for _ in range(round(_SERVER_TIMEOUT_S / _POLL_S)):
             if client.server_is_ready():
                 break
-            await asyncio.sleep(_POLL_S)
+            await self._pause()
         else:
             raise RequestError("CONTROL_FAILED", f"Action client not connected to action server: {controller.action}")
         handle = await client.send_goal_async(_make_goal(controller, trajectory))

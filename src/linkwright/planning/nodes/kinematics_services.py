@@ -60,7 +60,7 @@ class KinematicsServices:
         self._node, self._robot, self._monitor, self._ik_timeout = node, robot, monitor, ik_timeout
         self._publish_path = publish_path
         self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
-        self._worker = PlanningWorker(robot, monitor)
+        self._worker = PlanningWorker(robot, monitor, is_lockstep=node.graph.timebase.is_lockstep)
         node.create_service(get_service("moveit_msgs/srv/GetPositionFK"), "compute_fk", self._compute_fk)
         group = ReentrantCallbackGroup()  # The joint states of the node do not wait for these services.
         for name, kind, callback in (

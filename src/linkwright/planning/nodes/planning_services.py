@@ -51,7 +51,7 @@ class PlanningServices:
     ) -> None:
         self._node, self._robot, self._monitor, self._pipelines = node, robot, monitor, pipelines
         self._default_scale = default_scale
-        self._worker = PlanningWorker(robot, monitor)
+        self._worker = PlanningWorker(robot, monitor, is_lockstep=node.graph.timebase.is_lockstep)
         self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
         self._path_publisher: Publisher[Any] = node.create_publisher(
             "moveit_msgs/msg/DisplayTrajectory", "display_planned_path", 10

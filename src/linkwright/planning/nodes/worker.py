@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from linkwright.planning.collision_scene import CollisionScene
+from linkwright.planning.effort import counted_effort
 from linkwright.planning.nodes.conversions import RequestError
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
@@ -32,16 +33,20 @@ def never() -> bool:
 class PlanningWorker:
     """Runs computations in another thread, one at a time, in the order in which they were requested.
 
+    In a graph in lockstep, computations run at once in the thread of the event loop, count their work instead of real
+    time, and take no time of the graph. So the results do not depend on the computer.
+
     The robot and the scene are those of the worker alone. A scene is compiled only if its content differs from that of
     the scene before.
 
     Args:
         robot: the robot.
         monitor: the planning scene, which compiles scenes.
+        is_lockstep: whether the graph is in lockstep.
     """
 
-    def __init__(self, robot: RobotContext, monitor: SceneMonitor) -> None:
-        self._robot, self._monitor = robot, monitor
+    def __init__(self, robot: RobotContext, monitor: SceneMonitor, *, is_lockstep: bool) -> None:
+        self._robot, self._monitor, self._is_lockstep = robot, monitor, is_lockstep
         self._turns = asyncio.Lock()
         self._is_stopped = threading.Event()
         self._model: RobotModel | None = None
@@ -67,6 +72,9 @@ class PlanningWorker:
         def must_stop() -> bool:
             return self._is_stopped.is_set() or is_canceled()
 
+        if self._is_lockstep:
+            with counted_effort():
+                return self._compute(None if scene is None else scene.copy(), work, must_stop)
         if not await self._wait_for_turn(must_stop):
             raise RequestError(Failure.PREEMPTED.name, Failure.PREEMPTED.value)
         content = None if scene is None else scene.copy()
