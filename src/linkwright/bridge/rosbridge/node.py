@@ -36,6 +36,7 @@ _SIZE_FACTOR = 4
 _MAX_QUEUE_BYTES = 20_000_000
 _MIN_RETRY_S = 0.1
 _REFUSAL_PERIOD_S = 10.0
+_FILE_ORIGIN = "null"
 _ROSAPI = "/rosapi/*"
 """The services that clients may always call."""
 _ARGUMENTS: Mapping[str, Callable[[str], Any]] = {
@@ -204,9 +205,10 @@ class RosbridgeWebsocket(SingleNode):
         return session.receive, end
 
     def _on_refused(self, origin: str) -> None:
+        page = "A page that was opened from a file" if origin == _FILE_ORIGIN else f"A page of {origin[:200]}"
         self._node.get_logger().warning(
-            f"A page of {origin[:200]} was refused, because any page could control the robot otherwise. To let it "
-            f"connect, set the parameter allowed_origins:=['{origin[:200]}'].",
+            f"{page} was refused, because any page could control the robot otherwise. To let it connect, serve it on "
+            f"this machine (python -m http.server), or set the parameter allowed_origins:=['{origin[:200]}'].",
             throttle_duration_sec=_REFUSAL_PERIOD_S,
         )
 
