@@ -204,6 +204,18 @@ async def test_arguments_set_parameters():
     await graph.close()
 
 
+async def test_parameters_that_the_node_does_not_have_are_named():
+    async with rosbridge_setup(authenticate=False) as setup:
+        assert any("authenticate" in text for text in setup.texts)
+
+
+async def test_log_says_how_other_machines_can_connect():
+    async with rosbridge_setup(address="") as setup:
+        await eventually(lambda: any("'address' is '0.0.0.0'" in text for text in setup.texts))
+    async with rosbridge_setup(address="0.0.0.0") as setup:
+        assert not any("0.0.0.0'" in text for text in setup.texts)
+
+
 async def test_path_of_the_address_can_be_chosen():
     async with rosbridge_setup(url_path="/robot") as setup:
         assert setup.bridge.address.endswith("/robot")

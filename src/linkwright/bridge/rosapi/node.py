@@ -18,6 +18,7 @@ from linkwright.messages import get_message, get_service, interface_names
 from linkwright.messages.definitions.interfaces import KINDS
 from linkwright.messages.schema_text import schema_of
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
+from linkwright.nodes.settings import log_unknown_parameters
 
 _ROS_VERSION = 2
 _DEFAULT_DISTRIBUTION = "jazzy"
@@ -42,6 +43,7 @@ class RosapiNode(SingleNode):
                 for name in ("topics_glob", "services_glob", "params_glob")
             )
             timeout_s = float(self._node.declare_parameter("params_timeout", 5.0, _ANY_TYPE).value)
+            log_unknown_parameters(self._node)
         self._lists = GraphLists(self._node, topics, services)
         self._parameters = Parameters(self._node, parameters, timeout_s)
         graph.publishers()  # starts the discovery of other processes

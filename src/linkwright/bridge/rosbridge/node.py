@@ -23,7 +23,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import LATCHED_QOS, Graph, ParameterDescriptor, Publisher
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import get_arguments
+from linkwright.nodes.settings import get_arguments, log_unknown_parameters
 
 if TYPE_CHECKING:
     import ssl
@@ -81,6 +81,7 @@ class RosbridgeWebsocket(SingleNode):
             self._host = str(self._declare("address", "")) or _LOOPBACK
             self._retry_s = float(self._declare("retry_startup_delay", 2.0))
             listener = self._listen()
+            log_unknown_parameters(self._node)
         self._counts: Publisher[Any] = self._node.create_publisher("std_msgs/msg/Int32", "client_count", LATCHED_QOS)
         self._clients: Publisher[Any] = self._node.create_publisher(
             "rosbridge_msgs/msg/ConnectedClients", "connected_clients", LATCHED_QOS
@@ -184,6 +185,8 @@ class RosbridgeWebsocket(SingleNode):
         self._node.declare_parameter("actual_port", listener.getsockname()[1])
         await self._server.start()
         logger.info(f"Rosbridge WebSocket server started on port {listener.getsockname()[1]}: {self.address}")
+        if self._host == _LOOPBACK:
+            logger.info("Clients on other machines can connect if the parameter 'address' is '0.0.0.0'.")
 
     def _add_client(
         self, client: Client, ip_address: str
