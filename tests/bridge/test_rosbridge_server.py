@@ -35,6 +35,8 @@ TRIGGER = "std_srvs/srv/Trigger"
         ("3", "the message is not a JSON object"),
         ("{}", "without an op"),
         ('{"op": 3}', "Unknown operation: 3"),
+        ('{"op": "subscribe", "topic": "/chatter", "id": {}}', "Expected field id"),
+        ('{"op": "dance", "id": 1e999}', "Expected field id"),
         ('{"op": "dance"}', "Unknown operation: dance"),
         ('{"op": ["publish"]}', "Unknown operation"),
         ('{"op": "subscribe"}', "Expected a topic field"),

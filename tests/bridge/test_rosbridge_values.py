@@ -137,6 +137,7 @@ def test_arguments_of_services_may_be_a_list():
         (None, "f6"),
         (b"\x01\x02", "420102"),
         ("ü", "62c3bc"),
+        ("\ud800", "613f"),  # half of a character, which JSON can contain
         ([1, [2, 3]], "8201820203"),
         ({"a": 1, "b": [2, 3]}, "a26161016162820203"),
     ],
@@ -216,6 +217,13 @@ def test_fragments_in_any_order_give_the_message():
 def test_short_messages_are_not_split():
     assert split_message("abc", 3) == ("abc",)
     assert split_message("abc", 0) == ("abc",)
+
+
+def test_number_of_fragments_is_limited():
+    text = "x" * 100_000
+    parts = [json.loads(part) for part in split_message(text, 1)]
+    assert len(parts) <= 1000
+    assert "".join(part["data"] for part in parts) == text
 
 
 def test_messages_without_id_have_different_ids_in_their_fragments():

@@ -39,7 +39,7 @@ def _write(value: Any, parts: list[bytes]) -> None:
             _write(field.name, parts)
             _write_field(field.type, getattr(value, field.name), parts)
     elif isinstance(value, str):
-        encoded = value.encode()
+        encoded = value.encode(errors="replace")
         parts += (_head(_TEXT, len(encoded)), encoded)
     elif value is None or isinstance(value, bool):
         parts.append(_NULL if value is None else _TRUE if value else _FALSE)

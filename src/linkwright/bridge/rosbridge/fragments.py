@@ -14,7 +14,10 @@ _MAX_MESSAGES = 32
 """The maximum number of incomplete messages of one client."""
 
 _MAX_FRAGMENTS = 100_000
-"""The maximum number of fragments of a message."""
+"""The maximum number of fragments of a message of a client."""
+
+_MAX_SENT_FRAGMENTS = 1000
+"""The maximum number of fragments of a message to a client."""
 
 _numbers = count()
 
@@ -24,11 +27,12 @@ def split_message(text: str, size: int, identity: Any = None) -> tuple[str, ...]
 
     Args:
         text: the message.
-        size: the maximum number of characters; 0 for no limit.
+        size: the maximum number of characters; 0 for no limit. A size that gives too many fragments is increased.
         identity: the ID of the message; the fragments of a message without an ID have a number.
     """
     if size <= 0 or len(text) <= size:
         return (text,)
+    size = max(size, len(text) // _MAX_SENT_FRAGMENTS + 1)
     total = (len(text) - 1) // size + 1
     fragment_id = next(_numbers) if identity is None else identity
     return tuple(

@@ -395,6 +395,9 @@ def _parse(message: str | bytes, max_size: int) -> Request:
         raise RequestError(f"the message is not JSON: {str(error)[:200]}") from None
     if not isinstance(values, dict):
         raise RequestError("the message is not a JSON object")
+    identity = values.get("id")
+    if not (identity is None or isinstance(identity, (str, int))):
+        raise RequestError("Expected field id to be a text or an integer.")
     return Request(values)
 
 
