@@ -159,6 +159,18 @@ async def test_clients_are_counted():
         await eventually(lambda: counts[-1].data == 0)
 
 
+@pytest.mark.parametrize("steps", range(8))
+async def test_server_socket_is_closed_when_startup_is_interrupted(steps):
+    graph = Graph(on_log=lambda _: None)
+    bridge = RosbridgeWebsocket(graph, NodeOptions(parameters={"port": 0}))
+    for _ in range(steps):
+        await asyncio.sleep(0)
+    bridge.close()
+    assert bridge._listener.fileno() == -1  # closed at once, because the loop may end here
+    await asyncio.wait([bridge._server_task])
+    await graph.close()
+
+
 async def test_server_waits_for_a_port_in_use():
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]

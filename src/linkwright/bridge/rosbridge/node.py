@@ -80,7 +80,7 @@ class RosbridgeWebsocket(SingleNode):
             self._port = int(self._declare("port", 9090))
             self._host = str(self._declare("address", "")) or _LOOPBACK
             self._retry_s = float(self._declare("retry_startup_delay", 2.0))
-            listener = self._listen()
+            self._listener = self._listen()
             log_unknown_parameters(self._node)
         self._counts: Publisher[Any] = self._node.create_publisher("std_msgs/msg/Int32", "client_count", LATCHED_QOS)
         self._clients: Publisher[Any] = self._node.create_publisher(
@@ -89,7 +89,7 @@ class RosbridgeWebsocket(SingleNode):
         self._publish_clients()
         graph.watch(self._on_graph_change)
         graph.publishers()  # starts the discovery of other processes
-        self._server_task = self._loop.create_task(self._serve(listener))
+        self._server_task = self._loop.create_task(self._serve())
 
     @property
     def address(self) -> str:
@@ -108,6 +108,8 @@ class RosbridgeWebsocket(SingleNode):
         self._server_task.cancel()
         if self._server is not None:
             self._closing = self._server.close()
+        elif self._listener is not None:
+            self._listener.close()
         super().close()
 
     # --- parameters --------------------------------------------------------------------------------------------
@@ -173,18 +175,19 @@ class RosbridgeWebsocket(SingleNode):
             hint = phrase("choose an address of this machine with the parameter 'address'")
             raise make_listen_error(self.DEFAULT_NAME, self._host, self._port, error, hint) from None
 
-    async def _serve(self, listener: socket.socket | None) -> None:
+    async def _serve(self) -> None:
         logger = self._node.get_logger()
-        while listener is None:
+        while self._listener is None:
             logger.warning(
                 f"Unable to start server: port {self._port} of {self._host} is in use. Retrying in {self._retry_s:g} s."
             )
             await asyncio.sleep(max(self._retry_s, _MIN_RETRY_S))
-            listener = self._listen()
-        self._server = WebSocketServer(listener, self._options, self._add_client, self._on_refused)
-        self._node.declare_parameter("actual_port", listener.getsockname()[1])
+            self._listener = self._listen()
+        port = self._listener.getsockname()[1]
+        self._server = WebSocketServer(self._listener, self._options, self._add_client, self._on_refused)
+        self._node.declare_parameter("actual_port", port)
         await self._server.start()
-        logger.info(f"Rosbridge WebSocket server started on port {listener.getsockname()[1]}: {self.address}")
+        logger.info(f"Rosbridge WebSocket server started on port {port}: {self.address}")
         if self._host == _LOOPBACK:
             logger.info("Clients on other machines can connect if the parameter 'address' is '0.0.0.0'.")
 
