@@ -12,7 +12,7 @@ import aiohttp
 import pytest
 
 from linkwright.bridge.foxglove import FoxgloveBridge
-from linkwright.bridge.foxglove.origins import is_allowed_origin
+from linkwright.bridge.websockets.origins import is_allowed_origin
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String, deserialize, get_message, get_service, serialize
@@ -336,6 +336,20 @@ async def test_only_meshes_of_packages_in_robot_description_are_served(tmp_path,
 )
 def test_origin_is_allowed_only_if_listed_or_local(origin, welcome):
     assert is_allowed_origin(origin) is welcome
+
+
+@pytest.mark.parametrize(
+    ("origin", "host", "welcome"),
+    [
+        ("http://192.168.1.5:8000", "192.168.1.5:9090", True),
+        ("http://[fe80::1]:8000", "[fe80::1]:9090", True),
+        ("http://192.168.1.6:8000", "192.168.1.5:9090", False),
+        ("http://robot.local", "robot.local:9090", False),  # the name may have been made to refer to this machine
+        ("http://192.168.1.5", "[", False),
+    ],
+)
+def test_page_is_allowed_that_was_opened_by_the_ip_address_of_this_machine(origin, host, welcome):
+    assert is_allowed_origin(origin, host=host) is welcome
 
 
 async def test_connection_from_other_origin_is_rejected():

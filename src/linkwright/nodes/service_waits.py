@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from typing import Any
 
 from linkwright.graph import Client, Clock, ClockType, Node
@@ -49,11 +50,27 @@ async def wait_for_service(
         seconds: the timeout in real time; None for no limit.
         should_exist: True to wait until the service appears, False to wait until it disappears.
     """
+    client.check_alive()
+    return await wait_for_graph(
+        node, lambda: not client.destroyed and client.service_is_ready() is should_exist, seconds
+    )
+
+
+async def wait_for_graph(node: Node, condition: Callable[[], bool], seconds: float | None) -> bool:
+    """Wait until a condition holds, which changes of the graph can fulfill.
+
+    Return False if the timeout expires first.
+
+    Args:
+        node: the node that waits.
+        condition: returns whether the wait ends.
+        seconds: the timeout in real time; None for no limit.
+    """
     loop = asyncio.get_running_loop()
     state_reached: asyncio.Future[None] = loop.create_future()
 
     def check_state() -> None:
-        if not client.destroyed and not state_reached.done() and client.service_is_ready() is should_exist:
+        if not state_reached.done() and condition():
             state_reached.set_result(None)
 
     def on_graph_change() -> None:
@@ -61,7 +78,7 @@ async def wait_for_service(
 
     node.graph.watch(on_graph_change)
     try:
-        return client.service_is_ready() is should_exist or await wait_for_future(node, state_reached, seconds)
+        return condition() or await wait_for_future(node, state_reached, seconds)
     finally:
         node.graph.unwatch(on_graph_change)
         state_reached.cancel()  # callbacks that are already scheduled then have no effect

@@ -3,33 +3,27 @@
 from __future__ import annotations
 
 import asyncio
-import socket
 import time
-from collections.abc import Sequence
+from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any
 
 from linkwright.bridge.foxglove.assets import Assets
-from linkwright.bridge.foxglove.clients import Client
 from linkwright.bridge.foxglove.names import NameFilter
-from linkwright.bridge.foxglove.origins import is_allowed_origin
 from linkwright.bridge.foxglove.parameters import Parameters, make_parameter_entry
 from linkwright.bridge.foxglove.protocol import ENCODING, SUBPROTOCOLS, encode_time
 from linkwright.bridge.foxglove.services import Services
 from linkwright.bridge.foxglove.session import Session, SharedResources
 from linkwright.bridge.foxglove.topics import Channels
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.bridge.websockets.clients import Client
+from linkwright.bridge.websockets.server import ServerOptions, WebSocketServer, make_listen_error, open_listener
+from linkwright.diagnostics import phrase
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
-if TYPE_CHECKING:
-    from aiohttp import web
-
 _CAPABILITIES = ("clientPublish", "parameters", "parametersSubscribe", "services", "connectionGraph", "assets")
 _MATCH_ALL = [".*"]
-_MAX_CLIENTS = 32
-_MAX_MESSAGE_SIZE = 16 << 20
 _UPDATE_DELAY_S = 0.1
 """Seconds for which changes to the graph are collected before clients are notified."""
 
@@ -52,9 +46,13 @@ class FoxgloveBridge(SingleNode):
                 name: NameFilter(name, list(declare(name, _MATCH_ALL).value))
                 for name in ("topic_whitelist", "service_whitelist", "param_whitelist", "client_topic_whitelist")
             }
-            self._origins: Sequence[str] = list(declare("allowed_origins", [""]).value)
-            self._max_queue_bytes = int(declare("send_buffer_limit", 10_000_000).value)
-            self._listener = _listen(address, port)
+            origins: list[str] = list(declare("allowed_origins", [""]).value)
+            max_queue_bytes = int(declare("send_buffer_limit", 10_000_000).value)
+            try:
+                self._listener = open_listener(address, port)
+            except OSError as error:
+                hint = phrase("choose another port with the parameter 'port', or with '--foxglove'")
+                raise make_listen_error(self.DEFAULT_NAME, address, port, error, hint) from None
         self._resources = SharedResources(
             node=self._node,
             channels=Channels(self._node, filters["topic_whitelist"]),
@@ -66,18 +64,14 @@ class FoxgloveBridge(SingleNode):
         self._capabilities = list(_CAPABILITIES)
         self._sessions: dict[Session, None] = {}
         self._loop = asyncio.get_running_loop()
-        self._runner: web.AppRunner | None = None
-        self._server: asyncio.Server | None = None
         self._update_timer: asyncio.TimerHandle | None = None
         self._identity = str(time.time_ns())
         self._watch_graph(graph)
+        server_options = ServerOptions(
+            "Foxglove or Lichtblick", protocols=SUBPROTOCOLS, origins=origins, max_queue_bytes=max_queue_bytes
+        )
+        self._server = WebSocketServer(self._listener, server_options, self._add_client)
         self._server_task = self._loop.create_task(self._serve())
-
-    @property
-    def address(self) -> str:
-        """The address that clients connect to."""
-        host, port = self._listener.getsockname()[:2]
-        return f"ws://[{host}]:{port}" if ":" in host else f"ws://{host}:{port}"
 
     def close(self) -> None:
         """Close the connections and the server."""
@@ -88,9 +82,7 @@ class FoxgloveBridge(SingleNode):
             session.close()
         self._resources.parameters.close()
         self._server_task.cancel()
-        (self._server or self._listener).close()  # not in a callback, which may not run before the loop ends
-        if self._runner is not None:
-            self._cleanup_task = self._loop.create_task(self._runner.cleanup())
+        self._cleanup_task = self._server.close()
         super().close()
 
     # --- the graph ---------------------------------------------------------------------------------------------
@@ -163,50 +155,21 @@ class FoxgloveBridge(SingleNode):
     # --- the network -------------------------------------------------------------------------------------------
 
     async def _serve(self) -> None:
-        from linkwright.page.http_server import SERVER_LOGGER, web
+        await self._server.start()
+        self._node.get_logger().info(f"Foxglove and Lichtblick connect to {self._server.address}")
 
-        application = web.Application()
-        application.router.add_get("/", self._on_connection)
-        self._runner = web.AppRunner(
-            application, handle_signals=False, access_log=None, logger=SERVER_LOGGER, shutdown_timeout=0.5
-        )
-        await self._runner.setup()
-        serve = cast("web.Server", self._runner.server)
-        self._server = await self._loop.create_server(serve, sock=self._listener, start_serving=False)
-        await self._server.start_serving()
-        self._node.get_logger().info(f"Foxglove and Lichtblick connect to {self.address}")
-
-    async def _on_connection(self, request: web.Request) -> web.StreamResponse:
-        from linkwright.page.http_server import web
-
-        if not is_allowed_origin(request.headers.get("Origin"), self._origins):
-            return web.Response(status=403, text="Pages of other sites may not connect.\n")
-        if len(self._sessions) >= _MAX_CLIENTS:
-            return web.Response(status=503, text="Too many clients are connected.\n")
-        websocket = web.WebSocketResponse(
-            protocols=SUBPROTOCOLS, heartbeat=15.0, timeout=0.5, compress=False, max_msg_size=_MAX_MESSAGE_SIZE
-        )
-        if not websocket.can_prepare(request).ok:
-            return web.Response(status=426, text="Open this address in Foxglove or Lichtblick.\n")
-        await websocket.prepare(request)
-        if websocket.ws_protocol is None:
-            await websocket.close(code=1002, message=b"the client supports none of the subprotocols")
-            return websocket
-        client = Client(websocket, self._max_queue_bytes)
+    def _add_client(
+        self, client: Client, ip_address: str
+    ) -> tuple[Callable[[str | bytes], object], Callable[[], object]]:
         session = Session(self._resources, client)
         self._greet(client)
         self._sessions[session] = None
-        writer = asyncio.get_running_loop().create_task(client.write())
-        try:
-            async for message in websocket:
-                if message.type in (web.WSMsgType.TEXT, web.WSMsgType.BINARY):
-                    session.receive(message.data)
-        finally:
+
+        def end() -> None:
             self._sessions.pop(session, None)
             session.close()
-            writer.cancel()
-            await asyncio.gather(writer, return_exceptions=True)
-        return websocket
+
+        return session.receive, end
 
     def _greet(self, client: Client) -> None:
         client.send(
@@ -228,25 +191,3 @@ class FoxgloveBridge(SingleNode):
                 "services": [offered_service.advertisement() for offered_service in self._resources.services.all()],
             }
         )
-
-
-def _listen(address: str, port: int) -> socket.socket:
-    """Open a listening socket.
-
-    Raises:
-        LinkwrightError: NODE702, the address or port cannot be used.
-    """
-    try:
-        listener = socket.create_server((address, port), family=socket.AF_INET6 if ":" in address else socket.AF_INET)
-    except (OSError, OverflowError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        message = phrase(
-            "foxglove_bridge cannot listen on port {port} of '{address}': {reason}",
-            port=port,
-            address=address,
-            reason=foreign(reason),
-        )
-        hint = phrase("choose another port with the parameter 'port', or with '--foxglove'")
-        raise LinkwrightError(Diagnostic("NODE702", message, hint=hint)) from None
-    listener.setblocking(False)
-    return listener

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from linkwright.bridge.foxglove.assets import AssetRefusedError, Assets
-from linkwright.bridge.foxglove.clients import Client
 from linkwright.bridge.foxglove.connections import Connections, find_connections, make_connection_update
 from linkwright.bridge.foxglove.names import NameFilter
 from linkwright.bridge.foxglove.parameters import Parameters, ParameterSubscription
@@ -26,6 +25,7 @@ from linkwright.bridge.foxglove.protocol import (
 )
 from linkwright.bridge.foxglove.services import CallFailedError, Services
 from linkwright.bridge.foxglove.topics import Channels, Forwarding, Publication
+from linkwright.bridge.websockets.clients import Client
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Node
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from linkwright.bridge.foxglove.clients import Client
 from linkwright.bridge.foxglove.names import NameFilter
 from linkwright.bridge.foxglove.protocol import ENCODING, SCHEMA_ENCODING, encode_message
+from linkwright.bridge.websockets.clients import Client
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import EndpointKind, MessageInfo, Node, Publisher, QoSProfile, Subscription
 from linkwright.graph.qos.compatibility import fit_profile

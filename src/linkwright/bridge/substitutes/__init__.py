@@ -1,1 +1,1 @@
-"""The substitute for the package foxglove_bridge, which launch files include, with its share directory."""
+"""The substitutes for the packages foxglove_bridge and rosbridge_server, which launch files include."""

@@ -23,31 +23,32 @@ class Client:
     Args:
         socket: the WebSocket of the client.
         max_bytes: the maximum number of bytes of topic messages in the queue.
+        send_delay: the seconds to wait after each frame.
     """
 
-    def __init__(self, socket: WebSocketResponse, max_bytes: int) -> None:
+    def __init__(self, socket: WebSocketResponse, max_bytes: int, send_delay: float = 0.0) -> None:
         self._socket = socket
         self._max_bytes = max_bytes
+        self._send_delay = send_delay
         self._control: deque[str | bytes] = deque()
-        self._data: deque[bytes] = deque()
+        self._data: deque[tuple[str | bytes, ...]] = deque()
         self._queued_bytes = 0
         self._has_messages = asyncio.Event()
 
-    def send(self, message: dict[str, Any] | bytes) -> None:
+    def send(self, message: dict[str, Any] | str | bytes) -> None:
         """Queue a message that is never dropped."""
-        encoded = message if isinstance(message, bytes) else json.dumps(message, ensure_ascii=False)
-        self._control.append(encoded)
+        self._control.append(json.dumps(message, ensure_ascii=False) if isinstance(message, dict) else message)
         self._has_messages.set()
 
-    def send_data(self, frame: bytes) -> None:
-        """Queue a message of a topic.
+    def send_data(self, *frames: str | bytes) -> None:
+        """Queue a message of a topic, which consists of one frame or several.
 
         The oldest messages are dropped if the client is too slow.
         """
-        self._data.append(frame)
-        self._queued_bytes += len(frame)
+        self._data.append(frames)
+        self._queued_bytes += sum(map(len, frames))
         while self._queued_bytes > self._max_bytes and len(self._data) > 1:
-            self._queued_bytes -= len(self._data.popleft())
+            self._queued_bytes -= sum(map(len, self._data.popleft()))
         self._has_messages.set()
 
     async def write(self) -> None:
@@ -58,15 +59,20 @@ class Client:
                     await self._socket.close(code=1008, message=b"the client reads messages too slowly")
                     return
                 if self._control:
-                    message = self._control.popleft()
+                    await self._send_frame(self._control.popleft())
                 elif self._data:
-                    message = self._data.popleft()
-                    self._queued_bytes -= len(message)
+                    frames = self._data.popleft()
+                    self._queued_bytes -= sum(map(len, frames))
+                    for frame in frames:
+                        await self._send_frame(frame)
                 else:
                     self._has_messages.clear()
                     await self._has_messages.wait()
-                    continue
-                if isinstance(message, bytes):
-                    await self._socket.send_bytes(message)
-                else:
-                    await self._socket.send_str(message)
+
+    async def _send_frame(self, frame: str | bytes) -> None:
+        if isinstance(frame, bytes):
+            await self._socket.send_bytes(frame)
+        else:
+            await self._socket.send_str(frame)
+        if self._send_delay > 0:
+            await asyncio.sleep(self._send_delay)
