@@ -57,3 +57,15 @@ def test_joint_does_not_overshoot_a_target_that_jumps(simulation, speed: float) 
     positions = follow(simulation, servo, np.ones(150))
     assert positions.max() < 1.001
     assert positions[-1] == pytest.approx(1.0, abs=0.001)
+
+
+def test_friction_holds_no_light_joint_beside_its_target() -> None:
+    light = _ARM.replace("<iyy>0.06</iyy>", "<iyy>0.001</iyy>").replace("0.3 0 0 0 0 0", "0 0 0 0 0 0")
+    simulation = make_simulation(light.replace("</axis>", "<dynamics><friction>1</friction></dynamics></axis>"))
+    simulation.keep_awake("arm::bar")
+    servo = simulation.add_servo("arm::turn", 10.0)
+    positions = follow(simulation, servo, np.minimum(2.0 * np.arange(1, 101) * _PERIOD_S, 1.0))
+    assert positions[-1] == pytest.approx(1.0, abs=0.001)
+    assert not simulation.model.dof_frictionloss.any()
+    servo.release()
+    assert simulation.model.dof_frictionloss.tolist() == [1.0]

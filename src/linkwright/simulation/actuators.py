@@ -105,6 +105,9 @@ class Servo:
     steadily. The constraint is therefore set ahead of them. It is not ahead of targets that jump, or that are reached
     at the maximum speed, because the joint would overshoot.
 
+    The friction of the joint does not act meanwhile, because it would hold light joints beside their targets: MuJoCo
+    computes the force of the constraint as if the friction were soft.
+
     `Simulation.recompile_if_changed` runs on first use, so adding many servos compiles the model only once.
 
     Args:
@@ -123,6 +126,7 @@ class Servo:
         self._speed = speed if isfinite(speed) else _DEFAULT_SERVO_SPEED
         self._position = 0.0
         self._rate = 0.0
+        self._friction = 0.0
 
     @property
     def model(self) -> str:
@@ -145,6 +149,9 @@ class Servo:
         simulation = self._simulation
         simulation.refresh()
         simulation.data.eq_active[simulation.model.equality(self._name).id] = 0
+        if self._friction:
+            simulation.model.dof_frictionloss[simulation.model.joint(self._joint).dofadr[0]] = self._friction
+            self._friction = 0.0
 
     def move(self, target: float, seconds: float) -> None:
         """Move the joint towards a target, by at most the maximum speed times `seconds`.
@@ -169,7 +176,11 @@ class Servo:
     def _hold(self, position: float) -> None:
         self._simulation.refresh()
         model = self._simulation.model
-        reference_position = model.qpos0[model.joint(self._joint).qposadr[0]]
+        joint = model.joint(self._joint)
+        reference_position, dof = model.qpos0[joint.qposadr[0]], joint.dofadr[0]
+        if model.dof_frictionloss[dof]:  # A compiled model has it again.
+            self._friction = float(model.dof_frictionloss[dof])
+            model.dof_frictionloss[dof] = 0.0
         constraint_index = model.equality(self._name).id
         model.eq_data[constraint_index, 0] = position - reference_position
         self._simulation.data.eq_active[constraint_index] = 1
