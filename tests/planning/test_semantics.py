@@ -131,6 +131,9 @@ class TestGroups:
         group = resolve_groups(robot, semantics, ("wide", "endless", "slide"))["g"]
         unwound = group.unwind(np.array((-3.0, -3.0, -3.0)), np.array((3.0, 7.0, 7.0)))
         np.testing.assert_allclose(unwound, (2 * pi - 3.0, 4 * pi - 3.0, -3.0))
+        np.testing.assert_allclose(
+            group.unwind(np.array((6.2, 6.2, 6.2)), np.full(3, -6.2)), (6.2 - 2 * pi, 6.2 - 4 * pi, 6.2)
+        )
         assert group.satisfies_bounds(np.array((6.0, 50.0, 8.0)))
         assert not group.satisfies_bounds(np.array((6.4, 0.0, 0.0)))
 

@@ -109,11 +109,11 @@ class JointGroup:
             positions: in rad or m, shape (joints,).
             reference: the positions to stay near to, shape (joints,).
         """
-        turns = np.round((reference - positions) / (2 * pi)) * 2 * pi
-        unwound = positions + turns
-        is_inside = (unwound >= self.lower) & (unwound <= self.upper)
-        turns[~self.is_rotating | ~(is_inside | self.is_continuous)] = 0.0
-        return positions + turns
+        turns = np.round((reference - positions) / (2 * pi))
+        fewest, most = np.ceil((self.lower - positions) / (2 * pi)), np.floor((self.upper - positions) / (2 * pi))
+        turns = np.where(self.is_continuous, turns, np.clip(turns, np.minimum(fewest, 0.0), np.maximum(most, 0.0)))
+        unwound: Array = positions + np.where(self.is_rotating, turns * 2 * pi, 0.0)
+        return unwound
 
     def satisfies_bounds(self, positions: Array, tolerance: float = 1e-6) -> bool:
         """Return whether positions are within the bounds; continuous joints always are."""
