@@ -1,11 +1,13 @@
 """Measure inverse kinematics and plans of an arm among a shelf and a table.
 
 Run it with ``python -m benchmarks planning``. The arm has six joints and cylinders for links. The poses and the starts
-and goals of plans are random configurations. The times are medians on the clock, because OMPL may wait.
+and goals of plans are random configurations. The times are on the clock, because OMPL may wait. The limits are those of
+the splines that controllers execute.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -16,13 +18,17 @@ from benchmarks.measure import Row, show
 from linkwright.geometry.shapes import Box
 from linkwright.planning.collision_scene import CollisionScene, SceneObject
 from linkwright.planning.goals import Goal, JointTarget
+from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
 from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
 from linkwright.planning.robot_model import PlacedShape
+from linkwright.planning.splines import largest_accelerations, largest_jerks, largest_velocities
 from linkwright.planning.timing import Trajectory
 
 _POSE_COUNT, _PLAN_COUNT = 1000, 100
 _IK_TIMEOUT_S = 0.05
+_MAX_JERK = 50.0
+"""The limit of each joint's jerk in rad/s3."""
 _BOXES = (
     ((0.3, 0.8, 0.02), (0.6, 0.0, 0.2)),
     ((0.3, 0.8, 0.02), (0.6, 0.0, 0.6)),
@@ -63,24 +69,41 @@ def _measure_plans(random: np.random.Generator) -> list[Row]:
     origin = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
     shapes = tuple(PlacedShape(Box(size), np.array((*center, 0.0, 0.0, 0.0, 1.0))) for size, center in _BOXES)
     scene = CollisionScene(arm().robot, arm().shapes, [SceneObject("furniture", shapes, origin)], arm().allowed())
+    group = replace(arm().group, max_jerks=np.full(len(arm().indexes), _MAX_JERK))
     planner, seconds, solved_count, collision_count = MotionPlanner(arm().model, scene), [], 0, 0
+    ratios = np.zeros(3)
     for _ in range(_PLAN_COUNT):
         start, end = (_sample_free_positions(random, scene) for _ in range(2))
         targets = {name: JointTarget(end[arm().model.index(name)]) for name in arm().group.joint_names}
         begin = perf_counter()
         try:
-            trajectory = planner.plan(PlanRequest(arm().group, start, (Goal(targets),)))
+            trajectory = planner.plan(PlanRequest(group, start, (Goal(targets),)))
         except PlanError:
             seconds.append(perf_counter() - begin)
             continue
         seconds.append(perf_counter() - begin)
         solved_count += 1
         collision_count += not _is_motion_free(trajectory, start, scene)
+        ratios = np.maximum(ratios, _limit_ratios(trajectory, group))
     return [
         Row("plan with its trajectory", 1000.0 * float(np.median(seconds)), "ms", "300 ms"),
+        Row("the same, at most for 90 % of the problems", 1000.0 * float(np.quantile(seconds, 0.9)), "ms"),
         Row("solved problems", 100.0 * solved_count / _PLAN_COUNT, "%", "95 %"),
         Row("executed motions that collide", float(collision_count), "", "0"),
+        Row("largest velocity", 100.0 * float(ratios[0]), "% of its limit", "100 %"),
+        Row("largest acceleration", 100.0 * float(ratios[1]), "% of its limit", "100 %"),
+        Row("largest jerk", 100.0 * float(ratios[2]), "% of its limit", "100 %"),
     ]
+
+
+def _limit_ratios(trajectory: Trajectory, group: JointGroup) -> NDArray[np.float64]:
+    """Return the largest ratios of velocities, accelerations and jerks to their limits."""
+    pairs = (
+        (largest_velocities(trajectory), group.max_velocities),
+        (largest_accelerations(trajectory), group.max_accelerations),
+        (largest_jerks(trajectory), group.max_jerks),
+    )
+    return np.array([float((values / limits).max()) for values, limits in pairs])
 
 
 def _is_motion_free(trajectory: Trajectory, start: NDArray[np.float64], scene: CollisionScene) -> bool:

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
 import pytest
 
 from linkwright.descriptions.service import load
-from linkwright.diagnostics import LinkwrightError
 from linkwright.planning.groups import joint_limits, resolve_groups
-from linkwright.planning.semantics import read_semantics
+from linkwright.planning.known_names import leave_out_unknown_names
+from linkwright.planning.semantics import GroupDefinition, read_semantics
 from tests.planning.arms import SRDF, arm, urdf
 
 pytestmark = pytest.mark.extra("arm")
-
-
-def code_of(error: pytest.ExceptionInfo[LinkwrightError]) -> str:
-    return error.value.diagnostics[0].code
 
 
 class TestSemantics:
@@ -36,15 +33,38 @@ class TestSemantics:
         assert semantics.disabled_collisions == {frozenset(("tool", "")): "Default"}
 
     def test_missing_attribute_names_its_place(self) -> None:
-        with pytest.raises(LinkwrightError) as error:
-            read_semantics("<robot>\n  <group><joint name='a'/></group></robot>")
-        assert code_of(error) == "ARM101"
-        assert error.value.diagnostics[0].span.line == 2
+        semantics = read_semantics("<robot>\n  <group><joint name='a'/></group></robot>")
+        assert [problem.code for problem in semantics.problems] == ["ARM101"]
+        assert semantics.problems[0].span.line == 2
+
+    @pytest.mark.parametrize(
+        "element",
+        [
+            "<virtual_joint type='floating' parent_frame='world' child_link='base'/>",
+            "<end_effector name='hand' parent_link='tool'/>",
+            "<disable_collisions link1='base'/>",
+            "<passive_joint/>",
+            "<group_state name='home'/>",
+            "<group><link name='base'/></group>",
+        ],
+    )
+    def test_incomplete_element_leaves_the_rest(self, element: str) -> None:
+        whole, semantics = read_semantics(SRDF), read_semantics(SRDF.replace("</robot>", f"{element}</robot>"))
+        assert len(semantics.problems) == 1
+        assert replace(semantics, problems=()) == whole
+
+    def test_incomplete_part_leaves_the_rest_of_a_group(self) -> None:
+        semantics = read_semantics(
+            "<robot><group name='g'><joint/><joint name='a'/><chain base_link='b'/></group></robot>"
+        )
+        assert semantics.groups["g"] == GroupDefinition("g", joints=("a",))
+        assert len(semantics.problems) == 2
 
     def test_position_must_be_a_number(self) -> None:
-        with pytest.raises(LinkwrightError) as error:
-            read_semantics("<robot><group_state name='s' group='g'><joint name='a' value='x'/></group_state></robot>")
-        assert "'x' is not a number" in str(error.value)
+        joints = "<joint name='a' value='x'/><joint name='b' value='1'/>"
+        semantics = read_semantics(f"<robot><group_state name='s' group='g'>{joints}</group_state></robot>")
+        assert "'x' is not a number" in semantics.problems[0].message
+        assert semantics.states == {"g": {"s": {"b": 1.0}}}
 
 
 class TestGroups:
@@ -77,12 +97,26 @@ class TestGroups:
             ("<group name='g'/>", "group"),
         ],
     )
-    def test_unknown_name_is_an_error(self, content: str, kind: str) -> None:
-        semantics = read_semantics(f"<robot><group name='g'>{content}</group></robot>")
-        with pytest.raises(LinkwrightError) as error:
-            resolve_groups(arm().robot, semantics, arm().model.joint_names)
-        assert code_of(error) == "ARM102"
-        assert f"names the {kind} " in str(error.value)
+    def test_unknown_name_is_left_out(self, content: str, kind: str) -> None:
+        text = (
+            f"<robot><group name='arm'><joint name='pan'/></group><group name='g'><joint name='pan'/>{content}</group>"
+        )
+        semantics = leave_out_unknown_names(read_semantics(f"{text}</robot>"), arm().robot)
+        assert [problem.code for problem in semantics.problems] == ["ARM102"]
+        assert f"names the {kind} " in semantics.problems[0].message
+        groups = resolve_groups(arm().robot, semantics, arm().model.joint_names)
+        assert groups["arm"].joint_names == ("pan",)
+        assert ("g" in groups) == (kind != "group")
+
+    def test_end_effector_of_an_unknown_link_is_left_out(self) -> None:
+        text = SRDF.replace("parent_link='tool'", "parent_link='tol'")
+        assert leave_out_unknown_names(read_semantics(text), arm().robot).end_effectors == ()
+
+    def test_virtual_joint_may_belong_to_a_group(self) -> None:
+        text = SRDF.replace("<group name='gripper'>", "<group name='gripper'><joint name='fixed'/>")
+        semantics = leave_out_unknown_names(read_semantics(text), arm().robot)
+        assert semantics.problems == ()
+        assert resolve_groups(arm().robot, semantics, arm().model.joint_names)["gripper"].joint_names == ("left",)
 
     def test_unwinding_removes_full_turns_within_bounds(self) -> None:
         robot = load(
@@ -97,6 +131,9 @@ class TestGroups:
         group = resolve_groups(robot, semantics, ("wide", "endless", "slide"))["g"]
         unwound = group.unwind(np.array((-3.0, -3.0, -3.0)), np.array((3.0, 7.0, 7.0)))
         np.testing.assert_allclose(unwound, (2 * pi - 3.0, 4 * pi - 3.0, -3.0))
+        np.testing.assert_allclose(
+            group.unwind(np.array((6.2, 6.2, 6.2)), np.full(3, -6.2)), (6.2 - 2 * pi, 6.2 - 4 * pi, 6.2)
+        )
         assert group.satisfies_bounds(np.array((6.0, 50.0, 8.0)))
         assert not group.satisfies_bounds(np.array((6.4, 0.0, 0.0)))
 

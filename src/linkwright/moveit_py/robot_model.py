@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,9 +13,12 @@ import numpy as np
 from linkwright.descriptions.service import load
 from linkwright.geometry.arrays import Array
 from linkwright.planning.groups import JointGroup, resolve_groups
+from linkwright.planning.known_names import leave_out_unknown_names
 from linkwright.planning.robot_model import RobotModel as MovedRobot
 from linkwright.planning.semantics import Semantics, read_semantics
 from linkwright.urdf import Robot
+
+_log = logging.getLogger(__name__)
 
 
 class VariableBounds(NamedTuple):
@@ -110,12 +114,15 @@ class RobotModel:
         srdf_xml_path: the SRDF file.
 
     Raises:
-        LinkwrightError: the URDF or the SRDF has errors.
+        LinkwrightError: the URDF has errors, or the SRDF is not XML.
     """
 
     def __init__(self, urdf_xml_path: str, srdf_xml_path: str) -> None:
         robot = load(Path(urdf_xml_path).read_text(encoding="utf-8"))
         semantics = read_semantics(Path(srdf_xml_path).read_text(encoding="utf-8"), srdf_xml_path)
+        semantics = leave_out_unknown_names(semantics, robot)
+        for problem in semantics.problems:
+            _log.error(problem.message)
         self._set(robot, semantics, None)
 
     @classmethod

@@ -12,7 +12,6 @@ from math import inf, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase, term
 from linkwright.geometry.arrays import Array
 from linkwright.planning.semantics import GroupDefinition, Semantics
 from linkwright.urdf import Joint, Robot, parent_joints
@@ -110,11 +109,11 @@ class JointGroup:
             positions: in rad or m, shape (joints,).
             reference: the positions to stay near to, shape (joints,).
         """
-        turns = np.round((reference - positions) / (2 * pi)) * 2 * pi
-        unwound = positions + turns
-        is_inside = (unwound >= self.lower) & (unwound <= self.upper)
-        turns[~self.is_rotating | ~(is_inside | self.is_continuous)] = 0.0
-        return positions + turns
+        turns = np.round((reference - positions) / (2 * pi))
+        fewest, most = np.ceil((self.lower - positions) / (2 * pi)), np.floor((self.upper - positions) / (2 * pi))
+        turns = np.where(self.is_continuous, turns, np.clip(turns, np.minimum(fewest, 0.0), np.maximum(most, 0.0)))
+        unwound: Array = positions + np.where(self.is_rotating, turns * 2 * pi, 0.0)
+        return unwound
 
     def satisfies_bounds(self, positions: Array, tolerance: float = 1e-6) -> bool:
         """Return whether positions are within the bounds; continuous joints always are."""
@@ -132,17 +131,14 @@ def resolve_groups(
 
     Args:
         robot: the robot of the SRDF.
-        semantics: the contents of the SRDF.
+        semantics: the contents of the SRDF, with known names, see `leave_out_unknown_names`.
         joint_order: the joints with a position of their own, parents before children.
         limits: the entries of ``joint_limits`` in MoveIt's ``joint_limits.yaml``, by joint name.
-
-    Raises:
-        LinkwrightError: ARM102, a group names a link, joint or group that does not exist.
     """
     order = {name: index for index, name in enumerate(joint_order)}
     groups: dict[str, JointGroup] = {}
     for definition in semantics.groups.values():
-        joints = _find_joints(robot, semantics, definition, ())
+        joints = _find_joints(robot, semantics, definition)
         names = sorted((name for name in joints if name in order), key=order.__getitem__)
         if not names:
             continue
@@ -163,33 +159,18 @@ def resolve_groups(
     return groups
 
 
-def _find_joints(
-    robot: Robot, semantics: Semantics, definition: GroupDefinition, enclosing: tuple[str, ...]
-) -> dict[str, None]:
+def _find_joints(robot: Robot, semantics: Semantics, definition: GroupDefinition) -> dict[str, None]:
     """Return the names of a group's joints as the keys of a dictionary.
 
-    Fixed joints are included.
+    Fixed joints are included, and virtual joints are not.
     """
     parents = parent_joints(robot)
-    joints: dict[str, None] = {}
-    for name in definition.joints:
-        if name in robot.joints:
-            joints[name] = None
-        elif all(name != virtual.name for virtual in semantics.virtual_joints):
-            raise _unknown_name(definition, "joint", name, robot.joints)
-    for name in definition.links:
-        _check_link(robot, definition, name)
-        if name in parents:
-            joints[parents[name].name] = None
+    joints = {name: None for name in definition.joints if name in robot.joints}
+    joints.update((parents[name].name, None) for name in definition.links if name in parents)
     for base, tip in definition.chains:
-        _check_link(robot, definition, base)
-        _check_link(robot, definition, tip)
         joints.update(dict.fromkeys(_chain_joints(parents, base, tip)))
     for name in definition.subgroups:
-        subgroup = semantics.groups.get(name)
-        if subgroup is None or name in enclosing:
-            raise _unknown_name(definition, "group", name, semantics.groups)
-        joints.update(_find_joints(robot, semantics, subgroup, (*enclosing, definition.name)))
+        joints.update(_find_joints(robot, semantics, semantics.groups[name]))
     return joints
 
 
@@ -211,18 +192,3 @@ def _find_tip(robot: Robot, definition: GroupDefinition, joints: Mapping[str, No
     parents = [robot.joints[name].parent for name in joints]
     tips = children.difference(parents)
     return tips.pop() if len(tips) == 1 and len(set(parents)) == len(parents) else None
-
-
-def _check_link(robot: Robot, definition: GroupDefinition, name: str) -> None:
-    if name not in robot.links:
-        raise _unknown_name(definition, "link", name, robot.links)
-
-
-def _unknown_name(definition: GroupDefinition, kind: str, name: str, candidates: Iterable[str]) -> LinkwrightError:
-    message = phrase(
-        "group '{group}' of the SRDF names the {kind} '{name}', which does not exist",
-        group=definition.name,
-        kind=term(kind),
-        name=name,
-    )
-    return LinkwrightError(Diagnostic("ARM102", message, hint=did_you_mean(name, list(candidates))))

@@ -7,11 +7,14 @@ Source: the SRDF specification and the package ``srdfdom``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.xmltree import Element, parse
+
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +65,7 @@ class Semantics:
             several positions (planar, floating) are left out.
         disabled_collisions: the pairs of links that may collide, each with the reason in the file.
         passive_joints: the joints without a motor.
+        problems: the errors of the elements that were left out, ARM101 and ARM102.
     """
 
     name: str
@@ -71,56 +75,87 @@ class Semantics:
     virtual_joints: tuple[VirtualJoint, ...]
     passive_joints: frozenset[str]
     disabled_collisions: Mapping[frozenset[str], str]
+    problems: tuple[Diagnostic, ...] = ()
 
 
 def read_semantics(text: str, name: str = "<robot_description_semantic>") -> Semantics:
     """Read an SRDF.
 
+    As in MoveIt, elements that lack an attribute or have an invalid number are left out.
+
     Raises:
-        LinkwrightError: the text is not XML; ARM101, an element lacks an attribute or has an invalid number.
+        LinkwrightError: the text is not XML.
     """
     root = parse(text, name).root
-    groups = {group.name: group for group in map(_read_group, root.elements("group"))}
+    problems: list[Diagnostic] = []
+    groups = {group.name: group for group in _read_all(root, "group", _read_group, problems)}
     states: dict[str, dict[str, dict[str, float]]] = {}
-    for element in root.elements("group_state"):
-        group_states = states.setdefault(_attribute(element, "group"), {})
-        group_states[_attribute(element, "name")] = _read_positions(element)
+    for group, state, positions in _read_all(root, "group_state", _read_state, problems):
+        states.setdefault(group, {})[state] = positions
     return Semantics(
         root.attributes.get("name", ""),
         groups,
         states,
-        tuple(map(_read_end_effector, root.elements("end_effector"))),
-        tuple(map(_read_virtual_joint, root.elements("virtual_joint"))),
-        frozenset(_attribute(element, "name") for element in root.elements("passive_joint")),
-        _read_disabled_collisions(root),
+        tuple(_read_all(root, "end_effector", _read_end_effector, problems)),
+        tuple(_read_all(root, "virtual_joint", _read_virtual_joint, problems)),
+        frozenset(_read_all(root, "passive_joint", _read_name, problems)),
+        _read_disabled_collisions(root, problems),
+        tuple(problems),
     )
 
 
-def _read_group(element: Element) -> GroupDefinition:
+def _read_all(
+    parent: Element, tag: str, read: Callable[[Element, list[Diagnostic]], _T], problems: list[Diagnostic]
+) -> list[_T]:
+    """Return what the children with a tag say, and collect the errors of those that cannot be read."""
+    results = (_try_to_read(element, read, problems) for element in parent.elements(tag))
+    return [result for result in results if result is not None]
+
+
+def _try_to_read(
+    element: Element, read: Callable[[Element, list[Diagnostic]], _T], problems: list[Diagnostic]
+) -> _T | None:
+    try:
+        return read(element, problems)
+    except LinkwrightError as error:
+        problems.extend(error.diagnostics)
+        return None
+
+
+def _read_name(element: Element, _: list[Diagnostic]) -> str:
+    return _attribute(element, "name")
+
+
+def _read_group(element: Element, problems: list[Diagnostic]) -> GroupDefinition:
     return GroupDefinition(
         _attribute(element, "name"),
-        tuple(_attribute(child, "name") for child in element.elements("link")),
-        tuple(_attribute(child, "name") for child in element.elements("joint")),
-        tuple((_attribute(child, "base_link"), _attribute(child, "tip_link")) for child in element.elements("chain")),
-        tuple(_attribute(child, "name") for child in element.elements("group")),
+        tuple(_read_all(element, "link", _read_name, problems)),
+        tuple(_read_all(element, "joint", _read_name, problems)),
+        tuple(_read_all(element, "chain", _read_chain, problems)),
+        tuple(_read_all(element, "group", _read_name, problems)),
     )
 
 
-def _read_positions(state: Element) -> dict[str, float]:
-    positions: dict[str, float] = {}
-    for element in state.elements("joint"):
-        words = _attribute(element, "value").split()
-        try:
-            numbers = [float(word) for word in words]
-        except ValueError:
-            text = element.attributes["value"]
-            raise _invalid_element(element, phrase("'{text}' is not a number", text=text), "value") from None
-        if len(numbers) == 1:
-            positions[_attribute(element, "name")] = numbers[0]
-    return positions
+def _read_chain(element: Element, _: list[Diagnostic]) -> tuple[str, str]:
+    return _attribute(element, "base_link"), _attribute(element, "tip_link")
 
 
-def _read_end_effector(element: Element) -> EndEffector:
+def _read_state(element: Element, problems: list[Diagnostic]) -> tuple[str, str, dict[str, float]]:
+    """Return the group, the name and the joint positions of a named state."""
+    group, state = _attribute(element, "group"), _attribute(element, "name")
+    positions = _read_all(element, "joint", _read_position, problems)
+    return group, state, {joint: numbers[0] for joint, numbers in positions if len(numbers) == 1}
+
+
+def _read_position(element: Element, _: list[Diagnostic]) -> tuple[str, list[float]]:
+    joint, text = _attribute(element, "name"), _attribute(element, "value")
+    try:
+        return joint, [float(word) for word in text.split()]
+    except ValueError:
+        raise _invalid_element(element, phrase("'{text}' is not a number", text=text), "value") from None
+
+
+def _read_end_effector(element: Element, _: list[Diagnostic]) -> EndEffector:
     return EndEffector(
         _attribute(element, "name"),
         _attribute(element, "group"),
@@ -129,26 +164,30 @@ def _read_end_effector(element: Element) -> EndEffector:
     )
 
 
-def _read_virtual_joint(element: Element) -> VirtualJoint:
+def _read_virtual_joint(element: Element, _: list[Diagnostic]) -> VirtualJoint:
     return VirtualJoint(*(_attribute(element, name) for name in ("name", "type", "parent_frame", "child_link")))
 
 
-def _read_disabled_collisions(root: Element) -> dict[frozenset[str], str]:
+def _read_disabled_collisions(root: Element, problems: list[Diagnostic]) -> dict[frozenset[str], str]:
     """Return the disabled pairs, by the rules of Jazzy.
 
     A link in ``disable_default_collisions`` may collide with all links that have no ``enable_collisions`` with it;
     such a link forms a pair with the empty name.
     """
     disabled: dict[frozenset[str], str] = {}
-    for element in root.elements("disable_default_collisions"):
-        disabled[frozenset((_attribute(element, "link"), ""))] = "Default"
-    for element in root.elements("disable_collisions"):
-        disabled[_link_pair(element)] = element.attributes.get("reason", "")
+    for link in _read_all(root, "disable_default_collisions", _read_default_link, problems):
+        disabled[frozenset((link, ""))] = "Default"
+    disabled.update(_read_all(root, "disable_collisions", _read_disabled_pair, problems))
     return disabled
 
 
-def _link_pair(element: Element) -> frozenset[str]:
-    return frozenset((_attribute(element, "link1"), _attribute(element, "link2")))
+def _read_default_link(element: Element, _: list[Diagnostic]) -> str:
+    return _attribute(element, "link")
+
+
+def _read_disabled_pair(element: Element, _: list[Diagnostic]) -> tuple[frozenset[str], str]:
+    pair = frozenset((_attribute(element, "link1"), _attribute(element, "link2")))
+    return pair, element.attributes.get("reason", "")
 
 
 def _attribute(element: Element, name: str) -> str:

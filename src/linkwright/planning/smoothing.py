@@ -96,8 +96,8 @@ def parameterize_smoothly(
         fine = parameterize_finely(interval_s=window_s / _FINE_STEPS)
     if not fine.duration:
         return fine
-    largest = (limits.max(axis=0) for limits in (max_velocities, max_accelerations))
-    return slow_to_limits(_average(fine, window_s, interval_s), *largest)
+    averaged = _average(fine, window_s, interval_s)
+    return slow_to_limits(averaged, max_velocities.max(axis=0), max_accelerations.max(axis=0), max_jerks)
 
 
 def _straight_ranges(corners: Array) -> list[tuple[int, int]]:

@@ -1,4 +1,4 @@
-"""The largest velocities and accelerations of the quintic splines that controllers execute.
+"""The largest velocities, accelerations and jerks of the quintic splines that controllers execute.
 
 The points of a trajectory may be within limits while the splines between them are not.
 """
@@ -43,14 +43,29 @@ def largest_accelerations(trajectory: Trajectory) -> Array:
     return np.asarray(largest.max(axis=0, initial=0.0), dtype=np.float64)
 
 
-def slow_to_limits(trajectory: Trajectory, max_velocities: Array, max_accelerations: Array) -> Trajectory:
+def largest_jerks(trajectory: Trajectory) -> Array:
+    """Return the largest jerks along the splines, shape (joints,), in rad/s3 or m/s3."""
+    widths, coefficients = trajectory.coefficients()
+    j0, j1, j2 = np.array([6.0, 24.0, 60.0])[:, None, None] * coefficients[3:] / widths**3
+    largest = np.maximum(np.abs(j0), np.abs(j0 + j1 + j2))
+    # The extreme of the parabola is where its derivative j1 + 2 j2 x is zero.
+    x = np.clip(np.divide(-j1, 2.0 * j2, out=np.zeros_like(j1), where=j2 != 0.0), 0.0, 1.0)
+    largest = np.maximum(largest, np.abs(j0 + x * (j1 + x * j2)))
+    return np.asarray(largest.max(axis=0, initial=0.0), dtype=np.float64)
+
+
+def slow_to_limits(
+    trajectory: Trajectory, max_velocities: Array, max_accelerations: Array, max_jerks: Array
+) -> Trajectory:
     """Return a trajectory whose splines keep limits: the same one, or one that is slower everywhere.
 
     Args:
         trajectory: the trajectory.
         max_velocities: in rad/s or m/s, shape (joints,).
         max_accelerations: in rad/s2 or m/s2, shape (joints,).
+        max_jerks: in rad/s3 or m/s3, shape (joints,); infinite for joints without a limit.
     """
     velocity_ratio = float(np.max(largest_velocities(trajectory) / max_velocities, initial=0.0))
     acceleration_ratio = float(np.max(largest_accelerations(trajectory) / max_accelerations, initial=0.0))
-    return trajectory.slowed(max(1.0, velocity_ratio, np.sqrt(acceleration_ratio)))
+    jerk_ratio = float(np.max(largest_jerks(trajectory) / max_jerks, initial=0.0))
+    return trajectory.slowed(max(1.0, velocity_ratio, np.sqrt(acceleration_ratio), np.cbrt(jerk_ratio)))

@@ -6,10 +6,12 @@ from math import isfinite
 from typing import Any, Protocol
 
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.simulation.scene.scene import Scene
+from linkwright.simulation.scene.scene import SERVO_TIME_CONSTANT, Scene
 
 _DEFAULT_SERVO_SPEED = 2.0
 """The speed of a servo if neither the caller nor the joint limits it, in rad/s or m/s."""
+_SERVO_LAG_S = 2.0 * SERVO_TIME_CONSTANT
+"""The time in s by which a joint follows the moving target of a critically damped constraint."""
 
 
 class ActuatedSimulation(Protocol):
@@ -99,6 +101,13 @@ class Motor:
 class Servo:
     """A servo that holds a joint with one axis at a position, and moves it to new positions.
 
+    The constraint that holds the joint also damps its velocity, so that the joint would lag behind targets that move
+    steadily. The constraint is therefore set ahead of them. It is not ahead of targets that jump, or that are reached
+    at the maximum speed, because the joint would overshoot.
+
+    The friction of the joint does not act meanwhile, because it would hold light joints beside their targets: MuJoCo
+    computes the force of the constraint as if the friction were soft.
+
     `Simulation.recompile_if_changed` runs on first use, so adding many servos compiles the model only once.
 
     Args:
@@ -116,6 +125,8 @@ class Servo:
         speed = min(speed, simulation.scene.speed_limit(joint))
         self._speed = speed if isfinite(speed) else _DEFAULT_SERVO_SPEED
         self._position = 0.0
+        self._rate = 0.0
+        self._friction = 0.0
 
     @property
     def model(self) -> str:
@@ -130,14 +141,17 @@ class Servo:
 
     def restart(self) -> None:
         """Hold the joint at its current position."""
-        self._position = self._simulation.joint_state(self._joint)[0]
-        self._hold()
+        self._position, self._rate = self._simulation.joint_state(self._joint)[0], 0.0
+        self._hold(self._position)
 
     def release(self) -> None:
         """Switch the servo off until `restart` or `move` is called."""
         simulation = self._simulation
         simulation.refresh()
         simulation.data.eq_active[simulation.model.equality(self._name).id] = 0
+        if self._friction:
+            simulation.model.dof_frictionloss[simulation.model.joint(self._joint).dofadr[0]] = self._friction
+            self._friction = 0.0
 
     def move(self, target: float, seconds: float) -> None:
         """Move the joint towards a target, by at most the maximum speed times `seconds`.
@@ -151,13 +165,22 @@ class Servo:
             lower, upper = model.jnt_range[joint.id]
             target = min(max(target, float(lower)), float(upper))
         max_change = self._speed * seconds
-        self._position = min(max(target, self._position - max_change), self._position + max_change)
-        self._hold()
+        position = min(max(target, self._position - max_change), self._position + max_change)
+        rate = (position - self._position) / seconds if position == target and seconds > 0.0 else 0.0
+        is_steady = rate * self._rate > 0.0
+        lag_s = _SERVO_LAG_S - (seconds - model.opt.timestep) / 2.0  # The joint has the target of a period at its end.
+        lead = max(0.0, lag_s) * min(rate, self._rate, key=abs) if is_steady else 0.0
+        self._position, self._rate = position, rate
+        self._hold(position + lead)
 
-    def _hold(self) -> None:
+    def _hold(self, position: float) -> None:
         self._simulation.refresh()
         model = self._simulation.model
-        reference_position = model.qpos0[model.joint(self._joint).qposadr[0]]
+        joint = model.joint(self._joint)
+        reference_position, dof = model.qpos0[joint.qposadr[0]], joint.dofadr[0]
+        if model.dof_frictionloss[dof]:  # A compiled model has it again.
+            self._friction = float(model.dof_frictionloss[dof])
+            model.dof_frictionloss[dof] = 0.0
         constraint_index = model.equality(self._name).id
-        model.eq_data[constraint_index, 0] = self._position - reference_position
+        model.eq_data[constraint_index, 0] = position - reference_position
         self._simulation.data.eq_active[constraint_index] = 1

@@ -22,6 +22,7 @@ from linkwright.messages import get_message
 from linkwright.packages import current_finder
 from linkwright.planning.collision_scene import AllowedCollisions, LinkMargin
 from linkwright.planning.groups import resolve_groups
+from linkwright.planning.known_names import leave_out_unknown_names
 from linkwright.planning.nodes.conversions import (
     RequestError,
     UnknownFrameError,
@@ -55,20 +56,22 @@ class RobotContext:
         has_state: whether a joint state was received.
 
     Raises:
-        LinkwrightError: the URDF or the SRDF has errors.
+        LinkwrightError: the URDF has errors, or the SRDF is not XML. Other errors of the SRDF are logged.
     """
 
     def __init__(
         self, node: Node, urdf: str, srdf: str, parameters: Mapping[str, Any], *, joint_topic: str = "joint_states"
     ) -> None:
         self.robot = load(urdf)
-        self.semantics = read_semantics(srdf)
+        self.semantics = leave_out_unknown_names(read_semantics(srdf), self.robot)
+        for problem in self.semantics.problems:
+            node.get_logger().error(problem.message)
         self.model = RobotModel(self.robot)
         limits = _read_joint_limits(parameters)
         self.groups = resolve_groups(self.robot, self.semantics, self.model.joint_names, limits)
         self.margins, problems = read_margins(parameters, self.robot.links)
-        for problem in problems:
-            node.get_logger().error(problem)
+        for text in problems:
+            node.get_logger().error(text)
         self.shapes, mesh_errors = robot_shapes(self.robot, MeshLibrary(current_finder(), Path.cwd()))
         for error in mesh_errors:
             node.get_logger().warning(error.diagnostics[0].message)

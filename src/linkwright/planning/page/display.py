@@ -16,6 +16,7 @@ from linkwright.page.protocol.motion_planning import (
     QueryName,
     SetQueryJoint,
 )
+from linkwright.planning.known_names import leave_out_unknown_names
 from linkwright.planning.page.groups import PlanningGroup, Tip, read_groups
 from linkwright.planning.page.handles import choose_size, describe_place, make_handle, name_handle
 from linkwright.planning.page.move_group import MoveGroupClient
@@ -260,11 +261,12 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         robot, semantics = self.robot, self._semantics
         self._groups_by_name = {}
         if robot is not None and semantics is not None:
-            try:
-                self._groups_by_name = read_groups(robot.description, semantics, robot.joint_names)
+            known = leave_out_unknown_names(semantics, robot.description)
+            self._groups_by_name = read_groups(robot.description, known, robot.joint_names)
+            if known.problems:
+                self.set_status_row(_SEMANTICS_ROW, "error", known.problems[0].message)
+            else:
                 self.delete_status_row(_SEMANTICS_ROW)
-            except LinkwrightError as error:
-                self.set_status_row(_SEMANTICS_ROW, "error", error.diagnostics[0].message)
         self.publish_properties()
         self._choose_group()
 

@@ -77,11 +77,8 @@ def read_groups(robot: Robot, semantics: Semantics, joint_order: Sequence[str]) 
 
     Args:
         robot: the robot.
-        semantics: its SRDF.
+        semantics: its SRDF, with known names.
         joint_order: the joints with a position of their own, parents before children.
-
-    Raises:
-        LinkwrightError: ARM102, a group names a link, joint or group that does not exist.
     """
     groups = resolve_groups(robot, semantics, joint_order)
     return {

@@ -45,7 +45,7 @@ more effective inertia than the wheel.
 """
 SERVO_SUFFIX = "#servo"
 """The separator between the joint's name and a number in the name of a servo constraint."""
-_SERVO_TIME_CONSTANT = 0.02
+SERVO_TIME_CONSTANT = 0.02
 """The time constant of a servo in s."""
 
 
@@ -366,7 +366,7 @@ class Scene:
         )
         equality.name1 = joint
         equality.data[:5] = 0.0
-        equality.solref, equality.solimp[:2] = [_SERVO_TIME_CONSTANT, 1.0], [0.99, 0.999]
+        equality.solref, equality.solimp[:2] = [SERVO_TIME_CONSTANT, 1.0], [0.99, 0.999]
         self.models[joint.partition(SEPARATOR)[0]].parts.append(equality)
         return str(equality.name)
 
