@@ -17,6 +17,13 @@ _TASK_ALTERNATIVE = phrase(
 )
 _CAMERA_ALTERNATIVE = phrase("libgazebo_ros_camera.so in the <sensor>")
 _LIDAR_ALTERNATIVE = phrase("libgazebo_ros_ray_sensor.so in a <sensor> of type ray")
+_THERMAL_ALTERNATIVE = phrase("a <sensor> of type segmentation_camera, with a label for what is warm")
+_RADIO_ALTERNATIVE = phrase(
+    "libgazebo_ros_p3d.so for the true poses, and a ROS node that computes the signal from the distance"
+)
+_DISTANCE_ALTERNATIVE = phrase(
+    "a <sensor> of type ray with libgazebo_ros_ray_sensor.so and <output_type>sensor_msgs/Range</output_type>"
+)
 _CAMERAS = ("RealSensePlugin", "gazebo_gst_camera_plugin", "realsense_gazebo_plugin", "uuv_gazebo_ros_camera_plugin")
 _LIDARS = ("rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin")
 _TASKS = ("AcousticPerception", "AcousticTracking", "Gymkhana", "Navigation", "Perception", "ScanDock", "Wildlife")
@@ -36,6 +43,11 @@ _ALTERNATIVES = {
     "gz-sim-log-playback-system": phrase("`linkwright bag play`"),
     "gz-sim-log-system": phrase("`linkwright sim --record`, or `linkwright bag record`"),
     "gz-sim-model-photo-shoot-system": phrase("a camera in front of the model"),
+    **dict.fromkeys(("wireless_receiver", "wireless_transmitter", "rfid", "rfidtag"), _RADIO_ALTERNATIVE),
+    **dict.fromkeys(
+        ("thermal", "thermal_camera", "gz-sim-thermal-system", "gz-sim-thermal-sensor-system"), _THERMAL_ALTERNATIVE
+    ),
+    "sonar": _DISTANCE_ALTERNATIVE,
     "wide_angle_camera": _WIDE_CAMERA_ALTERNATIVE,
     "wideanglecamera": _WIDE_CAMERA_ALTERNATIVE,
 }
