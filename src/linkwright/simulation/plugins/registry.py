@@ -57,6 +57,7 @@ _BUILT_IN = frozenset(
 
 _OTHER_GZ_LIBRARIES = frozenset(
     (
+        *("AcousticPingerPlugin", "BallShooterPlugin"),
         *("PolyhedraBuoyancyDrag", "PublisherPlugin", "SimpleHydrodynamics", "Surface", "USVWind"),
         *("StationkeepingScoringPlugin", "WayfindingScoringPlugin"),
     )
