@@ -96,6 +96,8 @@ def test_systems_listed_as_built_in_are_simulated():
             *CLASSIC_SYSTEMS,
             "RayPlugin",
             "WaveVisual",
+            "rmagine_embree_map_gzplugin",
+            "rmagine_optix_map_gzplugin",
         ), library
 
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 import pytest
 
 from linkwright.graph import Graph, LogRecord
+from linkwright.loading.extensions import extensions
+from linkwright.simulation.plugins.alternatives import ALTERNATIVES
+from linkwright.simulation.plugins.registry import PLUGIN_GROUP, SENSOR_GROUP
 from linkwright.simulation.plugins.sources import find_plugin_sources
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.simulation import Simulation
@@ -65,10 +68,30 @@ async def test_plugin_of_a_visual_is_told_of():
         assert log[0].text == "plugins and sensors that are not simulated: libMy.so"
 
 
-@pytest.mark.parametrize("kind", ["sonar", "wireless_transmitter", "thermal"])
+@pytest.mark.parametrize("kind", ["sonar", "wireless_transmitter", "thermal", "ray"])
 async def test_sensor_without_a_substitute_is_told_of_with_what_to_use_instead(kind):
     sensor = f'<sensor name="s" type="{kind}"/>'
     model = f'<model name="m"><link name="l">{sensor}</link></model>'
     async with running_server(model) as (_, __, log):
         assert log[0].text == f"plugins and sensors that are not simulated: {kind}"
         assert log[1].text.startswith(f"instead of {kind}, use ")
+
+
+def test_alternatives_are_for_what_is_not_simulated():
+    simulated = {*extensions(PLUGIN_GROUP), *extensions(SENSOR_GROUP)}
+    assert [name for name in ALTERNATIVES if name in simulated] == []
+
+
+@pytest.mark.parametrize(
+    ("library", "text"),
+    [
+        ("libgazebo_ros_create_cliff_sensor.so", "sensor_msgs/Range"),
+        ("librotors_gazebo_mavlink_interface.so", "a ROS node in place of the autopilot"),
+        ("libhector_servo_plugin.so", "gz-sim-joint-position-controller-system"),
+        ("libROSConveyorBeltPlugin.so", "gz-sim-track-controller-system"),
+    ],
+)
+async def test_library_is_told_of_with_a_simulated_alternative(library, text):
+    async with running_server(robot(f'<plugin name="a" filename="{library}"/>')) as (_, __, log):
+        assert f"instead of {library}, use " in log[1].text
+        assert text in log[1].text

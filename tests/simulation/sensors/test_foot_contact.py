@@ -45,3 +45,13 @@ async def test_force_in_the_air_is_zero():
         await graph.settle()
         wrench = recording.last.wrench.force
         assert (wrench.x, wrench.y, wrench.z) == (0.0, 0.0, 0.0)
+
+
+async def test_feet_with_plugins_of_the_same_name_are_all_measured():
+    other = leg("3 0 0.1 0 0 0").replace('"leg"', '"other"').replace("FL_foot", "FR_foot")
+    async with running_server(GROUND, leg("0 0 0.1 0 0 0"), other) as (server, graph, log):
+        recordings = [Recording(graph, server.node, f"/visual/{name}_foot_contact/the_force") for name in ("FL", "FR")]
+        server.advance(SECOND_NS)
+        await graph.settle()
+        assert [recording.last.wrench.force.z for recording in recordings] == pytest.approx([19.62] * 2, abs=0.3)
+        assert not log, [record.text for record in log]

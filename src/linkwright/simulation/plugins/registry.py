@@ -49,6 +49,7 @@ _BUILT_IN = frozenset(
         *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM)),
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
         "WaveVisual",  # the page draws the water from what the floating bodies publish
+        *("rmagine_embree_map_gzplugin", "rmagine_optix_map_gzplugin"),  # lidars see all shapes without a map of them
         *_LIBRARIES_WITHOUT_EFFECT,
     )
 )
@@ -64,6 +65,11 @@ _OTHER_GZ_LIBRARIES = frozenset(
 )
 """Libraries for gz that are not part of gz, by name."""
 
+_LIBRARIES_WITHOUT_NODE = frozenset(
+    ("ForceVisual", "LinkPlot3DPlugin", "unitreeDrawForcePlugin", "unitreeFootContactPlugin")
+)
+"""Libraries for Gazebo Classic whose nodes are not named after the plugin, so that several plugins have one name."""
+
 DEFAULT_GZ_SYSTEMS = tuple(
     Plugin(f"gz-sim-{name}-system") for name in ("physics", "user-commands", "scene-broadcaster")
 )
@@ -74,6 +80,11 @@ def is_gz_library(filename: str) -> bool:
     """Return whether a library is for gz, whose plugins do not have separate nodes."""
     name = library_name(filename)
     return name.startswith("gz-sim-") or name in _OTHER_GZ_LIBRARIES
+
+
+def shares_node(filename: str) -> bool:
+    """Return whether the plugins of a library share the simulator's node."""
+    return is_gz_library(filename) or library_name(filename) in _LIBRARIES_WITHOUT_NODE
 
 
 def is_built_in(filename: str) -> bool:

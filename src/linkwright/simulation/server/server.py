@@ -32,7 +32,7 @@ from linkwright.simulation.plugins.registry import (
     find_plugin_class,
     find_sensor_class,
     is_built_in,
-    is_gz_library,
+    shares_node,
 )
 from linkwright.simulation.plugins.ros_element import read_node_description
 from linkwright.simulation.plugins.water import WaterSurface
@@ -450,7 +450,8 @@ class SimulationServer:
     def _create_node(self, context: PluginContext, namespace: str, calls: Calls) -> PluginNode:
         """Return the node for a plugin or sensor.
 
-        Plugins of gz and sensors without a plugin share the simulator's node; other plugins get a separate node.
+        Plugins of gz, sensors without a plugin, and some plugins of Gazebo Classic share the simulator's node; other
+        plugins get a separate node.
 
         Raises:
             LinkwrightError: SIM135, another plugin has a node with the same name.
@@ -554,7 +555,7 @@ class SimulationServer:
 
 def is_shared(context: PluginContext) -> bool:
     """Return whether a plugin or sensor shares the simulator's node."""
-    return context.plugin is None or is_gz_library(context.plugin.filename)
+    return context.plugin is None or shares_node(context.plugin.filename)
 
 
 def _find_unsimulated_names(context: PluginContext) -> dict[str, bool]:
