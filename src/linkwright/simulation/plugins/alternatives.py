@@ -55,7 +55,7 @@ _GROUPS = {
         *("RobotFootContactPlugin", "contact_plugin", "gazebo_ros_contact", "gazebo_ros_create_bumper"),
         "gazebo_ros_create_wheel_drop",
     ),
-    _CONTROL_ALTERNATIVE: ("IOBPlugin", "gz_quadruped_hardware-system", "xbot2_gz_joint_server"),
+    _CONTROL_ALTERNATIVE: ("IOBPlugin", "xbot2_gz_joint_server"),
     _DISTANCE_ALTERNATIVE: (
         *("MrsGazeboCommonResources_RangefinderPlugin", "gazebo_ros_create_cliff_sensor", "gazebo_sonar_plugin"),
         *("gazebo_ros_create_ir_intensity_sensor", "sonar"),
@@ -94,7 +94,7 @@ _GROUPS = {
     _WATER_ALTERNATIVE: ("freefloating_gazebo_fluid", "gazebo_usv_dynamics_plugin"),
     _WIDE_CAMERA_ALTERNATIVE: ("wide_angle_camera", "wideanglecamera"),
 }
-"""Libraries and types of sensors by what to use instead."""
+"""Libraries and types of sensors, by their alternative."""
 
 ALTERNATIVES = {
     **{name: alternative for alternative, names in _GROUPS.items() for name in names},
@@ -107,7 +107,7 @@ ALTERNATIVES = {
     "gz-sim-log-system": phrase("`linkwright sim --record`, or `linkwright bag record`"),
     "gz-sim-model-photo-shoot-system": phrase("a camera in front of the model"),
 }
-"""What to use instead of plugins and types of sensors that are not simulated."""
+"""The alternatives to plugins and types of sensors that are not simulated."""
 
 
 def find_alternative(name: str) -> Phrase | None:
