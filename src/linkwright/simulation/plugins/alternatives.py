@@ -69,7 +69,7 @@ _GROUPS = {
         *("ros2_livox", "rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin", "ray"),
     ),
     _LIGHT_ALTERNATIVE: (
-        *("LightBuoyPlugin", "LightIndicator", "PlacardPlugin", "traffic_light_plugin"),
+        *("LightIndicator", "PlacardPlugin", "traffic_light_plugin"),
         *("MrsGazeboCommonResources_LightPlugin", "MrsGazeboCommonResources_SafetyLedPlugin"),
     ),
     _MOTION_ALTERNATIVE: (

@@ -32,7 +32,7 @@ from linkwright.simulation.plugins.plugin import P, SimulatedPlugin
 from linkwright.xmltree import Element
 
 _MARKERS_TYPE, _WRENCH_TYPE = "visualization_msgs/msg/MarkerArray", "geometry_msgs/msg/WrenchStamped"
-_LIBRARIES = ("ForceVisual", "unitreeDrawForcePlugin", "LinkPlot3DPlugin")
+_LIBRARIES = ("ForceVisual", "LightBuoyPlugin", "LinkPlot3DPlugin", "unitreeDrawForcePlugin")
 _RATE_HZ = 20.0
 _ADD, _ARROW, _LINE_STRIP = 0, 0, 4
 _LINE_WIDTH_M = 0.01
@@ -53,8 +53,8 @@ _COLORS = {
 """The colors of Gazebo's materials by name."""
 
 
-class _Drawing(SimulatedPlugin[P]):
-    """A plugin that draws lines as markers."""
+class DrawingPlugin(SimulatedPlugin[P]):
+    """A plugin that draws markers in the world."""
 
     def create_output(self) -> None:
         """Create the topic of the markers."""
@@ -65,23 +65,42 @@ class _Drawing(SimulatedPlugin[P]):
         """Whether the markers have a subscription."""
         return self._output.is_wanted
 
-    def draw(self, name: str, kind: int, points: Sequence[Array], color: tuple[float, float, float]) -> None:
-        """Draw a line through points of the world, or an arrow from the first to the second point."""
-        point_class, color_class = get_message("geometry_msgs/msg/Point"), get_message("std_msgs/msg/ColorRGBA")
+    def draw(
+        self, name: str, kind: int, scale: Sequence[float], color: Sequence[float], points: Sequence[Array] = ()
+    ) -> None:
+        """Publish a marker in the frame of the world.
+
+        Args:
+            name: the name of the marker in the model.
+            kind: the type of ``visualization_msgs/msg/Marker``.
+            scale: the size of the marker.
+            color: red, green and blue.
+            points: the points of a line, or the ends of an arrow.
+        """
+        marker = self.create_marker(name, kind, scale, color)
+        point_class = get_message("geometry_msgs/msg/Point")
+        marker.points = [point_class(x=x, y=y, z=z) for x, y, z in (point.tolist() for point in points)]
+        self.publish_markers([marker])
+
+    def create_marker(self, name: str, kind: int, scale: Sequence[float], color: Sequence[float]) -> Any:
+        """Return a marker at the origin of the world."""
         marker = get_message("visualization_msgs/msg/Marker")(
             ns=f"{self.context.path}{SEPARATOR}{name}", id=0, type=kind, action=_ADD
         )
         marker.header = Header(stamp=self.stamp(), frame_id="world")
         marker.pose.orientation.w = 1.0
-        height = 2.0 * _LINE_WIDTH_M if kind == _ARROW else 0.0
-        marker.scale = get_message("geometry_msgs/msg/Vector3")(x=_LINE_WIDTH_M, y=height, z=0.0)
+        x, y, z = scale
+        marker.scale = get_message("geometry_msgs/msg/Vector3")(x=x, y=y, z=z)
         red, green, blue = color
-        marker.color = color_class(r=red, g=green, b=blue, a=1.0)
-        marker.points = [point_class(x=x, y=y, z=z) for x, y, z in (point.tolist() for point in points)]
-        self._output.publish(get_message(_MARKERS_TYPE)(markers=[marker]))
+        marker.color = get_message("std_msgs/msg/ColorRGBA")(r=red, g=green, b=blue, a=1.0)
+        return marker
+
+    def publish_markers(self, markers: list[Any]) -> None:
+        """Publish markers."""
+        self._output.publish(get_message(_MARKERS_TYPE)(markers=markers))
 
 
-class _ForceDrawing(_Drawing[P]):
+class _ForceDrawing(DrawingPlugin[P]):
     """A plugin that draws the last force of a topic, in the axes of a link."""
 
     def start_forces(self, topic: str, pose: Transform, link: str, scale: float, material: str) -> None:
@@ -116,7 +135,7 @@ class _ForceDrawing(_Drawing[P]):
         pose = compose(self.simulation.link_pose(self._link), self._pose)
         start = np.array(pose[:3])
         end = start + rotation_matrix(np.array(pose[3:])) @ (self._scale * self._force)
-        self.draw(self._name, _ARROW, (start, end), self._color)
+        self.draw(self._name, _ARROW, (_LINE_WIDTH_M, 2.0 * _LINE_WIDTH_M, 0.0), self._color, (start, end))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -199,7 +218,7 @@ class _Path:
     points: deque[Array]
 
 
-class LinkPlot(_Drawing[LinkPlotParameters]):
+class LinkPlot(DrawingPlugin[LinkPlotParameters]):
     """The substitute for ``libLinkPlot3DPlugin.so``: draws the last 1,000 points of the paths of links."""
 
     PARAMETERS = LinkPlotParameters
@@ -236,7 +255,13 @@ class LinkPlot(_Drawing[LinkPlotParameters]):
             if not path.points or float(np.linalg.norm(position - path.points[-1])) >= _LEAST_DISTANCE_M:
                 path.points.append(position)
             if self.is_wanted and len(path.points) > 1:
-                self.draw(path.link.rpartition(SEPARATOR)[2], _LINE_STRIP, tuple(path.points), path.color)
+                self.draw(
+                    path.link.rpartition(SEPARATOR)[2],
+                    _LINE_STRIP,
+                    (_LINE_WIDTH_M, 0.0, 0.0),
+                    path.color,
+                    tuple(path.points),
+                )
 
 
 def find_color(material: str) -> tuple[float, float, float]:

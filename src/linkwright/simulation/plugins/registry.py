@@ -58,7 +58,7 @@ _BUILT_IN = frozenset(
 
 _OTHER_GZ_LIBRARIES = frozenset(
     (
-        *("AcousticPingerPlugin", "BallShooterPlugin"),
+        *("AcousticPingerPlugin", "BallShooterPlugin", "LightBuoyPlugin"),
         *("PolyhedraBuoyancyDrag", "PublisherPlugin", "SimpleHydrodynamics", "Surface", "USVWind"),
         *("StationkeepingScoringPlugin", "WayfindingScoringPlugin"),
     )
