@@ -48,7 +48,7 @@ _GROUPS = {
     _CAMERA_ALTERNATIVE: (
         *("GstCameraPlugin", "RealSensePlugin", "gazebo_geotagged_images_plugin", "gazebo_gst_camera_plugin"),
         *("gazebo_camera_manager_plugin", "gazebo_ros_realsense", "gazebo_ros_triggered_multicamera", "multicamera"),
-        *("realsense_gazebo_plugin", "uuv_gazebo_ros_camera_plugin", "MrsGazeboCommonResources_CameraPlugin"),
+        *("uuv_gazebo_ros_camera_plugin", "MrsGazeboCommonResources_CameraPlugin"),
         *("MrsGazeboCommonResources_RealsensePlugin", "MrsGazeboCommonResources_ServoCameraPlugin"),
     ),
     _CONTACT_ALTERNATIVE: (
