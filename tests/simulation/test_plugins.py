@@ -22,6 +22,7 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.simulation.plugins.parameters import parameter, parameters_from
 from linkwright.simulation.plugins.registry import (
     _BUILT_IN,
+    _LIBRARIES_WITHOUT_EFFECT,
     _OWN_SYSTEMS,
     _SENSORS_BY_SYSTEM,
     SENSOR_GROUP,
@@ -78,6 +79,7 @@ def test_built_in_systems_are_recognized():
     assert is_built_in("libignition-gazebo-physics-system.so")
     assert is_built_in("libgazebo_ros_factory.so")
     assert is_built_in("libRayPlugin.so")
+    assert is_built_in("libGpuRayPlugin.so")
     assert is_built_in("libWaveVisual.so")
     assert is_built_in("dummyfile")
     assert not is_built_in("gz-sim-diff-drive-system")
@@ -94,7 +96,7 @@ def test_systems_listed_as_built_in_are_simulated():
         name = library.removeprefix("gz-sim-").removesuffix("-system")
         assert name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM) or library in (
             *CLASSIC_SYSTEMS,
-            "RayPlugin",
+            *_LIBRARIES_WITHOUT_EFFECT,
             "WaveVisual",
             "rmagine_embree_map_gzplugin",
             "rmagine_optix_map_gzplugin",

@@ -89,7 +89,7 @@ _GROUPS = {
     _TASK_ALTERNATIVE: tuple(f"{task}ScoringPlugin" for task in _TASKS),
     _THERMAL_ALTERNATIVE: (
         *("thermal", "thermal_camera", "gz-sim-thermal-system", "gz-sim-thermal-sensor-system"),
-        *("MRSGazeboThermalCameraPlugin", "gazebo_ros_thermal_camera"),
+        *("MRSGazeboThermalCameraPlugin", "gazebo_ros_thermal_camera", "gazebo_ros_thermal_camera_pink"),
     ),
     _WATER_ALTERNATIVE: ("freefloating_gazebo_fluid", "gazebo_usv_dynamics_plugin"),
     _WIDE_CAMERA_ALTERNATIVE: ("wide_angle_camera", "wideanglecamera"),
@@ -100,11 +100,15 @@ ALTERNATIVES = {
     **{name: alternative for alternative, names in _GROUPS.items() for name in names},
     **dict.fromkeys(("air_speed", "gz-sim-air-speed-system"), _AIR_SPEED_ALTERNATIVE),
     "AdvancedLiftDragPlugin": phrase("libLiftDragPlugin.so for each wing"),
+    "RosGzPointCloud": phrase("a <sensor> of type rgbd_camera or gpu_lidar, which publishes its points"),
+    "gazebo_irlock_plugin": phrase("a <sensor> of type logical_camera"),
+    "gazebo_ros_grasp_fix": phrase("libgazebo_grasp_fix.so"),
     "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
     "gz-sim-camera-video-recorder-system": phrase("`linkwright bag record` with the topic of the camera"),
     "gz-sim-follow-actor-system": phrase("an <actor> with the waypoints of a <script>"),
     "gz-sim-log-playback-system": phrase("`linkwright bag play`"),
     "gz-sim-log-system": phrase("`linkwright sim --record`, or `linkwright bag record`"),
+    "rotors_gazebo_bag_plugin": phrase("`linkwright sim --record`, or `linkwright bag record`"),
     "gz-sim-model-photo-shoot-system": phrase("a camera in front of the model"),
 }
 """The alternatives to plugins and types of sensors that are not simulated."""

@@ -42,8 +42,10 @@ _OWN_SYSTEMS = ("physics", "user-commands", "label")
 """The systems of gz whose features the simulation itself provides: moving, spawning and deleting models, labels."""
 _NO_LIBRARY = ("", "__default__", "dummy", "dummyfile")
 """The values of ``filename`` that mean "no library": in generated files, and in the settings of gz for a world."""
-_LIBRARIES_WITHOUT_EFFECT = ("RayPlugin",)
-"""Libraries that do nothing but show how such a plugin is written."""
+_LIBRARIES_WITHOUT_EFFECT = (
+    *("CameraPlugin", "ContactPlugin", "DepthCameraPlugin", "GpuRayPlugin", "RayPlugin", "SonarPlugin"),
+)
+"""Libraries of Gazebo Classic that do nothing but show how such a plugin is written."""
 _BUILT_IN = frozenset(
     (
         *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM)),
