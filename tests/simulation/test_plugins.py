@@ -99,6 +99,7 @@ def test_systems_listed_as_built_in_are_simulated():
             *_LIBRARIES_WITHOUT_EFFECT,
             "WaveVisual",
             "rmagine_embree_map_gzplugin",
+            "rotors_gazebo_ros_interface_plugin",
             "rmagine_optix_map_gzplugin",
         ), library
 
@@ -116,6 +117,12 @@ def test_parameters_are_converted_and_accept_old_names():
     text = "<jointName>a</jointName><jointName>b</jointName><updateRate>5</updateRate><sent>1</sent><ros/>"
     parameters, findings = parameters_from(_Table, _element(text))
     assert (parameters, findings) == (_Table(joint=("a", "b"), rate=5.0, sent=True), [])
+
+
+async def test_plugin_of_a_sensor_outside_of_a_sensor_is_told_of():
+    plugin = '<plugin name="scan" filename="libgazebo_ros_ray_sensor.so"/>'
+    async with running_server(robot(plugin)) as (_, __, log):
+        assert log[0].text.endswith("plugin 'scan' must be in a <sensor>, whose measurements it publishes")
 
 
 def test_unknown_and_malformed_parameters_are_reported():

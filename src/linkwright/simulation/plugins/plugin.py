@@ -221,8 +221,16 @@ class SimulatedPlugin(Generic[P]):
         """The sensor that the plugin is or belongs to.
 
         Use this only in sensors and their plugins.
+
+        Raises:
+            LinkwrightError: SIM160, the plugin of a sensor is not in a sensor.
         """
-        assert self.context.sensor is not None
+        if self.context.sensor is None:
+            raise self.parameter_error(
+                phrase(
+                    "plugin '{plugin}' must be in a <sensor>, whose measurements it publishes", plugin=self.context.name
+                )
+            )
         return self.context.sensor
 
     @property

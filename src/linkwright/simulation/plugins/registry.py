@@ -51,6 +51,7 @@ _BUILT_IN = frozenset(
         *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM)),
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
         "WaveVisual",  # the page draws the water from what the floating bodies publish
+        "rotors_gazebo_ros_interface_plugin",  # the topics of Gazebo's transport are topics of ROS here
         *("rmagine_embree_map_gzplugin", "rmagine_optix_map_gzplugin"),  # lidars see all shapes without a map of them
         *_LIBRARIES_WITHOUT_EFFECT,
     )

@@ -56,6 +56,7 @@ class ControllerInterface(SimulatedPlugin[ControllerInterfaceParameters]):
     """The substitute for ``librotors_gazebo_controller_interface.so``: passes commands on to the motors."""
 
     PARAMETERS = ControllerInterfaceParameters
+    IGNORED = ("commandAttitudeThrustSubTopic", "commandRateThrustSubTopic", "imuSubTopic")
 
     def start(self) -> None:
         """Create the topics."""
