@@ -22,6 +22,7 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.simulation.plugins.parameters import parameter, parameters_from
 from linkwright.simulation.plugins.registry import (
     _BUILT_IN,
+    _LIBRARIES_WITHOUT_EFFECT,
     _OWN_SYSTEMS,
     _SENSORS_BY_SYSTEM,
     SENSOR_GROUP,
@@ -78,6 +79,7 @@ def test_built_in_systems_are_recognized():
     assert is_built_in("libignition-gazebo-physics-system.so")
     assert is_built_in("libgazebo_ros_factory.so")
     assert is_built_in("libRayPlugin.so")
+    assert is_built_in("libGpuRayPlugin.so")
     assert is_built_in("libWaveVisual.so")
     assert is_built_in("dummyfile")
     assert not is_built_in("gz-sim-diff-drive-system")
@@ -94,8 +96,11 @@ def test_systems_listed_as_built_in_are_simulated():
         name = library.removeprefix("gz-sim-").removesuffix("-system")
         assert name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM) or library in (
             *CLASSIC_SYSTEMS,
-            "RayPlugin",
+            *_LIBRARIES_WITHOUT_EFFECT,
             "WaveVisual",
+            "rmagine_embree_map_gzplugin",
+            "rotors_gazebo_ros_interface_plugin",
+            "rmagine_optix_map_gzplugin",
         ), library
 
 
@@ -112,6 +117,12 @@ def test_parameters_are_converted_and_accept_old_names():
     text = "<jointName>a</jointName><jointName>b</jointName><updateRate>5</updateRate><sent>1</sent><ros/>"
     parameters, findings = parameters_from(_Table, _element(text))
     assert (parameters, findings) == (_Table(joint=("a", "b"), rate=5.0, sent=True), [])
+
+
+async def test_plugin_of_a_sensor_outside_of_a_sensor_is_told_of():
+    plugin = '<plugin name="scan" filename="libgazebo_ros_ray_sensor.so"/>'
+    async with running_server(robot(plugin)) as (_, __, log):
+        assert log[0].text.endswith("plugin 'scan' must be in a <sensor>, whose measurements it publishes")
 
 
 def test_unknown_and_malformed_parameters_are_reported():

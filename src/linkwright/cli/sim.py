@@ -64,6 +64,7 @@ def run(
     from linkwright.hosting.simulated import SimulatedWorld, run_simulated
     from linkwright.packages import PackageFinder
     from linkwright.simulation.library import load_mujoco
+    from linkwright.simulation.plugins.drawings import has_drawings
     from linkwright.simulation.plugins.particles import PARTICLES_TOPIC, has_particles
     from linkwright.simulation.server.worlds import load_world
 
@@ -93,7 +94,7 @@ def run(
         world = replace(
             world, description=model.description, text=model.text, name=model.name, arguments=tuple(values.items())
         )
-    if has_particles(loaded_world.world, world.text):
+    if has_particles(loaded_world.world, world.text) or has_drawings(loaded_world.world, world.text):
         world = replace(world, particles_topic=PARTICLES_TOPIC)
     options = HostOptions(
         arguments.host,

@@ -81,7 +81,7 @@ class SimulatedWorld:
         paused: whether the simulation starts paused.
         headless: whether no page is served.
         gazebo_mistakes: whether plugins reproduce known bugs of Gazebo.
-        particles_topic: the topic of the particles of emitters; empty for none.
+        particles_topic: the topic of the particles of emitters and of the drawings of plugins; empty for none.
         arguments: the names and values of the robot's xacro arguments.
         nodes: the nodes to run beside the simulator.
         complete: returns the text to simulate, for a description that was read again after the robot's file was saved.

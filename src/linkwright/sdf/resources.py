@@ -100,6 +100,10 @@ class ResourceFinder:
         self._environment = os.environ if environment is None else environment
         self._nearby_folders: dict[Path, tuple[Path, ...]] = {}
 
+    def packages(self) -> dict[str, Path]:
+        """Return all packages, as a mapping from name to share folder or source folder."""
+        return self._packages.packages()
+
     def file(self, address: str, nearby_file: Path) -> Path | Missing:
         """Return the existing file or folder of a URI, or the reason why there is none.
 

@@ -178,3 +178,10 @@ async def test_receiver_has_noise_if_asked_and_names_its_topic_after_the_model()
             seconds=10,
         )
         assert np.std([message.vector.y for message in velocities]) == pytest.approx(deviation, rel=0.1)
+
+
+async def test_receiver_of_an_older_model_is_a_plugin_of_the_model():
+    model = box("uav", "0 0 100 0 0 0").replace("</model>", f"{plugin('gps', '')}</model>")
+    (fixes,) = await record(SWISS, model, topics=("/uav/gps",))
+    assert fixes.last.header.frame_id == "link"
+    assert fixes.last.latitude == pytest.approx(46.0, abs=1e-3)

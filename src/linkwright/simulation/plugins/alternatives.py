@@ -17,30 +17,103 @@ _TASK_ALTERNATIVE = phrase(
 )
 _CAMERA_ALTERNATIVE = phrase("libgazebo_ros_camera.so in the <sensor>")
 _LIDAR_ALTERNATIVE = phrase("libgazebo_ros_ray_sensor.so in a <sensor> of type ray")
-_CAMERAS = ("RealSensePlugin", "gazebo_gst_camera_plugin", "realsense_gazebo_plugin", "uuv_gazebo_ros_camera_plugin")
-_LIDARS = ("rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin")
+_THERMAL_ALTERNATIVE = phrase("a <sensor> of type segmentation_camera, with a label for what is warm")
+_RADIO_ALTERNATIVE = phrase(
+    "libgazebo_ros_p3d.so for the true poses, and a ROS node that computes the signal from the distance"
+)
+_DISTANCE_ALTERNATIVE = phrase(
+    "a <sensor> of type ray with libgazebo_ros_ray_sensor.so and <output_type>sensor_msgs/Range</output_type>"
+)
 _TASKS = ("AcousticPerception", "AcousticTracking", "Gymkhana", "Navigation", "Perception", "ScanDock", "Wildlife")
+_CONTACT_ALTERNATIVE = phrase("libgazebo_ros_bumper.so in a <sensor> of type contact")
+_POSE_ALTERNATIVE = phrase("libgazebo_ros_p3d.so, which publishes the true pose and velocity of a link")
+_MOTION_ALTERNATIVE = phrase("libgazebo_ros_planar_move.so, or gz-sim-velocity-control-system")
+_POSITION_ALTERNATIVE = phrase("gz-sim-joint-position-controller-system for each joint, or controllers of ros2_control")
+_BATTERY_ALTERNATIVE = phrase("gz-sim-linearbatteryplugin-system")
+_BELT_ALTERNATIVE = phrase("gz-sim-track-controller-system for the link of the belt")
+_RELEASE_ALTERNATIVE = phrase("gz-sim-detachable-joint-system, which lets a model go")
+_WATER_ALTERNATIVE = phrase("gz-sim-buoyancy-system and gz-sim-hydrodynamics-system")
+_ROTOR_ALTERNATIVE = phrase("gz-sim-multicopter-motor-model-system for each rotor")
+_CONTROL_ALTERNATIVE = phrase("gz_ros2_control-system, with <ros2_control> in the description")
+_LIGHT_ALTERNATIVE = phrase("a <material> of one color, because colors do not change in time")
+_IMU_ALTERNATIVE = phrase("a <sensor> of type imu")
+_GROUPS = {
+    _AUTOPILOT_ALTERNATIVE: ("ArduPilotPlugin", "gazebo_mavlink_interface", "rotors_gazebo_mavlink_interface"),
+    _BATTERY_ALTERNATIVE: (
+        "battery_consumer_ros_plugin",
+        "custom_battery_consumer_ros_plugin",
+        "linear_battery_ros_plugin",
+    ),
+    _BELT_ALTERNATIVE: ("ROSConveyorBeltPlugin", "ros2_conveyorbelt_plugin"),
+    _CAMERA_ALTERNATIVE: (
+        *("GstCameraPlugin", "RealSensePlugin", "gazebo_geotagged_images_plugin", "gazebo_gst_camera_plugin"),
+        *("gazebo_camera_manager_plugin", "gazebo_ros_realsense", "gazebo_ros_triggered_multicamera", "multicamera"),
+        *("uuv_gazebo_ros_camera_plugin", "MrsGazeboCommonResources_CameraPlugin"),
+        *("MrsGazeboCommonResources_RealsensePlugin", "MrsGazeboCommonResources_ServoCameraPlugin"),
+    ),
+    _CONTACT_ALTERNATIVE: (
+        *("RobotFootContactPlugin", "contact_plugin", "gazebo_ros_contact", "gazebo_ros_create_bumper"),
+        "gazebo_ros_create_wheel_drop",
+    ),
+    _CONTROL_ALTERNATIVE: ("IOBPlugin", "xbot2_gz_joint_server"),
+    _DISTANCE_ALTERNATIVE: (
+        *("MrsGazeboCommonResources_RangefinderPlugin", "gazebo_ros_create_cliff_sensor", "gazebo_sonar_plugin"),
+        *("gazebo_ros_create_ir_intensity_sensor", "sonar"),
+    ),
+    _IMU_ALTERNATIVE: (
+        *("gazebo_ros_create_imu", "realsense_gazebo_accel_sensor", "realsense_gazebo_gyro_sensor"),
+        "xbot2_gz_imu_server",
+    ),
+    _LIDAR_ALTERNATIVE: (
+        *("MrsGazeboCommonResources_2DLidarPlugin", "MrsGazeboCommonResources_LivoxLaserSimulationPlugin"),
+        *("ros2_livox", "rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin", "ray"),
+    ),
+    _LIGHT_ALTERNATIVE: (
+        *("LightIndicator", "PlacardPlugin", "traffic_light_plugin"),
+        *("MrsGazeboCommonResources_LightPlugin", "MrsGazeboCommonResources_SafetyLedPlugin"),
+    ),
+    _MOTION_ALTERNATIVE: (
+        *("SetVelPlugin", "gazebo_random_velocity_plugin", "gazebo_ros_force_based_move"),
+        "tuw_gazebo_ros_diff_drive",
+    ),
+    _POSE_ALTERNATIVE: (
+        *("PubTfPlugin", "gazebo_opticalflow_plugin", "gazebo_opticalFlow_plugin", "gazebo_opticalflow_mockup_plugin"),
+        *("gazebo_vision_plugin", "gazebo_ros_create_optical_mouse", "xbot2_gz_link_state_sensor"),
+    ),
+    _POSITION_ALTERNATIVE: (
+        *("gazebo_gimbal_controller_plugin", "hector_servo_plugin", "rotors_gazebo_gimbal_controller_plugin"),
+    ),
+    _RADIO_ALTERNATIVE: ("wireless_receiver", "wireless_transmitter", "rfid", "rfidtag", "uwb_range"),
+    _RELEASE_ALTERNATIVE: ("ParachutePlugin", "gazebo_catapult_plugin", "gazebo_drop_plugin"),
+    _ROTOR_ALTERNATIVE: ("hector_gazebo_quadrotor_aerodynamics", "hector_gazebo_quadrotor_propulsion"),
+    _TASK_ALTERNATIVE: tuple(f"{task}ScoringPlugin" for task in _TASKS),
+    _THERMAL_ALTERNATIVE: (
+        *("thermal", "thermal_camera", "gz-sim-thermal-system", "gz-sim-thermal-sensor-system"),
+        *("MRSGazeboThermalCameraPlugin", "gazebo_ros_thermal_camera", "gazebo_ros_thermal_camera_pink"),
+    ),
+    _WATER_ALTERNATIVE: ("freefloating_gazebo_fluid", "gazebo_usv_dynamics_plugin"),
+    _WIDE_CAMERA_ALTERNATIVE: ("wide_angle_camera", "wideanglecamera"),
+}
+"""Libraries and types of sensors, by their alternative."""
 
-_ALTERNATIVES = {
-    "air_speed": _AIR_SPEED_ALTERNATIVE,
-    "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
-    **dict.fromkeys((f"{task}ScoringPlugin" for task in _TASKS), _TASK_ALTERNATIVE),
-    **dict.fromkeys(_CAMERAS, _CAMERA_ALTERNATIVE),
-    **dict.fromkeys(_LIDARS, _LIDAR_ALTERNATIVE),
+ALTERNATIVES = {
+    **{name: alternative for alternative, names in _GROUPS.items() for name in names},
+    **dict.fromkeys(("air_speed", "gz-sim-air-speed-system"), _AIR_SPEED_ALTERNATIVE),
     "AdvancedLiftDragPlugin": phrase("libLiftDragPlugin.so for each wing"),
-    "ArduPilotPlugin": _AUTOPILOT_ALTERNATIVE,
-    "gazebo_mavlink_interface": _AUTOPILOT_ALTERNATIVE,
-    "gz-sim-air-speed-system": _AIR_SPEED_ALTERNATIVE,
+    "RosGzPointCloud": phrase("a <sensor> of type rgbd_camera or gpu_lidar, which publishes its points"),
+    "gazebo_irlock_plugin": phrase("a <sensor> of type logical_camera"),
+    "gazebo_ros_grasp_fix": phrase("libgazebo_grasp_fix.so"),
+    "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
     "gz-sim-camera-video-recorder-system": phrase("`linkwright bag record` with the topic of the camera"),
     "gz-sim-follow-actor-system": phrase("an <actor> with the waypoints of a <script>"),
     "gz-sim-log-playback-system": phrase("`linkwright bag play`"),
     "gz-sim-log-system": phrase("`linkwright sim --record`, or `linkwright bag record`"),
+    "rotors_gazebo_bag_plugin": phrase("`linkwright sim --record`, or `linkwright bag record`"),
     "gz-sim-model-photo-shoot-system": phrase("a camera in front of the model"),
-    "wide_angle_camera": _WIDE_CAMERA_ALTERNATIVE,
-    "wideanglecamera": _WIDE_CAMERA_ALTERNATIVE,
 }
+"""The alternatives to plugins and types of sensors that are not simulated."""
 
 
 def find_alternative(name: str) -> Phrase | None:
     """Return the alternative to a plugin's library or a sensor type, or None."""
-    return _ALTERNATIVES.get(library_name(name))
+    return ALTERNATIVES.get(library_name(name))

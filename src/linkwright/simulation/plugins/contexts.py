@@ -11,7 +11,7 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import Plugin
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import World
-from linkwright.simulation.plugins.plugin import PlacedSensor, PluginContext
+from linkwright.simulation.plugins.plugin import PlacedSensor, PlacedVisual, PluginContext
 from linkwright.simulation.plugins.registry import is_built_in
 
 
@@ -29,7 +29,7 @@ def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[Plug
 def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginContext]:
     """Yield the plugins of a model and its sensors, followed by those of nested models.
 
-    A sensor without a publishing plugin is yielded, too.
+    A sensor without a publishing plugin is yielded, too. The plugins of visuals come after those of sensors.
 
     Args:
         world: the world, as it was read.
@@ -49,6 +49,14 @@ def _find_model_plugins(world: World, model: Model, path: str, frames: Frames) -
             yield PluginContext(plugin.name or placed_sensor.sensor.name, plugin, world, model, path, placed_sensor)
         if all(is_built_in(plugin.filename) for plugin in plugins):  # true if a sensor has only systems of gz
             yield PluginContext(placed_sensor.sensor.name, None, world, model, path, placed_sensor)
+    for link in model.links:
+        for visual in link.visuals:
+            for plugin in visual.plugins:
+                placed_visual = PlacedVisual(
+                    visual.name, f"{path}{SEPARATOR}{link.name}", frames.in_link(visual.pose, link.name)
+                )
+                name = plugin.name or plugin.filename
+                yield PluginContext(name, plugin, world, model, path, None, placed_visual)
     for nested_model in model.models:
         yield from _find_model_plugins(
             world, nested_model, f"{path}{SEPARATOR}{nested_model.name}", frames.inside(nested_model.name)

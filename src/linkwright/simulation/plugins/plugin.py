@@ -75,6 +75,21 @@ class PlacedSensor:
 
 
 @dataclass(frozen=True, slots=True)
+class PlacedVisual:
+    """A visual of a link that contains a plugin.
+
+    Attributes:
+        name: the name of the visual in its link.
+        link: the link, named as in the simulation.
+        pose: the pose of the visual in the frame of `link`.
+    """
+
+    name: str
+    link: str
+    pose: Transform
+
+
+@dataclass(frozen=True, slots=True)
 class PluginContext:
     """The elements that contain a plugin, or a sensor without a plugin.
 
@@ -85,6 +100,7 @@ class PluginContext:
         model: the model that contains the plugin; None for a plugin of the world.
         path: the name of the model that contains the plugin, ``robot`` or ``robot::arm``; empty for the world.
         sensor: the sensor that contains the plugin, or the sensor without a plugin; None for other plugins.
+        visual: the visual that contains the plugin; None for other plugins.
     """
 
     name: str
@@ -93,6 +109,7 @@ class PluginContext:
     model: Model | None
     path: str
     sensor: PlacedSensor | None
+    visual: PlacedVisual | None = None
 
     @property
     def element(self) -> Element | None:
@@ -204,8 +221,16 @@ class SimulatedPlugin(Generic[P]):
         """The sensor that the plugin is or belongs to.
 
         Use this only in sensors and their plugins.
+
+        Raises:
+            LinkwrightError: SIM160, the plugin of a sensor is not in a sensor.
         """
-        assert self.context.sensor is not None
+        if self.context.sensor is None:
+            raise self.parameter_error(
+                phrase(
+                    "plugin '{plugin}' must be in a <sensor>, whose measurements it publishes", plugin=self.context.name
+                )
+            )
         return self.context.sensor
 
     @property

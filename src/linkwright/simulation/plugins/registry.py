@@ -42,13 +42,17 @@ _OWN_SYSTEMS = ("physics", "user-commands", "label")
 """The systems of gz whose features the simulation itself provides: moving, spawning and deleting models, labels."""
 _NO_LIBRARY = ("", "__default__", "dummy", "dummyfile")
 """The values of ``filename`` that mean "no library": in generated files, and in the settings of gz for a world."""
-_LIBRARIES_WITHOUT_EFFECT = ("RayPlugin",)
-"""Libraries that do nothing but show how such a plugin is written."""
+_LIBRARIES_WITHOUT_EFFECT = (
+    *("CameraPlugin", "ContactPlugin", "DepthCameraPlugin", "GpuRayPlugin", "RayPlugin", "SonarPlugin"),
+)
+"""Libraries of Gazebo Classic that do nothing but show how such a plugin is written."""
 _BUILT_IN = frozenset(
     (
         *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM)),
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
         "WaveVisual",  # the page draws the water from what the floating bodies publish
+        "rotors_gazebo_ros_interface_plugin",  # the topics of Gazebo's transport are topics of ROS here
+        *("rmagine_embree_map_gzplugin", "rmagine_optix_map_gzplugin"),  # lidars see all shapes without a map of them
         *_LIBRARIES_WITHOUT_EFFECT,
     )
 )
@@ -57,11 +61,17 @@ _BUILT_IN = frozenset(
 
 _OTHER_GZ_LIBRARIES = frozenset(
     (
+        *("AcousticPingerPlugin", "BallShooterPlugin", "LightBuoyPlugin"),
         *("PolyhedraBuoyancyDrag", "PublisherPlugin", "SimpleHydrodynamics", "Surface", "USVWind"),
         *("StationkeepingScoringPlugin", "WayfindingScoringPlugin"),
     )
 )
 """Libraries for gz that are not part of gz, by name."""
+
+_LIBRARIES_WITHOUT_NODE = frozenset(
+    ("ForceVisual", "LinkPlot3DPlugin", "unitreeDrawForcePlugin", "unitreeFootContactPlugin")
+)
+"""Libraries for Gazebo Classic whose nodes are not named after the plugin, so that several plugins have one name."""
 
 DEFAULT_GZ_SYSTEMS = tuple(
     Plugin(f"gz-sim-{name}-system") for name in ("physics", "user-commands", "scene-broadcaster")
@@ -73,6 +83,11 @@ def is_gz_library(filename: str) -> bool:
     """Return whether a library is for gz, whose plugins do not have separate nodes."""
     name = library_name(filename)
     return name.startswith("gz-sim-") or name in _OTHER_GZ_LIBRARIES
+
+
+def shares_node(filename: str) -> bool:
+    """Return whether the plugins of a library share the simulator's node."""
+    return is_gz_library(filename) or library_name(filename) in _LIBRARIES_WITHOUT_NODE
 
 
 def is_built_in(filename: str) -> bool:

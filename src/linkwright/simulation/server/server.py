@@ -22,7 +22,6 @@ from linkwright.sdf.plugins import Plugin, find_original_library, library_name
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import with_saved_state
 from linkwright.sdf.worlds import World
-from linkwright.simulation.plugins.alternatives import find_alternative
 from linkwright.simulation.plugins.bridged_topics import BridgedTopics
 from linkwright.simulation.plugins.contexts import model_plugins, world_plugins
 from linkwright.simulation.plugins.findings import error_findings
@@ -33,7 +32,7 @@ from linkwright.simulation.plugins.registry import (
     find_plugin_class,
     find_sensor_class,
     is_built_in,
-    is_gz_library,
+    shares_node,
 )
 from linkwright.simulation.plugins.ros_element import read_node_description
 from linkwright.simulation.plugins.water import WaterSurface
@@ -48,7 +47,11 @@ from linkwright.simulation.server.changes import (
 from linkwright.simulation.server.ground_contact import find_collision_warnings, lift_onto_ground
 from linkwright.simulation.server.motion import record_motion, restore_motion
 from linkwright.simulation.server.overlaps import find_overlaps
-from linkwright.simulation.server.unsimulated import find_unsimulated_elements, find_unsimulated_model_elements
+from linkwright.simulation.server.unsimulated import (
+    find_unsimulated_elements,
+    find_unsimulated_model_elements,
+    report_unsimulated_plugins,
+)
 from linkwright.simulation.simulation import Simulation
 
 _WORLD_OWNER = ""
@@ -361,24 +364,18 @@ class SimulationServer:
         Unchanged plugins take over the state of their previous instances in `old_plugins`.
         """
         self._plugins[owner] = []
-        unsimulated: dict[str, None] = {}
+        unsimulated: dict[str, bool] = {}
         for context in contexts:
             with self._logging_failures(context):
                 plugin_type = self._find_plugin_class(context)
                 if plugin_type is None:
-                    unsimulated |= dict.fromkeys(_find_unsimulated_names(context))
+                    unsimulated |= _find_unsimulated_names(context)
                 else:
                     self._start_plugin(owner, plugin_type, context, namespace, old_plugins)
-        new_names = [name for name in unsimulated if name not in self._logged_names]
+        new_names = {name: unsimulated[name] for name in unsimulated if name not in self._logged_names}
         self._logged_names.update(new_names)
         if new_names:
-            names = joined(new_names)
-            self.node.get_logger().info(phrase("plugins and sensors that are not simulated: {names}", names=names))
-        for name in new_names:
-            if (alternative := find_alternative(name)) is not None:
-                self.node.get_logger().info(
-                    phrase("instead of {name}, use {alternative}", name=name, alternative=alternative)
-                )
+            report_unsimulated_plugins(new_names, self.simulation.finder, self.node.get_logger().info)
 
     def _find_plugin_class(self, context: PluginContext) -> PluginClass | None:
         if context.plugin is None:
@@ -453,7 +450,8 @@ class SimulationServer:
     def _create_node(self, context: PluginContext, namespace: str, calls: Calls) -> PluginNode:
         """Return the node for a plugin or sensor.
 
-        Plugins of gz and sensors without a plugin share the simulator's node; other plugins get a separate node.
+        Plugins of gz, sensors without a plugin, and some plugins of Gazebo Classic share the simulator's node; other
+        plugins get a separate node.
 
         Raises:
             LinkwrightError: SIM135, another plugin has a node with the same name.
@@ -557,14 +555,14 @@ class SimulationServer:
 
 def is_shared(context: PluginContext) -> bool:
     """Return whether a plugin or sensor shares the simulator's node."""
-    return context.plugin is None or is_gz_library(context.plugin.filename)
+    return context.plugin is None or shares_node(context.plugin.filename)
 
 
-def _find_unsimulated_names(context: PluginContext) -> list[str]:
-    """Return a list with the library or sensor type of a plugin that is not simulated.
+def _find_unsimulated_names(context: PluginContext) -> dict[str, bool]:
+    """Return the library or sensor type of a plugin that is not simulated, and whether it is a library.
 
-    The list is empty if the simulation itself does the work of the library.
+    The result is empty if the simulation itself does the work of the library.
     """
     if context.plugin is None:
-        return [] if context.sensor is None else [context.sensor.sensor.type]
-    return [] if is_built_in(context.plugin.filename) else [context.plugin.filename]
+        return {} if context.sensor is None else {context.sensor.sensor.type: False}
+    return {} if is_built_in(context.plugin.filename) else {context.plugin.filename: True}

@@ -1,14 +1,18 @@
-"""Elements of SDF worlds that are not simulated."""
+"""Elements and plugins of SDF worlds that are not simulated, and what to use instead."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
+from linkwright.diagnostics import Phrase, display_path, joined, phrase
 from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import library_name
 from linkwright.sdf.reader import OPEN_TAGS
+from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
+from linkwright.simulation.plugins.alternatives import find_alternative
 from linkwright.simulation.plugins.registry import is_built_in
+from linkwright.simulation.plugins.sources import find_plugin_sources
 from linkwright.xmltree import Element
 
 _UNSIMULATED = frozenset(
@@ -18,7 +22,49 @@ _SIMULATED_BY = {"gz-sim-particle-emitter-system": ("<particle_emitter>",)}
 """The elements that are simulated in worlds with a plugin."""
 _UNSIMULATED_IN = frozenset({("actor", "animation"), ("geometry", "image")})
 """Pairs of a parent and a child: the child is simulated in other elements, but not in this parent."""
-_PLUGINS_NOT_SIMULATED = frozenset({"actor", "visual"})
+_PLUGINS_NOT_SIMULATED = frozenset({"actor"})
+
+
+def report_unsimulated_plugins(
+    names: Mapping[str, bool], finder: ResourceFinder, report: Callable[[Phrase], object]
+) -> None:
+    """Report plugins and sensors that are not simulated, each with what to use instead.
+
+    Args:
+        names: the libraries as written and the types of sensors, each with whether it is a library.
+        finder: finds the packages that may contain the sources of the plugins.
+        report: called with each message.
+    """
+    report(phrase("plugins and sensors that are not simulated: {names}", names=joined([*names])))
+    others = []
+    for name, is_library in names.items():
+        if (alternative := find_alternative(name)) is not None:
+            report(phrase("instead of {name}, use {alternative}", name=name, alternative=alternative))
+        elif is_library:
+            others.append(name)
+    if not others:
+        return
+    sources = find_plugin_sources({library_name(name) for name in others}, finder.packages())
+    for name in others:
+        if (source := sources.get(library_name(name))) is not None:
+            report(
+                phrase(
+                    "{name} is C++ of the package '{package}', which is not loaded: write the plugin in Python, as "
+                    "docs/own-plugins.md describes, from {file}",
+                    name=name,
+                    package=source.package,
+                    file=display_path(source.file),
+                )
+            )
+    unknown = [name for name in others if library_name(name) not in sources]
+    if unknown:
+        report(
+            phrase(
+                "no package here contains the source of {names}: a plugin in Python can do the work, as "
+                "docs/own-plugins.md describes",
+                names=joined(unknown),
+            )
+        )
 
 
 def find_unsimulated_elements(world: World) -> list[str]:

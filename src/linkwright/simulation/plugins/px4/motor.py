@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from math import copysign
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -105,9 +105,12 @@ class MultirotorBase(SimulatedPlugin[MultirotorBaseParameters]):
     """The substitute for ``libgazebo_multirotor_base_plugin.so``: publishes the speeds of the rotors in rad/s.
 
     The rotors are the links ``rotor_0``, ``rotor_1``, ... below the link of the plugin.
+
+    Attributes:
+        joints: the joints of the rotors, in the order of their numbers.
     """
 
-    PARAMETERS = MultirotorBaseParameters
+    PARAMETERS: ClassVar[type[Any]] = MultirotorBaseParameters
 
     def start(self) -> None:
         """Find the rotors, and create the topic of their speeds.
@@ -120,14 +123,15 @@ class MultirotorBase(SimulatedPlugin[MultirotorBaseParameters]):
             match = _ROTOR_PATTERN.search(joint.child.rpartition(SEPARATOR)[2])
             if joint.parent == base and match is not None:
                 numbers[int(match[1])] = name
-        self._joints = [joint for _, joint in sorted(numbers.items())]
+        self.joints = [joint for _, joint in sorted(numbers.items())]
         namespace = self.text_in(self.context.element, "robotNamespace").strip("/") or self.context.path
         self._output = self.node.publisher(_ACTUATORS_TYPE, f"/{namespace}/{self.parameters.topic.lstrip('/')}")
-        self.every(_SPEEDS_RATE_HZ, self._publish)
+        self.every(_SPEEDS_RATE_HZ, self.publish)
 
-    def _publish(self) -> None:
+    def publish(self) -> None:
+        """Publish the speeds of the rotors."""
         if not self._output.is_wanted:
             return
-        speeds = [self.simulation.joint_state(joint)[1] * self.parameters.slowdown for joint in self._joints]
+        speeds = [self.simulation.joint_state(joint)[1] * self.parameters.slowdown for joint in self.joints]
         message = get_message(_ACTUATORS_TYPE)(header=Header(stamp=self.stamp()), velocity=speeds)
         self._output.publish(message)

@@ -304,7 +304,8 @@ class Px4GpsParameters(HomeParameters):
 class Px4Gps(ModelSensor[Px4GpsParameters]):
     """The substitute for ``libgazebo_gps_plugin.so``: a receiver whose measurements are 0.12 s old.
 
-    It publishes the position, and the velocity in m/s towards east, north and up.
+    It publishes the position, and the velocity in m/s towards east, north and up. In a model, as in older models of
+    PX4, the topic is ``gps``.
     """
 
     PARAMETERS = Px4GpsParameters
@@ -323,7 +324,8 @@ class Px4Gps(ModelSensor[Px4GpsParameters]):
 
     def create_publishers(self) -> None:
         """Create the publishers of the position and the velocity."""
-        topic = self.sensor_topic(self.parameters.topic_name)
+        name = self.parameters.topic_name
+        topic = self.topic(name or "gps") if self.context.sensor is None else self.sensor_topic(name)
         self._fix_output = self.node.publisher("sensor_msgs/msg/NavSatFix", topic, SENSOR_QOS)
         self._velocity_output = self.node.publisher("geometry_msgs/msg/Vector3Stamped", f"{topic}/vel", SENSOR_QOS)
 

@@ -1,7 +1,8 @@
 """ros2_control hardware made of simulated joints and sensors.
 
 The hardware replaces ``gazebo_ros2_control/GazeboSystem``, ``gz_ros2_control/GazeboSimSystem``,
-``ign_ros2_control/IgnitionSystem``, and any other plugin that a description in a simulated world names.
+``ign_ros2_control/IgnitionSystem``, ``gz_quadruped_hardware/GazeboSimSystem``, and any other plugin that a description
+in a simulated world names.
 
 Source: gazebo_ros2_control and gz_ros2_control (interfaces, holding of joints, texts).
 """
@@ -22,9 +23,15 @@ from linkwright.control.motion.pid import Pid, PidGains
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph.log.logger import Logger
 from linkwright.simulation.plugins.plugin import PluginContext
+from linkwright.simulation.plugins.ros2_control.impedance import GAIN_KINDS, ImpedanceJoint
 from linkwright.simulation.plugins.ros2_control.joints import SimulatedJoint
 from linkwright.simulation.plugins.ros2_control.pids import extract_pid_gains
-from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, create_sensor, find_sensors
+from linkwright.simulation.plugins.ros2_control.sensors import (
+    SimulatedSensor,
+    create_magnitude_sensor,
+    create_sensor,
+    find_sensors,
+)
 from linkwright.simulation.scene.structure import PlacedJoint
 from linkwright.simulation.simulation import Simulation
 
@@ -72,7 +79,7 @@ class SimulatedSystem(Hardware):
         description, gains = self._split_gains(description, values, logger)
         super().__init__(description, logger)
         self.has_pids = bool(gains)
-        self._joints: dict[str, SimulatedJoint] = {}
+        self._joints: dict[str, SimulatedJoint | ImpedanceJoint] = {}
         for joint_description in description.joints:
             try:
                 name = plugin.joint(joint_description.name)
@@ -83,18 +90,23 @@ class SimulatedSystem(Hardware):
                 logger.debug(error.diagnostics[0].message)
                 self._remove_interfaces(joint_description.name)
                 continue
+            states = {state.kind: state for state in self.states if state.component == joint_description.name}
+            commands = {
+                command.kind: command
+                for command in self.commands
+                if command.component == joint_description.name and joint_description.mimic is None
+            }
+            if commands.keys() >= {*GAIN_KINDS}:
+                self._joints[joint_description.name] = ImpedanceJoint(
+                    plugin.simulation, name, joint_description, states, commands
+                )
+                continue
             self._joints[joint_description.name] = SimulatedJoint(
                 plugin.simulation,
                 name,
                 joint_description,
-                {state.kind: state for state in self.states if state.component == joint_description.name},
-                {
-                    command.kind: command
-                    for command in self.commands
-                    if command.component == joint_description.name
-                    and command.kind in _COMMAND_KINDS
-                    and joint_description.mimic is None
-                },
+                states,
+                {kind: command for kind, command in commands.items() if kind in _COMMAND_KINDS},
                 holds_position=holds_position
                 and self._may_hold(joint_description, plugin.simulation.scene.joints[name]),
                 gain=gain,
@@ -128,6 +140,18 @@ class SimulatedSystem(Hardware):
         placed_sensors = find_sensors(plugin.context)
         for sensor in self.description.sensors:
             placed_sensor = placed_sensors.get(sensor.name)
+            states = [state for state in self.states if state.component == sensor.name]
+            if placed_sensor is None and all(state.kind in placed_sensors for state in states):
+                simulated_sensors += [
+                    create_magnitude_sensor(
+                        plugin.simulation,
+                        placed_sensors[state.kind],
+                        state,
+                        plugin.create_generator(placed_sensors[state.kind].name),
+                    )
+                    for state in states
+                ]
+                continue
             if placed_sensor is None:
                 message = phrase(
                     "sensor '{name}' of <ros2_control> has no IMU or force-torque sensor of this name in the "
@@ -136,7 +160,6 @@ class SimulatedSystem(Hardware):
                 )
                 self.logger.warning(message)
                 continue
-            states = [state for state in self.states if state.component == sensor.name]
             simulated_sensors.append(
                 create_sensor(plugin.simulation, placed_sensor, states, plugin.create_generator(placed_sensor.name))
             )

@@ -6,6 +6,7 @@ Source: gazebo_ros2_control and gz_ros2_control (the supported sensors, the name
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from math import hypot
 
 import numpy as np
 
@@ -60,6 +61,22 @@ def create_sensor(
     if placed.sensor.type == "imu":
         return SimulatedSensor(_create_imu_reader(simulation, placed, generator), states)
     return SimulatedSensor(_create_wrench_reader(simulation, placed, generator), states)
+
+
+def create_magnitude_sensor(
+    simulation: Simulation, placed: PlacedSensor, state: StateInterface, generator: np.random.Generator
+) -> SimulatedSensor:
+    """Create a sensor whose state is the magnitude of the force that a force-torque sensor measures.
+
+    The state has the name of that sensor, as the forces of feet in gz_quadruped_hardware.
+    """
+    measure_wrench = _create_wrench_reader(simulation, placed, generator)
+
+    def measure() -> dict[str, float]:
+        wrench = measure_wrench()
+        return {state.kind: hypot(*(wrench[f"force.{axis}"] for axis in "xyz"))}
+
+    return SimulatedSensor(measure, [state])
 
 
 def _create_imu_reader(

@@ -29,7 +29,7 @@ class BumperParameters:
     topic_name: str = parameter("bumper_states", aliases=("bumperTopicName", "bumper_topic_name"))
 
 
-class _ContactPlugin(SingleTopicSensor[P], Generic[P]):
+class ContactPlugin(SingleTopicSensor[P], Generic[P]):
     """A sensor that measures the contacts of one collision, or of all collisions of its link."""
 
     def create_sensor(self) -> None:
@@ -42,7 +42,7 @@ class _ContactPlugin(SingleTopicSensor[P], Generic[P]):
         self.contacts = ContactSensor(self.mount, collision_names)
 
 
-class ClassicBumper(_ContactPlugin[BumperParameters]):
+class ClassicBumper(ContactPlugin[BumperParameters]):
     """The substitute for ``libgazebo_ros_bumper.so``.
 
     Positions and forces are in the world frame, regardless of the frame in the message's header.
@@ -61,7 +61,7 @@ class ClassicBumper(_ContactPlugin[BumperParameters]):
         self.output.publish(message)
 
 
-class GzContact(_ContactPlugin[NoParameters]):
+class GzContact(ContactPlugin[NoParameters]):
     """The sensor ``contact`` of gz, which publishes nothing while there is no contact."""
 
     def create_publishers(self) -> None:

@@ -100,6 +100,11 @@ def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> 
     _fill_pixels(message, clip_depth(depth, nearest, farthest), "32FC1")
 
 
+def fill_raw_depth(message: Any, depth: Pixels) -> None:
+    """Fill an Image with depths in whole millimeters of 16 bits, shape (height, width)."""
+    _fill_pixels(message, depth, "16UC1")
+
+
 def clip_depth(depth: Pixels, nearest: float, farthest: float) -> Pixels:
     """Return depths in m, with -inf up to `nearest` and inf from `farthest` on."""
     result: Pixels = np.array(depth, dtype=np.float32)

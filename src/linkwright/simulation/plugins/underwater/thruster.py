@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import exp, inf
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -21,14 +21,12 @@ from linkwright.messages import Header, get_message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
+from linkwright.simulation.plugins.underwater.dynamics import create_step, require_child, unknown_type_error
 from linkwright.xmltree import Element
 
 _FLOAT_TYPE = "uuv_gazebo_ros_plugins_msgs/msg/FloatStamped"
 _SPIN_GAIN = 1e-3
 _RATE_HZ = 20.0
-
-Step = Callable[[float, float, float], float]
-"""Returns the new state, from the state, the command and the time in s."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +65,7 @@ class UuvThruster(SimulatedPlugin[UuvThrusterParameters]):
         parameters, simulation = self.parameters, self.simulation
         self._link = self.link(parameters.link_name)
         self._joint = self.joint(parameters.joint_name) if parameters.joint_name else ""
-        self._step, self._convert = self._read_dynamics(), self._read_conversion()
+        self._step, self._convert = create_step(self, require_child(self, "dynamics")), self._read_conversion()
         self._motor = simulation.add_velocity_motor(self._joint, _SPIN_GAIN, inf) if self._joint else None
         simulation.keep_awake(self._link)
         self.reset()
@@ -93,33 +91,9 @@ class UuvThruster(SimulatedPlugin[UuvThrusterParameters]):
         old_command, self._command = self._command, 0.0
         return old_command != 0.0
 
-    def _read_dynamics(self) -> Step:
-        """Return the dynamics of the propeller."""
-        element = self._find_child("dynamics")
-        kind = self.text_in(element, "type")
-        if kind == "ZeroOrder":
-            return lambda _, command, __: command
-        if kind == "FirstOrder":
-            time_constant = self.number_in(element, "timeConstant")
-            if time_constant <= 0.0:
-                return lambda _, command, __: command
-            return lambda state, command, seconds: command + (state - command) * exp(-seconds / time_constant)
-        if kind == "Yoerger":
-            alpha, beta = (self.number_in(element, tag) for tag in ("alpha", "beta"))
-            return lambda state, command, seconds: state + seconds * (beta * command - alpha * state * abs(state))
-        if kind == "Bessa":
-            inertia, linear, quadratic, torque, resistance = (
-                self.number_in(element, tag) for tag in ("Jmsp", "Kv1", "Kv2", "Kt", "Rm")
-            )
-            return lambda state, command, seconds: (
-                state
-                + seconds * (command * torque / resistance - linear * state - quadratic * state * abs(state)) / inertia
-            )
-        raise self._unknown_type_error(element, "ZeroOrder, FirstOrder, Yoerger, Bessa")
-
     def _read_conversion(self) -> Callable[[float], float]:
         """Return the conversion from the state of the propeller to the thrust in N."""
-        element = self._find_child("conversion")
+        element = require_child(self, "conversion")
         kind = self.text_in(element, "type")
         if kind == "Basic":
             constant = self.number_in(element, "rotorConstant")
@@ -144,24 +118,7 @@ class UuvThruster(SimulatedPlugin[UuvThrusterParameters]):
                 plugin=self.context.name,
             )
             raise self.parameter_error(message, element)
-        raise self._unknown_type_error(element, "Basic, Bessa, LinearInterp")
-
-    def _find_child(self, tag: str) -> Element:
-        child = None if self.context.element is None else self.context.element.first(tag)
-        if child is None:
-            raise self.parameter_error(
-                phrase("plugin '{plugin}': <{tag}> is missing", plugin=self.context.name, tag=tag)
-            )
-        return child
-
-    def _unknown_type_error(self, element: Element, names: str) -> Exception:
-        message = phrase(
-            "plugin '{plugin}': the <type> of <{tag}> must be one of {names}",
-            plugin=self.context.name,
-            tag=element.tag,
-            names=names,
-        )
-        return self.parameter_error(message, element)
+        raise unknown_type_error(self, element, "Basic, Bessa, LinearInterp")
 
     def _read_numbers(self, parent: Element, tag: str) -> list[float]:
         try:

@@ -1,0 +1,1 @@
+"""Plugins of RotorS: rotors, sensors and wind of multirotors."""
