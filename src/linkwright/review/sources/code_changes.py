@@ -19,10 +19,13 @@ from linkwright.review.sources.tokens import tokenize_cpp
 _QUOTED = re.compile(r"'([^']+)'")
 _LITERAL = re.compile("\"((?:\\\\.|[^\"\\\\])*)\"|'((?:\\\\.|[^'\\\\])*)'")
 _CALL = re.compile(r"(\w+)\s*\(")
+_LITERAL_ASSIGNMENT = re.compile(r"\s*\w+ = [^(]*", re.DOTALL)
 _VALUES = "values in {name}: {values}"
 _MODULE_VALUES = "values: {values}"
 _MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
+_MIN_STATEMENTS = 2
+"""The minimum number of statements outside of functions of an added program that a line reports."""
 _MAX_NAMESPACES = 8
 """The maximum number of words of a name whose parts are compared with the texts of statements."""
 
@@ -89,6 +92,38 @@ def find_code_change(
         is_unreported = lines.has_module_values and lines.has_unreported_change(*parts, "")
         return _find_module_change(*parts) if is_unreported else None
     return _find_outside_change(old, new)
+
+
+def find_added_code(
+    new: Code, reported: Sequence[Change], has_moved: Callable[[str, Code], bool], names: SourceNames
+) -> CodeChange | None:
+    """Return the functions of an added program that no other line names, or None.
+
+    The change also tells whether a program in Python has code outside of functions that does more than call them. A
+    function ``main`` alone is not worth a line beside others.
+
+    Args:
+        new: the code of the program.
+        reported: the other lines about the source.
+        has_moved: whether a different source had a function with the same name and code.
+        names: the names in the program.
+    """
+    lines = _ReportedLines(reported)
+    added = [name for name in new.functions if not lines.mentions(name) and not has_moved(name, new)]
+    texts = _format_functions([], added, [], [], names)
+    own_names = {_get_short_name(name) for name in (*new.functions, *new.outside)}
+    statements = [
+        part
+        for part in _without_calls(new.outside.get("", ()), own_names)
+        if "\n" not in part.text and not _LITERAL_ASSIGNMENT.fullmatch(part.text)
+    ]
+    unreported = [part for part in statements if lines.has_unreported_change((), [part], "")]
+    if new.imports and len(unreported) >= _MIN_STATEMENTS:
+        texts.append(phrase("code added outside of functions"))
+    if not texts or (reported and added == ["main"] and len(texts) == 1):
+        return None
+    first = new.functions[added[0]] if added else unreported
+    return CodeChange(joined(texts, "; "), first[0].first_line, is_old=False)
 
 
 def _format_functions(
