@@ -19,6 +19,7 @@ from linkwright.review.sources.tokens import tokenize_cpp
 _QUOTED = re.compile(r"'([^']+)'")
 _LITERAL = re.compile("\"((?:\\\\.|[^\"\\\\])*)\"|'((?:\\\\.|[^'\\\\])*)'")
 _CALL = re.compile(r"(\w+)\s*\(")
+_SPACE = re.compile(r"[^\S\n]")
 _LITERAL_ASSIGNMENT = re.compile(r"\s*\w+ = [^(]*", re.DOTALL)
 _VALUES = "values in {name}: {values}"
 _MODULE_VALUES = "values: {values}"
@@ -348,7 +349,14 @@ class _ReportedLines:
             literals = [text for match in _LITERAL.finditer(part.text) for text in match.groups() if text]
             if not self._names.isdisjoint([*literals, *(text.rpartition(":=")[2].strip("/") for text in literals)]):
                 return True
+        if old is not None and new is not None and self._shows_values(old, new):
+            return True
         return has_values and old is not None and new is not None and _get_shape(old.text) == _get_shape(new.text)
+
+    def _shows_values(self, old: Part, new: Part) -> bool:
+        """Return whether a line shows the old and the new value of an assignment, such as the QoS of a topic."""
+        values = [_SPACE.sub("", part.text).partition("=")[2].rstrip(";") for part in (old, new)]
+        return all(values) and f"{values[0]}->{values[1]}" in _SPACE.sub("", self._text)
 
 
 def _get_constructor_class(name: str) -> str:
