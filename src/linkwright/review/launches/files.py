@@ -12,6 +12,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, counted, joined_first, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
+from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
@@ -355,10 +356,9 @@ def _report_failures(
 def _find_functions(file: Path, parts: Sequence[CodePart]) -> Iterator[str]:
     """Yield the functions of a Python file that contain statements, except the one that returns the actions."""
     try:
-        tree = (
-            ast.parse(file.read_text("utf-8", errors="replace")) if file.suffix == PYTHON_SUFFIX else ast.Module([], [])
-        )
-    except (OSError, SyntaxError, ValueError, RecursionError):
+        is_python = file.suffix == PYTHON_SUFFIX
+        tree = parse_python(file.read_text("utf-8", errors="replace")) if is_python else ast.Module([], [])
+    except (OSError, SyntaxError, ValueError):
         return
     functions = [node for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
     for part in parts:
