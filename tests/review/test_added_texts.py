@@ -124,8 +124,8 @@ if __name__ == "__main__":
 
 def test_new_script_names_constants_and_its_main_code(review_lines):
     assert review_lines({"a/x.txt": ""}, {"a/scripts/imu.py": SCRIPT}) == [
-        "code added outside of functions",
         'constants added: PORT = "/dev/ttyACM0", RATE = 50, OFFSETS = [0.1, -0.2]',
+        "code added outside of functions",
     ]
 
 
@@ -151,7 +151,7 @@ def test_new_program_names_functions_that_no_other_line_names(review_lines):
     ],
 )
 def test_constants_outside_of_functions_are_named(review_lines, path, old, new, expected):
-    assert review_lines({path: old}, {path: new})[-1] == expected
+    assert review_lines({path: old}, {path: new})[0] == expected
 
 
 @pytest.mark.parametrize(
@@ -169,3 +169,19 @@ def test_constants_outside_of_functions_are_named(review_lines, path, old, new, 
 def test_other_statements_are_not_constants(review_lines, path, new):
     old = "A = 1\n" if path.endswith(".py") else "int A = 1;\n"
     assert not any("constants" in line for line in review_lines({path: old}, {path: new}))
+
+
+def test_variables_of_a_new_script_are_not_constants(review_lines):
+    script = (
+        "count = 0\nlast = None\ntopic = '/image'\nfor item in read(topic):\n    count += 1\n    use(item, count)\n"
+    )
+    assert "constants added: topic = '/image'" in review_lines({"a/x.txt": ""}, {"a/scripts/run.py": script})
+
+
+def test_constant_that_a_line_names_is_no_other_code(review_lines):
+    old = "RATE = 'fast'\nLIMIT = 1.0\n\n\ndef run():\n    go(RATE, LIMIT)\n"
+    new = old.replace("RATE = 'fast'\n", "").replace("go(RATE, LIMIT)", "go(LIMIT)")
+    assert review_lines({"a/run.py": old}, {"a/run.py": new}) == [
+        "constants removed: RATE = 'fast'",
+        "code changed in 'run()'",
+    ]

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import chain, pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -29,6 +31,9 @@ _READING_METHODS = frozenset(
 """The methods whose first argument is a key or a text to compare with."""
 _READING_FUNCTIONS = frozenset({"getenv", "strcmp"})
 _QUOTED = re.compile("\"([^\"]*)\"|'([^']*)'")
+_NO_VALUES = ("None", "nullptr", "NULL")
+_CHANGES = frozenset({"=", "+=", "-=", "*=", "/=", "%=", "|=", "&=", "//=", "**=", ":=", "++", "--", "in", ","})
+"""The tokens after a name that a statement assigns or changes, such as the name of a loop."""
 _TYPE_PUNCTUATION = frozenset({"::", "*", "&", "<", ">", "[", "]"})
 
 
@@ -137,7 +142,7 @@ def _pair_equal_values(
 
 def _find_one_sided(
     path: Path,
-    find: Callable[[str, Sequence[Statement]], Iterator[OneSidedText]],
+    find: Callable[[Mapping[str, Sequence[Statement]]], Iterator[OneSidedText]],
     has_other: Callable[[str], bool],
     reported: Sequence[str],
 ) -> list[OneSidedText]:
@@ -149,9 +154,7 @@ def _find_one_sided(
         scopes = read_cpp_statements(source.text) if path.suffix in CPP_SUFFIXES else read_python_statements(source)
     except (ValueError, SyntaxError, RecursionError):
         return []
-    items = {
-        item.word: item for scope, statements in scopes.items() for item in reversed(list(find(scope, statements)))
-    }
+    items = {item.word: item for item in reversed(list(find(scopes)))}
     return [
         item
         for item in sorted(items.values(), key=lambda item: item.token.start)
@@ -166,8 +169,8 @@ def _has_word(line: str, word: str) -> bool:
 # --- keys and compared texts ----------------------------------------------------------------------------------------
 
 
-def _find_keys(_scope: str, statements: Sequence[Statement]) -> Iterator[OneSidedText]:
-    for statement in statements:
+def _find_keys(scopes: Mapping[str, Sequence[Statement]]) -> Iterator[OneSidedText]:
+    for statement in chain.from_iterable(scopes.values()):
         for literal in statement.literals:
             if not _is_key(statement.tokens, literal):
                 continue
@@ -204,19 +207,31 @@ def _is_key(tokens: Sequence[Token], literal: Literal) -> bool:
 # --- constants ------------------------------------------------------------------------------------------------------
 
 
-def _find_constants(scope: str, statements: Sequence[Statement]) -> Iterator[OneSidedText]:
-    """Yield the statements outside of functions and classes that assign a literal to a name."""
-    for statement in statements if not scope else ():
+def _find_constants(scopes: Mapping[str, Sequence[Statement]]) -> Iterator[OneSidedText]:
+    """Yield the statements outside of functions and classes that assign a literal to a name, which keeps it."""
+    counts = Counter(name for statements in scopes.values() for item in statements for name in _list_assigned(item))
+    for statement in scopes.get("", ()):
         tokens = [token for token in statement.tokens if token.text != ";"]
         sign = next((index for index, token in enumerate(tokens) if token.text == "="), 0)
         literals = parse_statement(tokens).literals
-        if not sign or len(literals) != 1 or literals[0].constant:
+        if not sign or len(literals) != 1 or literals[0].constant or tokens[-1].text in _NO_VALUES:
             continue
         (literal,) = literals
         name = _find_constant_name(tokens[:sign])
-        if name is not None and (literal.first, literal.last) == (sign + 1, len(tokens) - 1):
+        is_whole_value = (literal.first, literal.last) == (sign + 1, len(tokens) - 1)
+        if name is not None and is_whole_value and counts[name.text] <= 1:
             value = shorten_middle(statement.get_text(literal.first, literal.last), _MAX_TEXT_LENGTH)
             yield OneSidedText(f"{name.text} = {value}", name.text, name)
+
+
+def _list_assigned(statement: Statement) -> Iterator[str]:
+    """Yield the names that a statement assigns or changes outside of brackets."""
+    depth = 0
+    for token, following in pairwise(statement.tokens):
+        if token.kind is TokenKind.OPERATOR:
+            depth += (token.text in "([{") - (token.text in ")]}")
+        elif depth == 0 and token.kind is TokenKind.WORD and following.text in _CHANGES:
+            yield token.text
 
 
 def _find_constant_name(target: Sequence[Token]) -> Token | None:

@@ -20,7 +20,9 @@ _QUOTED = re.compile(r"'([^']+)'")
 _LITERAL = re.compile("\"((?:\\\\.|[^\"\\\\])*)\"|'((?:\\\\.|[^'\\\\])*)'")
 _CALL = re.compile(r"(\w+)\s*\(")
 _SPACE = re.compile(r"[^\S\n]")
-_LITERAL_ASSIGNMENT = re.compile(r"\s*\w+ = [^(]*", re.DOTALL)
+_ASSIGNMENT = re.compile(r"(\w+)\s*=\s*([^=;].*?)\s*;?\s*\Z", re.DOTALL)
+_PLAIN_CODE = re.compile(r"[\W\d]*\w+ = [^(]*|[\W\d]*(?:if|try|with|else)\b.*", re.DOTALL)
+"""Assignments of literals, and the heads of statements other than loops."""
 _VALUES = "values in {name}: {values}"
 _MODULE_VALUES = "values: {values}"
 _MAX_COMPARED_PAIRS = 4_000_000
@@ -114,9 +116,7 @@ def find_added_code(
     texts = _format_functions([], added, [], [], names)
     own_names = {_get_short_name(name) for name in (*new.functions, *new.outside)}
     statements = [
-        part
-        for part in _without_calls(new.outside.get("", ()), own_names)
-        if "\n" not in part.text and not _LITERAL_ASSIGNMENT.fullmatch(part.text)
+        part for part in _without_calls(new.outside.get("", ()), own_names) if not _PLAIN_CODE.fullmatch(part.text)
     ]
     unreported = [part for part in statements if lines.has_unreported_change((), [part], "")]
     if new.imports and len(unreported) >= _MIN_STATEMENTS:
@@ -300,6 +300,7 @@ class _ReportedLines:
         names = {name for change in changes for name in _QUOTED.findall(str(change.sentence))}
         self._names = {part for name in names for part in (name, *_list_parts(name))}
         self._text = "\n".join(str(change.sentence) for change in changes)
+        self._compact_text = _SPACE.sub("", self._text).replace("'", '"')
         self._functions = {
             str(change.sentence.arguments["name"]) for change in changes if change.sentence.template == _VALUES
         }
@@ -344,6 +345,8 @@ class _ReportedLines:
         for part, is_old in ((old, True), (new, False)):
             if part is None:
                 continue
+            if self._shows_constant(part):
+                return True
             if any(part.first_line <= line <= part.last_line for line in self._lines[is_old]):
                 return True
             literals = [text for match in _LITERAL.finditer(part.text) for text in match.groups() if text]
@@ -353,10 +356,18 @@ class _ReportedLines:
             return True
         return has_values and old is not None and new is not None and _get_shape(old.text) == _get_shape(new.text)
 
+    def _shows_constant(self, part: Part) -> bool:
+        """Return whether a line shows an assignment with its value, such as an added constant."""
+        assignment = _ASSIGNMENT.search(part.text)
+        if assignment is None:
+            return False
+        shown = _SPACE.sub("", "=".join(assignment.groups())).replace("'", '"')
+        return re.search(rf"(?<!\w){re.escape(shown)}(?![\w.])", self._compact_text) is not None
+
     def _shows_values(self, old: Part, new: Part) -> bool:
         """Return whether a line shows the old and the new value of an assignment, such as the QoS of a topic."""
         values = [_SPACE.sub("", part.text).partition("=")[2].rstrip(";") for part in (old, new)]
-        return all(values) and f"{values[0]}->{values[1]}" in _SPACE.sub("", self._text)
+        return all(values) and f"{values[0]}->{values[1]}".replace("'", '"') in self._compact_text
 
 
 def _get_constructor_class(name: str) -> str:

@@ -26,14 +26,13 @@ def compare_statements(
         file: the source.
         reported: the other lines about the source.
     """
-    changes = list(reported)
+    changes = [*reported, *_compare_constants(old, new, file, reported)]
     if file.old_path is not None and file.new_path is not None:
         changes += _compare_values(old, new, file, changes)
         changes += _compare_code(old, new, file.old_path, file.new_path, changes)
         changes += _compare_keys(old, new, file, changes)
     elif file.new_path is not None:
         changes += _find_added_code(old, new, file.new_path, changes)
-    changes += _compare_constants(old, new, file, changes)
     return changes[len(reported) :]
 
 
