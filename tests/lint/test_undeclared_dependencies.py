@@ -109,3 +109,9 @@ def test_fix_adds_a_depend_element(tmp_path):
 def test_imports_of_python2_sources_are_read(tmp_path):
     text = "import rospy\nfrom arm_msgs.msg import State\nprint 'arm'\ndef f():\n    print 'a'\n"
     assert find(tmp_path, {"scripts/arm.py": text}) == ["arm_msgs"]
+
+
+def test_invalid_escapes_in_a_file_give_no_warnings(tmp_path, recwarn):
+    text = "import re\nfrom nav2_msgs.srv import Clear\nPATTERN = re.compile('\\d')\n"
+    assert find(tmp_path, {"p/__init__.py": "", "p/node.py": text}) == ["nav2_msgs"]
+    assert not recwarn.list

@@ -170,7 +170,8 @@ def test_a_long_text_is_read_once_and_shown_in_part(review_lines):
 def test_a_constant_of_the_source_with_another_name_is_not_a_value(review_lines):
     text = "STEP = 1\n\ndef f():\n    return STEP\n"
     assert review_lines("rover/step.py", text, "STEP", "STEP_SIZE") == [
-        "code changed in 'f()'; code changed outside of functions"
+        "constants renamed: STEP -> STEP_SIZE",
+        "code changed in 'f()'",
     ]
 
 
@@ -211,3 +212,42 @@ def test_a_source_with_a_syntax_error_loses_no_names(repository, compare, is_new
 )
 def test_the_only_number_that_changes_with_the_form_of_a_statement_is_told(review_lines, old, new, expected):
     assert review_lines("rover/scripts/drive.py", PYTHON, old, new) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "old", "new", "expected"),
+    [
+        (
+            "rover/save.py",
+            "arm_share = find_share('arm')\n\ndef f():\n    use(arm_share)\n",
+            ("arm_share", "'arm'"),
+            ("leg_share", "'leg'"),
+            "values: find_share('arm' -> 'leg')",
+        ),
+        (
+            "rover/save.py",
+            "def f():\n    self.near = read('near', 1)\n    far = read('far', 2)\n    use(self.near, far)\n",
+            ("self.near", "1)"),
+            ("self.close", "3)"),
+            "values in f: read('near', 1 -> 3)",
+        ),
+        (
+            "rover/save.cpp",
+            'void f() {\n  auto near = read("near");\n  use(near);\n}\n',
+            ("auto near", '"near"', "use(near"),
+            ("auto close", '"close"', "use(close"),
+            'values in f: read("near" -> "close")',
+        ),
+    ],
+)
+def test_values_of_renamed_variables_are_compared(review_lines, path, text, old, new, expected):
+    changed = text
+    for before, after in zip(old, new, strict=True):
+        changed = changed.replace(before, after)
+    assert review_lines(path, text, text, changed)[0] == expected
+
+
+def test_statements_with_other_functions_are_not_compared(review_lines):
+    text = "def f():\n    near = read('near')\n    use(near)\n"
+    changed = "def f():\n    far = make('far')\n    use(far)\n"
+    assert review_lines("rover/save.py", text, text, changed) == ["code changed in 'f()'"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.repositories import PACKAGE
 from tests.review.conftest import breaking, sentences, subject
 
 STATE = """module robot {
@@ -82,3 +83,45 @@ def test_a_message_that_becomes_a_service_is_a_renamed_file(repository, compare)
     repository.commit({"p/msg/Count.msg": fields})
     repository.commit({"p/msg/Count.msg": None, "p/srv/Count.srv": f"{fields}---\n"})
     assert breaking(compare(repository, "HEAD~1..HEAD")) == ["renamed from p/msg/Count.msg"]
+
+
+FIELDS = "string ns\nfloat64 x\nfloat64 y\nuint8 OFF=0\nuint8 ON=1\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("string ns", "string namespace_name", ["field 'ns' renamed to 'namespace_name'"]),
+        ("64 x\nfloat64 y", "64 a\nfloat64 b", ["field 'x' renamed to 'a'", "field 'y' renamed to 'b'"]),
+        ("string ns", "int32 id", ["field 'id' of type int32 added", "field 'ns' removed"]),
+        (
+            "string ns\nfloat64 x\nfloat64 y",
+            "float64 x\nfloat64 y\nstring id",
+            ["field 'id' of type string added", "field 'ns' removed"],
+        ),
+        ("float64 x\nfloat64 y", "float64 y\nfloat64 x", ["order of the fields changed"]),
+        ("OFF", "STOPPED", ["constant 'OFF' renamed to 'STOPPED'"]),
+        ("uint8 OFF=0", "uint8 STOPPED=2", ["constant 'STOPPED' = 2 added", "constant 'OFF' removed"]),
+    ],
+)
+def test_renamed_fields_and_constants_have_one_line(repository, compare, old, new, expected):
+    repository.commit({"p/msg/State.msg": FIELDS})
+    repository.write({"p/msg/State.msg": FIELDS.replace(old, new)})
+    result = compare(repository)
+    assert sentences(subject(result, "p/msg/State.msg")) == expected
+    assert set(breaking(result)) == {text for text in expected if "= 2 added" not in text}
+
+
+def test_fields_of_types_that_only_ros1_has_are_compared(repository, compare):
+    path = "arm_description/msg/State.msg"
+    repository.commit({**PACKAGE, path: "time stamp\nduration[] waits\nint32 x\n"})
+    fields = "builtin_interfaces/Time stamp\nbuiltin_interfaces/Duration[] waits\nint32 y\n"
+    repository.write({path: fields})
+    result = compare(repository)
+    assert sentences(subject(result, path)) == [
+        "can be read now; in the old version: there is no type 'time'",
+        "field 'x' renamed to 'y'",
+        "field 'stamp': time -> builtin_interfaces/Time",
+        "field 'waits': duration[] -> builtin_interfaces/Duration[]",
+    ]
+    assert not breaking(result)

@@ -315,3 +315,68 @@ def test_joined_path_of_a_substitution_instead_of_a_list_is_not_the_substitution
             "$(command xacro arm.urdf)"
         )
     ]
+
+
+SIMULATION = """<launch>
+  <node pkg="arm" type="hand" name="hand" respawn="true">
+    <param name="speed" value="1.0"/>
+    <param name="width" value="0.2"/>
+  </node>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("", "", "node 'arm/hand' moved from arm/launch/part.launch"),
+        (
+            'value="0.2"',
+            'value="0.3"',
+            "node 'arm/hand' moved from arm/launch/part.launch, now with parameter width 0.3",
+        ),
+        (' respawn="true"', "", "node 'arm/hand' moved from arm/launch/part.launch, without respawn"),
+        (
+            'respawn="true"',
+            'output="screen"',
+            "node 'arm/hand' moved from arm/launch/part.launch, now with output screen, without respawn",
+        ),
+    ],
+)
+def test_moved_action_names_its_other_settings(repository, compare, old, new, expected):
+    repository.commit({"arm/launch/part.launch": SIMULATION, "arm/launch/arm.launch": "<launch/>\n"})
+    repository.write({"arm/launch/part.launch": None, "arm/launch/arm.launch": SIMULATION.replace(old, new)})
+    assert sentences(subject(compare(repository), "arm/launch/arm.launch")) == [expected]
+
+
+LIFECYCLE = """from launch import LaunchDescription
+from launch.actions import EmitEvent
+from launch_ros.actions import Node, LifecycleNode
+
+
+def generate_launch_description():
+    hand = Node(package="arm", executable="hand", name="hand", namespace="")
+    ld = LaunchDescription()
+    ld.add_action(hand)
+    return ld
+"""
+
+
+def test_node_that_becomes_a_lifecycle_node_is_named(repository, compare):
+    path = "arm/launch/arm.launch.py"
+    repository.commit({path: LIFECYCLE})
+    event = "    start = EmitEvent(event=make(hand))\n    ld.add_action(start)\n    return ld\n"
+    new = LIFECYCLE.replace("hand = Node", "hand = LifecycleNode").replace("    return ld\n", event)
+    repository.write({path: new})
+    assert sentences(subject(compare(repository), path)) == [
+        "node 'arm/hand': lifecycle true added",
+        "other code added: start = EmitEvent(event=make(hand)) and 1 more statement",
+    ]
+
+
+def test_node_of_xml_that_becomes_a_lifecycle_node_is_named(repository, compare):
+    path = "arm/launch/arm.launch.xml"
+    text = '<launch>\n  <node pkg="arm" exec="hand" name="hand" namespace=""/>\n</launch>\n'
+    repository.commit({path: text})
+    repository.write({path: text.replace("<node", "<lifecycle_node")})
+    assert sentences(subject(compare(repository), path)) == ["node 'arm/hand': lifecycle true added"]

@@ -250,3 +250,18 @@ def test_name_that_gains_a_part_wins_over_another_with_equal_contents(review_cha
     new = "filters:\n  depth: {low: 1, high: 2, rate: 3, size: 4}\n  scan_left: {low: 1, high: 2, rate: 3, size: 5}\n"
     found, _ = review_changes(text, new)
     assert sentences(found)[:2] == ["filters.scan renamed to filters.scan_left", "filters.scan_left.size 4 -> 5"]
+
+
+def test_parts_that_keep_their_values_are_the_renamed_ones(review_changes):
+    old = "layer:\n  obstacle_range: 3.0\n  raytrace_range: 4.0\n"
+    new = (
+        "layer:\n  obstacle_min_range: 0.0\n  obstacle_max_range: 3.0\n  raytrace_min_range: 0.0\n"
+        "  raytrace_max_range: 4.0\n"
+    )
+    found, _ = review_changes(old, new)
+    assert sentences(found) == [
+        "layer.obstacle_range renamed to layer.obstacle_max_range",
+        "layer.obstacle_min_range 0.0 added",
+        "layer.raytrace_min_range 0.0 added",
+    ]
+    assert found.changes[0].other_names == ("layer.raytrace_range -> layer.raytrace_max_range",)

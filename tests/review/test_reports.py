@@ -272,3 +272,16 @@ def test_added_files_with_the_same_summary_are_not_the_same(package, compare):
         "arm_description/launch/right.launch",
     ]
     assert not any("the same in" in line for line in lines)
+
+
+@pytest.mark.parametrize("is_added", [True, False])
+def test_added_and_removed_sources_are_marked(repository, compare, is_added):
+    empty, source = {"a/a.txt": "", "a/run.py": None}, {"a/run.py": "import rospy\nrospy.init_node('run')\n"}
+    repository.commit({"a/a.txt": "", **({} if is_added else source)})
+    repository.write(source if is_added else empty)
+    result = compare(repository)
+    state = "added" if is_added else "removed"
+    assert f"a/run.py ({state})\n" in as_text(result)
+    assert f"<h2><code>a/run.py</code> ({state})</h2>" in as_html(result)
+    if is_added:
+        assert "#### <code>a/run.py</code> (added)\n" in as_markdown(result)

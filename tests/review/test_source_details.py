@@ -265,3 +265,64 @@ def test_another_frame_of_published_messages_is_breaking(repository, compare, te
     repository.commit({"a.py": start + text})
     repository.write({"a.py": start + text.replace('id = "arm"', f'id = "{new}"')})
     assert breaking(compare(repository)) == expected
+
+
+CPP_QOS = """#include <rclcpp/rclcpp.hpp>
+Rover::Rover() : Node("rover") {{
+  {}
+  state_ = create_publisher<std_msgs::msg::String>("state", {});
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (
+            ("auto qos = rclcpp::QoS(10);", "qos"),
+            ("auto qos = rclcpp::QoS(10).best_effort();", "qos"),
+            ["publisher 'state': QoS rclcpp::QoS(10) -> rclcpp::QoS(10).best_effort()"],
+        ),
+        (
+            ("", "10"),
+            ("rclcpp::QoS qos(10);\n  qos.best_effort();\n  qos.transient_local();", "qos"),
+            [
+                "publisher 'state': QoS 10 -> rclcpp::QoS(10).best_effort().transient_local()",
+                "code changed in 'Rover::Rover()'",
+            ],
+        ),
+        (
+            ("const auto & qos = rclcpp::SensorDataQoS();", "qos"),
+            ("const auto & qos = rclcpp::SystemDefaultsQoS();", "qos"),
+            ["publisher 'state': QoS rclcpp::SensorDataQoS() -> rclcpp::SystemDefaultsQoS()"],
+        ),
+        (
+            ("auto qos = make(10);", "qos"),
+            ("auto qos = make_other(10);", "qos"),
+            ["code changed in 'Rover::Rover()'"],
+        ),
+        (
+            ("auto qos = rclcpp::QoS(10);", "qos"),
+            ("auto qos = rclcpp::QoS(10);\n  qos = read();", "qos"),
+            ["code changed in 'Rover::Rover()'"],
+        ),
+    ],
+)
+def test_qos_in_a_variable_of_cpp_is_compared(repository, compare, old, new, expected):
+    repository.commit({"rover/src/rover.cpp": CPP_QOS.format(*old)})
+    repository.write({"rover/src/rover.cpp": CPP_QOS.format(*new)})
+    assert sentences(subject(compare(repository), "rover/src/rover.cpp")) == expected
+
+
+def test_code_that_a_line_about_qos_shows_is_not_told_again(repository, compare):
+    text = """class Rover(Node):
+    def __init__(self):
+        super().__init__("rover")
+        qos = QoSProfile(depth=10)
+        self.state = self.create_publisher(String, "state", qos)
+"""
+    repository.commit({"rover/rover.py": text})
+    repository.write({"rover/rover.py": text.replace("depth=10", "depth=10, reliability=BEST_EFFORT")})
+    assert sentences(subject(compare(repository), "rover/rover.py")) == [
+        "publisher 'state': QoS QoSProfile(depth=10) -> QoSProfile(depth=10, reliability=BEST_EFFORT)"
+    ]

@@ -37,7 +37,7 @@ def test_interface_that_was_never_built_is_used_by_nobody(repository, compare, o
     repository.commit({**FILES, CMAKE_PATH: old, PATH: "float64 x\n---\n"})
     repository.write({CMAKE_PATH: CMAKE.format("", "srv/Move.srv"), PATH: "float64 y\n---\n"})
     result = compare(repository)
-    fields = ["field 'request y' of type float64 added", "field 'request x' removed"]
+    fields = ["field 'request x' renamed to 'request y'"]
     assert sentences(subject(result, PATH)) == fields
     assert [text for text in breaking(result) if text in fields] == (fields if is_breaking else [])
 

@@ -17,6 +17,7 @@ from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.python2 import as_python3
+from linkwright.packages.readers.python_values import parse_python
 
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
@@ -222,6 +223,6 @@ def _list_import_lines(text: str) -> frozenset[int]:
 
 def _parse(text: str) -> ast.Module | None:
     try:
-        return ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return parse_python(text)
+    except (SyntaxError, ValueError):
         return None

@@ -12,12 +12,13 @@ from pathlib import Path
 
 from linkwright.loading.lean_typing import Any
 from linkwright.packages.readers.installed import PROGRAM_GROUP
+from linkwright.packages.readers.python_values import parse_python
 
 
 def read_setup_py_group(text: str, group: str) -> list[str]:
     """Return the lines of a group in any dictionary of a ``setup.py``, without running it."""
-    with suppress(SyntaxError):
-        for node in ast.walk(ast.parse(text)):
+    with suppress(SyntaxError, ValueError):
+        for node in ast.walk(parse_python(text)):
             for key, value in zip(node.keys, node.values, strict=True) if isinstance(node, ast.Dict) else ():
                 if isinstance(key, ast.Constant) and key.value == group:
                     items = value.elts if isinstance(value, (ast.List, ast.Tuple)) else [value]

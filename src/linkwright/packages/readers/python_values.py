@@ -77,7 +77,7 @@ class PythonFile:
 
     def __init__(self, source: SourceText) -> None:
         self.source = source
-        self.tree = _parse(source.text)
+        self.tree = parse_python(source.text)
 
     @cached_property
     def _assignments(self) -> dict[str, ast.expr | None]:
@@ -247,7 +247,13 @@ def _bind(target: ast.expr, value: ast.expr | None, bindings: dict[str, ast.expr
         _bind(target.value, None, bindings)
 
 
-def _parse(text: str) -> ast.Module:
+def parse_python(text: str) -> ast.Module:
+    """Return the syntax tree of a Python source, without warnings about its code.
+
+    Raises:
+        SyntaxError: the text is not Python.
+        ValueError: it is nested too deeply.
+    """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # ignore warnings about the user's code, such as invalid escapes

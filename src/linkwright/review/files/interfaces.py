@@ -16,6 +16,7 @@ from linkwright.packages import MANIFEST, enclosing_package
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
+from linkwright.review.files.renamed_fields import find_renamed_constants, find_renamed_fields
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.files.unbuilt_interfaces import is_unbuilt
 from linkwright.review.versions import Version
@@ -25,6 +26,8 @@ _SEPARATOR = "---"
 _IDL = ".idl"
 _MIN_RENUMBERED = 3
 """The minimum number of changed constants that share a line. An inserted constant can renumber those below it."""
+_ROS2_TYPE = re.compile(r"^builtin_interfaces/(?:msg/)?(Time|Duration)\b")
+"""A type of ROS 2 that is built in in ROS 1."""
 _PART_PREFIXES = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
 """The prefixes of field names: the structures of a message, a service and an action."""
 
@@ -34,18 +37,44 @@ def compare_interfaces(pair: FilePair) -> None:
 
     A change to a field is breaking: the hash of the type changes (REP 2016), and nodes that were built with different
     versions do not exchange messages. In ROS 1, constants are a part of the MD5 sum of a type. No program uses a
-    definition that the old version does not build.
+    definition that the old version does not build, such as one for ROS 1 in a package of ROS 2.
     """
-    _compare(pair)
-    if not pair.is_lost and is_unbuilt(pair.versions.old, pair.old_path):
+    definitions = pair.read(read_structures)
+    is_foreign = definitions is None
+    if is_foreign:
+        definitions = _read_ros1_definition(pair)
+    if definitions is not None:
+        _compare(pair, *definitions)
+    if definitions is not None and is_foreign:
+        _report_ros1_types(pair, *definitions)
+    if not pair.is_lost and (is_foreign or is_unbuilt(pair.versions.old, pair.old_path)):
         pair.changes = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
 
 
-def _compare(pair: FilePair) -> None:
-    definitions = pair.read(read_structures)
-    if definitions is None:
-        return
-    old, new = definitions
+def _read_ros1_definition(pair: FilePair) -> tuple[Mapping[str, Structure], Mapping[str, Structure]] | None:
+    """Return both versions of a definition that only ROS 1 could read before; None if there is another fault."""
+    if pair.is_lost or pair.problems:
+        return None
+    try:
+        return read_structures(pair.old_file, is_ros1=True), read_structures(pair.new_file)
+    except LinkwrightError:
+        return None
+
+
+def _report_ros1_types(pair: FilePair, old: Mapping[str, Structure], new: Mapping[str, Structure]) -> None:
+    """Report the fields of types that only ROS 1 has, and that are otherwise unchanged."""
+    for index, (part, structure) in enumerate(new.items()):
+        old_fields = old[part].fields if part in old else ()
+        locations = _Locations(pair, index, structure.type_name)
+        for field in [field for field in structure.fields if field in old_fields]:
+            text = field.type.to_msg_text()
+            old_text = _ROS2_TYPE.sub(lambda match: match[1].lower(), text)
+            if old_text != text:
+                sentence = phrase("field '{name}': {old} -> {new}", name=part + field.name, old=old_text, new=text)
+                pair.add(sentence, locations.find(field.name))
+
+
+def _compare(pair: FilePair, old: Mapping[str, Structure], new: Mapping[str, Structure]) -> None:
     if old.keys() != new.keys() and pair.new_file.suffix != _IDL:
         return  # such as a message that became a service, with a different file name
     renamed = _find_renamed_structures(old, new)
@@ -95,8 +124,13 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
     return phrase("{contents}; CMakeLists.txt does not build it", contents=contents)
 
 
-def read_structures(file: Path) -> Mapping[str, Structure]:
-    """Return the structures of a file by the prefix of their field names."""
+def read_structures(file: Path, *, is_ros1: bool | None = None) -> Mapping[str, Structure]:
+    """Return the structures of a file by the prefix of their field names.
+
+    Args:
+        file: the definition.
+        is_ros1: whether to read it as ROS 1 does; None for the ROS version of its package.
+    """
     kind = file.parent.name if file.suffix == _IDL else file.suffix.removeprefix(".")
     if kind not in SECTIONS:  # not a ROS file, so it can have any number of structures
         try:
@@ -108,7 +142,8 @@ def read_structures(file: Path) -> Mapping[str, Structure]:
     if package is None and (file.parent.parent / ROSBUILD_MANIFEST).is_file():
         name = file.parent.parent.name
     type_name = f"{name}/{kind}/{file.stem}"
-    parts = list_structures(parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=_is_ros1(file)))
+    is_ros1 = _is_ros1(file) if is_ros1 is None else is_ros1
+    parts = list_structures(parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=is_ros1))
     return dict(zip(_PART_PREFIXES[len(parts)], parts, strict=True))
 
 
@@ -193,7 +228,12 @@ def _compare_fields(
     pair: FilePair, old: Sequence[Field], new: Sequence[Field], part: str, locations: _Locations
 ) -> None:
     reason = _make_exchange_reason()
-    old_fields, new_fields = ({field.name: field for field in fields} for fields in (old, new))
+    renamed = find_renamed_fields(old, new)
+    for old_field, new_field in renamed:
+        text = phrase("field '{old}' renamed to '{new}'", old=part + old_field.name, new=part + new_field.name)
+        pair.add(text, locations.find(new_field.name), reason)
+    names = {field.name for fields in renamed for field in fields}
+    old_fields, new_fields = ({field.name: field for field in items if field.name not in names} for items in (old, new))
     for name in dict.fromkeys([*new_fields, *old_fields]):
         before, after = old_fields.get(name), new_fields.get(name)
         if before is None and after is not None:
@@ -227,19 +267,33 @@ def _make_exchange_reason() -> Phrase:
     return phrase("nodes that were built with the old type do not exchange messages with new ones")
 
 
+def _make_constant_reason() -> Phrase:
+    return phrase("programs that use the constant do not build or start")
+
+
 def _compare_constants(
     pair: FilePair, old: Sequence[Constant], new: Sequence[Constant], part: str, locations: _Locations, *, is_ros1: bool
 ) -> None:
-    old_values, new_values = ({constant.name: constant.value for constant in constants} for constants in (old, new))
+    renamed = find_renamed_constants(old, new)
+    for old_constant, new_constant in renamed:
+        names = {"old": part + old_constant.name, "new": part + new_constant.name}
+        text = phrase("constant '{old}' renamed to '{new}'", **names)
+        pair.add(
+            text, locations.find(new_constant.name), phrase("programs that use the constant do not build or start")
+        )
+    renamed_names = {constant.name for constants in renamed for constant in constants}
+    old_values, new_values = (
+        {constant.name: constant.value for constant in constants if constant.name not in renamed_names}
+        for constants in (old, new)
+    )
     for name, value in new_values.items():
         if name not in old_values:
             text = phrase("constant '{name}' = {value} added", name=part + name, value=str(value))
             pair.add(text, locations.find(name), _make_exchange_reason() if is_ros1 else None)
     for name in old_values:
         if name not in new_values:
-            reason = phrase("programs that use the constant do not build or start")
             text = phrase("constant '{name}' removed", name=part + name)
-            pair.add(text, locations.find(name, is_old=True), reason)
+            pair.add(text, locations.find(name, is_old=True), _make_constant_reason())
     changes = [
         (name, str(old_values[name]), str(value))
         for name, value in new_values.items()

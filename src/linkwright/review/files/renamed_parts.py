@@ -82,7 +82,8 @@ def get_parent(part: str) -> str:
 def _find_equal_renames(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:
     """Yield sibling parts that are renamed in the same way.
 
-    An example is a new prefix of all joints of a controller. The edit of the most names comes first.
+    An example is a new prefix of all joints of a controller. The edit of the most names comes first, and among equally
+    many, the one that keeps the most values.
     Unless the edit covers all old or all new parts and their keys are equal, their values must also be similar.
     """
     old_groups, new_groups = _group_siblings(old), _group_siblings(new)
@@ -91,7 +92,9 @@ def _find_equal_renames(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) ->
         if any(_ITEM.search(name) for name in (*removed, *added)):
             continue
         used_names: set[str] = set()
-        for group in _group_pairs_by_edit(removed, added):
+        groups = _group_pairs_by_edit(removed, added)
+        groups.sort(key=lambda pairs: (len(pairs), _count_equal(pairs, old, new)), reverse=True)
+        for group in groups:
             pairs = _select_unused_pairs(group, used_names)
             covers_all = len(pairs) in (len(removed), len(added))
             if not (covers_all and all(_get_names(old[first]) == _get_names(new[second]) for first, second in pairs)):
@@ -102,12 +105,17 @@ def _find_equal_renames(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) ->
 
 
 def _group_pairs_by_edit(removed: Sequence[str], added: Sequence[str]) -> list[list[tuple[str, str]]]:
-    """Return the pairs of names that differ in the same way, the largest groups first."""
+    """Return the groups of pairs of names that differ in the same way."""
     groups: dict[Hashable, list[tuple[str, str]]] = {}
     pairs = product(removed, added) if len(removed) * len(added) <= _MAX_PAIRS else zip(removed, added, strict=False)
     for pair in pairs:
         groups.setdefault(find_edit(*pair), []).append(pair)
-    return sorted(groups.values(), key=len, reverse=True)
+    return list(groups.values())
+
+
+def _count_equal(pairs: Sequence[tuple[str, str]], old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> int:
+    """Return the number of pairs whose parts have equal names and values."""
+    return sum(old[first] == new[second] for first, second in pairs)
 
 
 def _select_unused_pairs(pairs: Iterable[tuple[str, str]], used_names: Collection[str]) -> list[tuple[str, str]]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, counted, joined_first, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
+from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
@@ -20,13 +21,24 @@ from linkwright.review.launches.effects import find_addition_reason, find_remova
 from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.imports import compare_imports
-from linkwright.review.launches.included import IncludedActions, find_callers, find_file_with_moved_action
+from linkwright.review.launches.included import (
+    IncludedActions,
+    find_callers,
+    find_file_with_moved_action,
+    find_moved_settings,
+)
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
 from linkwright.review.launches.settings import SettingChanges
-from linkwright.review.launches.titles import format_added_entry, format_removed_entry, format_title, join_titles
+from linkwright.review.launches.titles import (
+    format_added_entry,
+    format_removed_entry,
+    format_settings,
+    format_title,
+    join_titles,
+)
 from linkwright.review.launches.transforms import find_other_publisher
 from linkwright.review.launches.unused_arguments import report_unused_arguments
 from linkwright.review.sources.names import PYTHON_SUFFIX
@@ -151,7 +163,13 @@ def _report_unpaired_entries(
     moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in added:
         file = old_included.find_unmatched_file(entry, new_included)
-        file = file or find_file_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False)
+        other_file = find_file_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False)
+        if file is None and other_file is not None:
+            differences = find_moved_settings(entry, pair.versions, other_file)
+            if differences is not None:
+                _report_changed_move(pair, entry, other_file, *differences)
+                continue
+        file = file or other_file
         if file is None:
             pair.add(format_added_entry(entry), pair.location(entry.span), find_addition_reason(entry))
         else:
@@ -184,6 +202,25 @@ def _report_unpaired_entries(
             find_removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes),
         )
     _report_moved(pair, moved)
+
+
+def _report_changed_move(pair: FilePair, entry: Entry, file: str, changed: Entry, lost: Sequence[str]) -> None:
+    """Report an action that moved from another launch file and has other settings there.
+
+    Args:
+        pair: both versions of the launch file.
+        entry: the action.
+        file: the other launch file.
+        changed: the action with only its new and changed settings.
+        lost: the names of the settings that it no longer has.
+    """
+    text = phrase("{entry} moved from {file}", entry=format_title(entry), file=file)
+    settings = format_settings(changed)
+    if settings is not None:
+        text = phrase("{change}, now with {items}", change=text, items=settings)
+    if lost:
+        text = phrase("{change}, without {items}", change=text, items=joined_first(lost, MAX_NAMES))
+    pair.add(text, pair.location(entry.span))
 
 
 def _report_moved(pair: FilePair, moved: Mapping[tuple[str, bool], Sequence[Entry]]) -> None:
@@ -272,13 +309,15 @@ def _drop_definitions(parts: Sequence[CodePart], other: LaunchOutline) -> list[C
 
 
 def _add_definitions(parts: Sequence[CodePart], own: LaunchOutline, other: LaunchOutline) -> list[CodePart]:
-    """Return changed statements and the assignments, which the other version lacks, of the names that they use."""
-    sources = {part.source for part in (*parts, *other.code, *other.definitions)}
+    """Return changed statements and the assignments of the names that they use and the other version does not have."""
+    sources = {part.source for part in (*parts, *other.code)}
+    other_names = {part.source.split(maxsplit=1)[0] for part in other.definitions}
     result = list(parts)
     used = " ".join(part.source for part in parts)
     for part in reversed(own.definitions):
         name = re.match(r"\w+", part.source)
-        if part.source not in sources and name is not None and re.search(rf"\b{name[0]}\b", used):
+        is_new = part.source not in sources and part.source.split(maxsplit=1)[0] not in other_names
+        if is_new and name is not None and re.search(rf"\b{name[0]}\b", used):
             result.append(part)
             used += f" {part.source}"
     return sorted(result, key=lambda part: (part.span.line, part.span.column))
@@ -317,10 +356,9 @@ def _report_failures(
 def _find_functions(file: Path, parts: Sequence[CodePart]) -> Iterator[str]:
     """Yield the functions of a Python file that contain statements, except the one that returns the actions."""
     try:
-        tree = (
-            ast.parse(file.read_text("utf-8", errors="replace")) if file.suffix == PYTHON_SUFFIX else ast.Module([], [])
-        )
-    except (OSError, SyntaxError, ValueError, RecursionError):
+        is_python = file.suffix == PYTHON_SUFFIX
+        tree = parse_python(file.read_text("utf-8", errors="replace")) if is_python else ast.Module([], [])
+    except (OSError, SyntaxError, ValueError):
         return
     functions = [node for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
     for part in parts:

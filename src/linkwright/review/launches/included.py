@@ -240,6 +240,27 @@ def find_file_with_moved_action(entry: Entry, versions: Versions, path: str, *, 
     return None
 
 
+def find_moved_settings(entry: Entry, versions: Versions, old_path: str) -> tuple[Entry, list[str]] | None:
+    """Return what differs in an action that moved from another launch file, or None if nothing does.
+
+    Args:
+        entry: the action in the new version.
+        versions: both versions.
+        old_path: the path of the other launch file in the old version.
+
+    Returns:
+        The action with only the settings that are new or have another value, and the names of the settings that it
+        lost.
+    """
+    outline = _try_read_outline(versions.old.file(old_path), versions.old.root)
+    key = _make_move_key(entry)
+    old = [] if outline is None else [other for other in outline.entries if _make_move_key(other) == key]
+    if not old or any(other.settings == entry.settings for other in old):
+        return None
+    changed = {name: value for name, value in entry.settings.items() if old[0].settings.get(name) != value}
+    return replace(entry, settings=changed), [name for name in old[0].settings if name not in entry.settings]
+
+
 def _make_move_key(entry: Entry) -> _MoveKey:
     """Return the properties that an action keeps when it moves to another file."""
     return entry.kind, entry.name, entry.settings.get("name"), tuple(find_served_names(entry))

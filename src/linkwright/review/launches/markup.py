@@ -229,6 +229,8 @@ def _read_entry(tag: LaunchTag) -> Entry | None:
         kind, settings = "variable", {"value": attributes.get("value", "")}
     elif tag.name in _NODE_TAGS:
         kind, name, settings = "node", _format_node_name(attributes), _read_node_settings(tag)
+        if tag.name == "lifecycle_node":
+            settings["lifecycle"] = "true"
     elif tag.name == "executable":
         kind, name, settings = (
             "process",

@@ -414,6 +414,8 @@ class _Reader:
             kind = "node"
             name = "/".join(text(keywords[key]) for key in ("package", "executable", "plugin") if key in keywords)
             name, settings = name or text(call.func), self._read_node_settings(keywords, extra)
+            if function == "LifecycleNode":
+                settings["lifecycle"] = "true"
         condition = self.texts.format_condition(keywords.get(CONDITION))
         if not condition and CONDITION in extra:
             condition = extra[CONDITION].texts.format_condition(extra[CONDITION].node)

@@ -21,6 +21,7 @@ from linkwright.review.reports.sections import (
     format_paths,
     format_repeated,
     format_summary,
+    get_path_state,
     group_findings,
     list_other_files,
     merge_breaking_changes,
@@ -80,7 +81,7 @@ def as_html(review: Review) -> str:
         *(_render_section(section, scenes) for section in divide_report(review)),
         *_render_findings(phrase("New findings"), review.new_findings),
         *_render_findings(phrase("Fixed findings"), review.fixed_findings),
-        *_render_list(phrase("Other changed files"), [_render_other_file(*file) for file in list_other_files(review)]),
+        *_render_list(phrase("Other changed files"), [_render_path(*file) for file in list_other_files(review)]),
         *_render_list(phrase("Notes"), [_escape_text(note) for note in review.notes]),
     ]
     head = (
@@ -93,7 +94,7 @@ def as_html(review: Review) -> str:
     )
 
 
-def _render_other_file(path: str, state: Phrase | None) -> str:
+def _render_path(path: str, state: Phrase | None) -> str:
     return f"<code>{escape(path)}</code>" + ("" if state is None else f" ({_escape_text(state)})")
 
 
@@ -117,7 +118,7 @@ def _render_section(section: Section, scenes: Scenes) -> str:
     changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
     plots = "".join(map(draw_path_plot, subject.paths))
     return (
-        f"<h2><code>{escape(subject.path)}</code></h2><section>"
+        f"<h2>{_render_path(subject.path, get_path_state(subject))}</h2><section>"
         f"{_render_images(subject.images)}{scenes.create_element(subject.scene)}{_render_figures(subject.figures)}{changes}{plots}</section>"
     )
 

@@ -19,6 +19,7 @@ from linkwright.review.reports.sections import (
     format_paths,
     format_repeated,
     format_summary,
+    get_path_state,
     group_findings,
     list_other_files,
     merge_breaking_changes,
@@ -80,14 +81,14 @@ def _format_parts(review: Review) -> Iterator[str]:
         title = phrase("Other changed files ({count})", count=len(review.other_files))
         yield _format_details(
             _escape(title),
-            [_format_other_file(path, state) for path, state in list_other_files(review)],
+            [f"- {_format_path(path, state)}" for path, state in list_other_files(review)],
         )
     if review.notes:
         yield "\n".join(f"> {_escape(note)}" for note in review.notes)
 
 
-def _format_other_file(path: str, state: Phrase | None) -> str:
-    return f"- {_format_code(path)}" + ("" if state is None else f" ({_escape(state)})")
+def _format_path(path: str, state: Phrase | None) -> str:
+    return _format_code(path) + ("" if state is None else f" ({_escape(state)})")
 
 
 def _format_breaking_change(paths: Sequence[str], change: Change) -> str:
@@ -114,7 +115,8 @@ def _format_section(section: Section) -> str:
     alike_line = format_alike(section)
     lines += [] if alike_line is None else [f"- {_escape(alike_line)}"]
     lines += [f"> {_escape(problem.text)}" for problem in subject.problems]
-    return "\n".join([f"#### {_format_code(subject.path)}", "", *lines]).rstrip() if lines else ""
+    heading = f"#### {_format_path(subject.path, get_path_state(subject))}"
+    return "\n".join([heading, "", *lines]).rstrip() if lines else ""
 
 
 def _format_change(change: Change, subject: Subject) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 from linkwright.diagnostics import Diagnostic, Phrase, counted, joined_first, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.review.changes import Change, Effect, Location, Review, Subject
+from linkwright.review.changes import Change, Effect, Location, Review, Subject, SubjectKind
 from linkwright.review.other_files import group_files
 
 _MAX_NAMES = 24
@@ -114,6 +114,13 @@ def _merge_locations(changes: Sequence[Change]) -> list[Change]:
 def _join_locations(changes: Sequence[Change]) -> Change:
     others = [location for change in changes[1:] for location in (change.location, *change.other_locations) if location]
     return replace(changes[0], other_locations=(*changes[0].other_locations, *others)) if others else changes[0]
+
+
+def get_path_state(subject: Subject) -> Phrase | None:
+    """Return whether a source was added or removed; None for other files, whose changes tell it."""
+    if subject.kind is not SubjectKind.SOURCE or None not in (subject.old_path, subject.new_path):
+        return None
+    return phrase("added") if subject.old_path is None else phrase("removed")
 
 
 def merge_breaking_changes(review: Review) -> list[tuple[list[str], Change]]:

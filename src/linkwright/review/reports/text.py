@@ -16,6 +16,7 @@ from linkwright.review.reports.sections import (
     format_change,
     format_repeated,
     format_summary,
+    get_path_state,
     group_findings,
     list_other_files,
 )
@@ -58,7 +59,8 @@ def _format_report(review: Review) -> Iterator[str]:
 
 def _format_section(section: Section) -> Iterator[str]:
     subject = section.subject
-    yield subject.path
+    state = get_path_state(subject)
+    yield subject.path if state is None else f"{subject.path} ({localized(state)})"
     for change in section.changes:
         mark = "!" if change.effect is Effect.BREAKING else "-"
         cases = format_cases(change, subject)

@@ -56,6 +56,20 @@ class ChangedSources:
         sources = {path: try_read_source(self.version.file(path)) for path in self._names}
         return {path: read_code(source) for path, source in sources.items() if source is not None}
 
+    @cached_property
+    def _texts(self) -> Sequence[str]:
+        sources = (try_read_source(self.version.file(path)) for path in self._names)
+        return [source.text for source in sources if source is not None]
+
+    def has_text(self, text: str) -> bool:
+        """Return whether a changed source has a literal text."""
+        return any(f"'{text}'" in source or f'"{text}"' in source for source in self._texts)
+
+    def has_word(self, word: str) -> bool:
+        """Return whether a changed source has a name."""
+        pattern = re.compile(rf"\b{re.escape(word)}\b")
+        return any(word in source and pattern.search(source) for source in self._texts)
+
     def has_function(self, name: str, code: Code, path: str) -> bool:
         """Return whether another changed source has a function with the same name and code.
 

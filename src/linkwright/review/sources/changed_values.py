@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from pathlib import Path
 
@@ -20,6 +20,12 @@ _DEFINITION = re.compile(r"\b([A-Z]\w+)(?=\s*(?:=(?!=)|[{\[,]))|define\s+(\w+)")
 _QUOTED = re.compile("\"[^\"]*\"|'[^']*'")
 _MIN_SIMILARITY = 0.6
 """The minimum ratio of equal tokens of two versions of a statement."""
+_VARIABLE = re.compile(r"(?:(?<=self \. )|(?<=this -> )|(?<!\S)(?<![.:>] ))[A-Za-z_]\w*(?!\S)(?! \()")
+"""A name of a variable in the shape of a statement: not called, and not of another object."""
+_WORD = re.compile(r"[A-Za-z_]")
+_NAME_MARK = "\1"
+"""The mark for a renamed variable. Sources do not contain this character."""
+_Mask = Callable[[str], str]
 _COUNTERS = frozenset({"0", "1"})
 """Numbers that also change with the form of a statement, such as in ``i + 1``."""
 _MAX_COMPARED_PAIRS = 4_000_000
@@ -47,12 +53,13 @@ def find_value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) 
         )
     except (ValueError, SyntaxError, RecursionError):
         return
+    masks = _make_mask(new), _make_mask(old)
     for name, statements in new.items():
         items = [
             item
-            for pair in _pair_statements(old.get(name, []), statements)
+            for pair in _pair_statements(old.get(name, []), statements, masks)
             for item in (
-                find_literal_differences(*pair) if pair[0].shape == pair[1].shape else _find_number_change(*pair)
+                find_literal_differences(*pair) if _have_same_shape(*pair, masks) else _find_number_change(*pair)
             )
             if not _is_reported(item, reported) and not _is_renamed(item, old_source.text, new_source.text)
         ]
@@ -64,8 +71,29 @@ def find_value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) 
             yield text, new_source.span(items[0].token.start, items[0].token.end)
 
 
-def _pair_statements(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator[tuple[Statement, Statement]]:
-    """Yield pairs of statements of a function that differ only in literals, or are similar.
+def _make_mask(other: Mapping[str, Sequence[Statement]]) -> _Mask:
+    """Return a function that replaces the names of variables which another version lacks in a shape.
+
+    A shape whose value has no other name is returned unchanged: a new constant is not a renamed one.
+    """
+    known = {token.text for statements in other.values() for statement in statements for token in statement.tokens}
+
+    def mask(shape: str) -> str:
+        masked = _VARIABLE.sub(lambda match: match[0] if match[0] in known else _NAME_MARK, shape)
+        return masked if _WORD.search(masked.rpartition(" = ")[2]) else shape
+
+    return mask
+
+
+def _have_same_shape(old: Statement, new: Statement, masks: tuple[_Mask, _Mask]) -> bool:
+    """Return whether two statements differ only in literals and names of variables that the other version lacks."""
+    return old.shape == new.shape or masks[0](old.shape) == masks[1](new.shape)
+
+
+def _pair_statements(
+    old: Sequence[Statement], new: Sequence[Statement], masks: tuple[_Mask, _Mask]
+) -> Iterator[tuple[Statement, Statement]]:
+    """Yield pairs of statements of a function that differ only in literals and renamed variables, or are similar.
 
     Between equal statements, the statements of the same shape are paired if both versions have the
     same number. So are the remaining statements.
@@ -78,19 +106,25 @@ def _pair_statements(old: Sequence[Statement], new: Sequence[Statement]) -> Iter
     for tag, old_start, old_end, new_start, new_end in matcher.get_opcodes():
         if tag != "replace":
             continue
-        shapes = dict.fromkeys(statement.shape for statement in new[new_start:new_end])
-        old_shapes = {statement.shape for statement in old[old_start:old_end]}
+        before, after = old[old_start:old_end], new[new_start:new_end]
+        equal_shapes = {item.shape for item in before} & {item.shape for item in after}
+        keys = [
+            [item.shape if item.shape in equal_shapes else mask(item.shape) for item in items]
+            for items, mask in zip((before, after), masks, strict=True)
+        ]
         unpaired = (
-            [statement for statement in old[old_start:old_end] if statement.shape not in shapes],
-            [statement for statement in new[new_start:new_end] if statement.shape not in old_shapes],
+            [item for item, key in zip(before, keys[0], strict=True) if key not in keys[1]],
+            [item for item, key in zip(after, keys[1], strict=True) if key not in keys[0]],
         )
         if len(unpaired[0]) == len(unpaired[1]):
             yield from zip(*unpaired, strict=True)
-        for shape in shapes:
-            before = [statement for statement in old[old_start:old_end] if statement.shape == shape]
-            after = [statement for statement in new[new_start:new_end] if statement.shape == shape]
-            pairs = list(zip(before, after, strict=False))
-            if len(before) == len(after) and not _are_reordered(pairs):
+        for key in dict.fromkeys(keys[1]):
+            same = [
+                [item for item, own in zip(items, own_keys, strict=True) if own == key]
+                for items, own_keys in zip((before, after), keys, strict=True)
+            ]
+            pairs = list(zip(*same, strict=False))
+            if len(same[0]) == len(same[1]) and not _are_reordered(pairs):
                 yield from (pair for pair in pairs if _are_versions(*pair))
 
 

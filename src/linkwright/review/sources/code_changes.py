@@ -19,10 +19,16 @@ from linkwright.review.sources.tokens import tokenize_cpp
 _QUOTED = re.compile(r"'([^']+)'")
 _LITERAL = re.compile("\"((?:\\\\.|[^\"\\\\])*)\"|'((?:\\\\.|[^'\\\\])*)'")
 _CALL = re.compile(r"(\w+)\s*\(")
+_SPACE = re.compile(r"[^\S\n]")
+_ASSIGNMENT = re.compile(r"(\w+)\s*=\s*([^=;].*?)\s*;?\s*\Z", re.DOTALL)
+_PLAIN_CODE = re.compile(r"[\W\d]*\w+ = [^(]*|[\W\d]*(?:if|try|with|else)\b.*", re.DOTALL)
+"""Assignments of literals, and the heads of statements other than loops."""
 _VALUES = "values in {name}: {values}"
 _MODULE_VALUES = "values: {values}"
 _MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
+_MIN_STATEMENTS = 2
+"""The minimum number of statements outside of functions of an added program that a line reports."""
 _MAX_NAMESPACES = 8
 """The maximum number of words of a name whose parts are compared with the texts of statements."""
 
@@ -89,6 +95,36 @@ def find_code_change(
         is_unreported = lines.has_module_values and lines.has_unreported_change(*parts, "")
         return _find_module_change(*parts) if is_unreported else None
     return _find_outside_change(old, new)
+
+
+def find_added_code(
+    new: Code, reported: Sequence[Change], has_moved: Callable[[str, Code], bool], names: SourceNames
+) -> CodeChange | None:
+    """Return the functions of an added program that no other line names, or None.
+
+    The change also tells whether a program in Python has code outside of functions that does more than call them. A
+    function ``main`` alone is not worth a line beside others.
+
+    Args:
+        new: the code of the program.
+        reported: the other lines about the source.
+        has_moved: whether a different source had a function with the same name and code.
+        names: the names in the program.
+    """
+    lines = _ReportedLines(reported)
+    added = [name for name in new.functions if not lines.mentions(name) and not has_moved(name, new)]
+    texts = _format_functions([], added, [], [], names)
+    own_names = {_get_short_name(name) for name in (*new.functions, *new.outside)}
+    statements = [
+        part for part in _without_calls(new.outside.get("", ()), own_names) if not _PLAIN_CODE.fullmatch(part.text)
+    ]
+    unreported = [part for part in statements if lines.has_unreported_change((), [part], "")]
+    if new.imports and len(unreported) >= _MIN_STATEMENTS:
+        texts.append(phrase("code added outside of functions"))
+    if not texts or (reported and added == ["main"] and len(texts) == 1):
+        return None
+    first = new.functions[added[0]] if added else unreported
+    return CodeChange(joined(texts, "; "), first[0].first_line, is_old=False)
 
 
 def _format_functions(
@@ -264,6 +300,7 @@ class _ReportedLines:
         names = {name for change in changes for name in _QUOTED.findall(str(change.sentence))}
         self._names = {part for name in names for part in (name, *_list_parts(name))}
         self._text = "\n".join(str(change.sentence) for change in changes)
+        self._compact_text = _SPACE.sub("", self._text).replace("'", '"')
         self._functions = {
             str(change.sentence.arguments["name"]) for change in changes if change.sentence.template == _VALUES
         }
@@ -308,12 +345,29 @@ class _ReportedLines:
         for part, is_old in ((old, True), (new, False)):
             if part is None:
                 continue
+            if self._shows_constant(part):
+                return True
             if any(part.first_line <= line <= part.last_line for line in self._lines[is_old]):
                 return True
             literals = [text for match in _LITERAL.finditer(part.text) for text in match.groups() if text]
             if not self._names.isdisjoint([*literals, *(text.rpartition(":=")[2].strip("/") for text in literals)]):
                 return True
+        if old is not None and new is not None and self._shows_values(old, new):
+            return True
         return has_values and old is not None and new is not None and _get_shape(old.text) == _get_shape(new.text)
+
+    def _shows_constant(self, part: Part) -> bool:
+        """Return whether a line shows an assignment with its value, such as an added constant."""
+        assignment = _ASSIGNMENT.search(part.text)
+        if assignment is None:
+            return False
+        shown = _SPACE.sub("", "=".join(assignment.groups())).replace("'", '"')
+        return re.search(rf"(?<!\w){re.escape(shown)}(?![\w.])", self._compact_text) is not None
+
+    def _shows_values(self, old: Part, new: Part) -> bool:
+        """Return whether a line shows the old and the new value of an assignment, such as the QoS of a topic."""
+        values = [_SPACE.sub("", part.text).partition("=")[2].rstrip(";") for part in (old, new)]
+        return all(values) and f"{values[0]}->{values[1]}".replace("'", '"') in self._compact_text
 
 
 def _get_constructor_class(name: str) -> str:

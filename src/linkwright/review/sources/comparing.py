@@ -13,10 +13,6 @@ from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Probl
 from linkwright.review.installed_paths import is_exported_header
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
-from linkwright.review.sources.changed_texts import find_text_changes
-from linkwright.review.sources.changed_values import find_value_changes
-from linkwright.review.sources.code import Code
-from linkwright.review.sources.code_changes import find_code_change
 from linkwright.review.sources.conditions import compare_conditions
 from linkwright.review.sources.cpp_members import has_class
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
@@ -56,6 +52,7 @@ from linkwright.review.sources.rates import compare_rates, compare_timers
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.shared_constants import find_constant_users
+from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.used_packages import compare_usage
 from linkwright.review.versions import TEST_FOLDERS, Versions
@@ -124,32 +121,8 @@ class _SourcePair:
         changes += self._find_undefined(old_names, new_names)
         changes += self._compare_header(old_names, new_names)
         changes += self._compare_packages(are_headers_told=not changes)
-        if self.file.old_path is not None and self.file.new_path is not None:
-            old_path, new_path = self.old.version.file(self.file.old_path), self.new.version.file(self.file.new_path)
-            reported = [str(change.sentence) for change in changes]
-            values = find_value_changes(old_path, new_path, reported)
-            changes += [self._make_change(text, span, self.new, None) for text, span in values]
-            changes += (
-                Change(text, location=Location(self.file.old_path if is_old else self.file.new_path, line, 1, is_old))
-                for text, line, is_old in find_text_changes(old_path, new_path)
-            )
-            changes += self._compare_code(self.file.old_path, self.file.new_path, changes)
+        changes += compare_statements(self.old, self.new, self.file, changes)
         yield from changes
-
-    def _compare_code(self, old_path: str, new_path: str, reported: Sequence[Change]) -> Iterator[Change]:
-        """Yield the functions whose code changes, unless other lines report it."""
-        old, new = self.old.codes.get(old_path), self.new.codes.get(new_path)
-        if not old or not new:
-            return
-
-        def has_moved(name: str, code: Code) -> bool:
-            side, path = (self.new, new_path) if code is old else (self.old, old_path)
-            return side.has_function(name, code, path)
-
-        change = find_code_change(old, new, reported, has_moved, self.new.get_names(new_path))
-        if change is not None:
-            location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
-            yield Change(change.text, location=location)
 
     def find_problems(self) -> Iterator[Problem]:
         """Yield the reason why the names of only one version are unknown."""

@@ -22,6 +22,7 @@ from linkwright.review.sources.cpp_functions import (
 )
 from linkwright.review.sources.cpp_handles import Handles, add_namespace
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
+from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
@@ -341,14 +342,10 @@ class _Reader:
             if type_name:
                 details.append((Detail.VALUE_TYPE if function in _ROS2_PARAMETER_CALLS else Detail.READ_AS, type_name))
             type_name = "" if function in _OUTPUT_CALLS else self._find_literal_default(function, arguments)
-        elif (
-            kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION)
-            and other_arguments
-            and _QOS.fullmatch(other_arguments[0])
-        ):
-            details.append(
-                (Detail.QUEUE if function in _ROS1_CALLS else Detail.QOS, " ".join(other_arguments[0].split()))
-            )
+        elif kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION) and other_arguments:
+            qos = find_assigned_qos(self._text, other_arguments[0], arguments[0][0]) or other_arguments[0]
+            if _QOS.fullmatch(qos):
+                details.append((Detail.QUEUE if function in _ROS1_CALLS else Detail.QOS, " ".join(qos.split())))
         if function in _SERVICE_QOS_INDEX and kind is not NameKind.ACTION_CLIENT:
             index = _SERVICE_QOS_INDEX[function]
             details += read_service_qos(

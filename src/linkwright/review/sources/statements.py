@@ -308,6 +308,29 @@ def find_literal_differences(old: Statement, new: Statement) -> Iterator[Differe
         yield Difference(_add_context(new, start, end, expression, brackets), *texts, token)
 
 
+def format_literal(statement: Statement, literal: Literal) -> str:
+    """Return a literal with the code around it, such as ``sensor["type"]``, ``name == "left"`` or ``"type" in sensor``.
+
+    The result has the called function only if the literal is an argument.
+    """
+    tokens = statement.tokens
+    brackets = match_brackets(tokens)
+    start, end = _find_expression(tokens, literal, brackets)
+    end -= tokens[end].text == "not"
+    if (start, end) != (literal.first, literal.last):
+        return statement.get_text(start, end)
+    before, after = start - 1, end + 1
+    if before > 0 and tokens[before].text == "in":
+        before -= tokens[before - 1].text == "not"
+        start, _ = _find_expression(tokens, Literal("", before - 1, before - 1), brackets)
+        return statement.get_text(start, end)
+    after += after < len(tokens) and tokens[after].text == "not"
+    if after + 1 < len(tokens) and tokens[after].text == "in":
+        _, end = _find_expression(tokens, Literal("", after + 1, after + 1), brackets)
+        return statement.get_text(start, end)
+    return _add_context(statement, start, end, statement.get_text(start, end), brackets)
+
+
 def _format_list(text: str) -> str:
     return f"[{text.strip()[1:-1].strip().rstrip(',')}]"
 

@@ -1,0 +1,112 @@
+"""Compare the statements of a changed source: values, long texts, code of functions, keys and constants."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changes import Change, Location
+from linkwright.review.sources.added_texts import TextsChange, find_constant_changes, find_key_changes
+from linkwright.review.sources.changed_sources import ChangedSources
+from linkwright.review.sources.changed_texts import find_text_changes
+from linkwright.review.sources.changed_values import find_value_changes
+from linkwright.review.sources.code import Code
+from linkwright.review.sources.code_changes import find_added_code, find_code_change
+from linkwright.review.sources.names import DYNAMIC_SUFFIX
+
+
+def compare_statements(
+    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
+) -> list[Change]:
+    """Return the changed statements of a source that other lines do not report.
+
+    Args:
+        old: the changed sources of the old version.
+        new: the changed sources of the new version.
+        file: the source.
+        reported: the other lines about the source.
+    """
+    changes = [*reported, *_compare_constants(old, new, file, reported)]
+    if file.old_path is not None and file.new_path is not None:
+        changes += _compare_values(old, new, file, changes)
+        changes += _compare_code(old, new, file.old_path, file.new_path, changes)
+        changes += _compare_keys(old, new, file, changes)
+    elif file.new_path is not None:
+        changes += _find_added_code(old, new, file.new_path, changes)
+    return changes[len(reported) :]
+
+
+def _compare_values(
+    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
+) -> Iterator[Change]:
+    """Yield the functions in which only literals differ, and the texts of several lines that differ."""
+    if file.old_path is None or file.new_path is None:
+        return
+    paths = old.version.file(file.old_path), new.version.file(file.new_path)
+    for text, span in find_value_changes(*paths, [str(change.sentence) for change in reported]):
+        yield Change(text, location=Location(file.new_path, span.line, span.column))
+    for change in find_text_changes(*paths):
+        path = file.old_path if change.is_old else file.new_path
+        yield Change(change.sentence, location=Location(path, change.line, 1, change.is_old))
+
+
+def _compare_code(
+    old: ChangedSources, new: ChangedSources, old_path: str, new_path: str, reported: Sequence[Change]
+) -> Iterator[Change]:
+    """Yield the functions whose code changes, unless other lines report it."""
+    before, after = old.codes.get(old_path), new.codes.get(new_path)
+    if not before or not after:
+        return
+
+    def has_moved(name: str, code: Code) -> bool:
+        side, path = (new, new_path) if code is before else (old, old_path)
+        return side.has_function(name, code, path)
+
+    change = find_code_change(before, after, reported, has_moved, new.get_names(new_path))
+    if change is not None:
+        location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
+        yield Change(change.text, location=location)
+
+
+def _find_added_code(
+    old: ChangedSources, new: ChangedSources, path: str, reported: Sequence[Change]
+) -> Iterator[Change]:
+    """Yield the functions of an added program that no other line names."""
+    code = new.codes.get(path)
+    if code is None or not new.get_names(path).is_program:
+        return
+
+    def has_moved(name: str, own: Code) -> bool:
+        return old.has_function(name, own, path)
+
+    change = find_added_code(code, reported, has_moved, new.get_names(path))
+    if change is not None:
+        yield Change(change.text, location=Location(path, change.line, 1, change.is_old))
+
+
+def _compare_keys(
+    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
+) -> Iterator[Change]:
+    if file.old_path is None or file.new_path is None or file.new_path.endswith(DYNAMIC_SUFFIX):
+        return
+    paths = old.version.file(file.old_path), new.version.file(file.new_path)
+    sentences = [str(change.sentence) for change in reported]
+    for change in find_key_changes(paths, (old.has_text, new.has_text), sentences):
+        yield _make_change(change, file)
+
+
+def _compare_constants(
+    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
+) -> Iterator[Change]:
+    if file.new_path is None or file.new_path.endswith(DYNAMIC_SUFFIX):
+        return
+    old_file = None if file.old_path is None else old.version.file(file.old_path)
+    sentences = [str(change.sentence) for change in reported]
+    paths = old_file, new.version.file(file.new_path)
+    for change in find_constant_changes(paths, (old.has_word, new.has_word), sentences):
+        yield _make_change(change, file)
+
+
+def _make_change(change: TextsChange, file: ChangedFile) -> Change:
+    path = (file.old_path if change.is_old else file.new_path) or file.path
+    return Change(change.sentence, location=Location(path, change.span.line, change.span.column, change.is_old))
