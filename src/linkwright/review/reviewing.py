@@ -77,6 +77,7 @@ from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.sources.left_types import find_left_types
 from linkwright.review.sources.lost_methods import find_lost_methods
 from linkwright.review.sources.lost_types import find_lost_types
+from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -184,13 +185,16 @@ class _Reviewer:
         other_files = [
             file for file in self._changed_files if file.path in moved or not {file.old_path, file.new_path} & reported
         ]
+        added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
+        readable, added = mark_undeclared(self._versions, readable, added)
         return Review(
             self._versions.old.name,
             self._versions.new.name,
             group_meshes([subject for subject in readable if not subject.is_empty]),
             [file.path for file in other_files],
             {**find_file_states(self._versions, other_files), **moved},
-            *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
+            added,
+            fixed,
             list(
                 dict.fromkeys(
                     [
