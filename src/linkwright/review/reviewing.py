@@ -52,6 +52,7 @@ from linkwright.review.launches.left_parameters import find_left_parameters
 from linkwright.review.launches.missing_programs import find_missing_programs
 from linkwright.review.launches.passed_arguments import find_passed_arguments
 from linkwright.review.launches.script_callers import find_lost_arguments
+from linkwright.review.left_robot_names import find_left_robot_names
 from linkwright.review.lost_controllers import find_lost_controllers
 from linkwright.review.lost_data import find_lost_data
 from linkwright.review.lost_files import find_lost_files
@@ -175,6 +176,7 @@ class _Reviewer:
         all_subjects = [subject for subject in all_subjects if subject.path not in moved]
         reported = _list_reported_paths(all_subjects)
         all_subjects, notes = remove_consequences(self._versions, all_subjects)
+        all_subjects = self._add_users_of_lost_names(all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         all_subjects = merge_renamed_folders(self._versions, all_subjects)
         unreadable = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
@@ -204,6 +206,11 @@ class _Reviewer:
                 )
             ),
         )
+
+    def _add_users_of_lost_names(self, subjects: Sequence[Subject]) -> list[Subject]:
+        """Return the subjects with the files that still name a frame or joint which others have lost."""
+        users = self._run_step(lambda versions, _: find_left_robot_names(versions, subjects))
+        return sorted(_add_changes(subjects, users), key=lambda subject: subject.path) if users else list(subjects)
 
     def _collect_findings(
         self, results: Sequence[Callable[[], Findings]], expanded: Sequence[_Pair]
