@@ -70,6 +70,7 @@ def test_a_file_that_names_a_lost_frame_or_joint(repository, compare, path, text
             "b.py",
             'import tf\nclass B:\n    def f(self):\n        self.b.sendTransform((0,), (0,), t, "camera", "map")\n',
         ),
+        ("c.py", 'import tf2_ros\nsender = tf2_ros.TransformBroadcaster()\nt.header.frame_id = "camera"\n'),
         ("b.launch", '<launch><node pkg="tf" type="static_transform_publisher" args="0 map camera"/></launch>\n'),
         ("b.yaml", "odometry:\n  ros__parameters:\n    child_frame_id: camera\n"),
     ],

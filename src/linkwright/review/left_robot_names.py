@@ -54,6 +54,9 @@ _MACRO_CALL = re.compile(
     r"<(?:xacro|[a-z]\w*):(?!macro|property|arg\b|include|if\b|unless\b)[\w.-]+\b(?P<values>[^>]*)>"
 )
 _SUBSTITUTION = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
+_BROADCAST = re.compile(r"\bsendTransform\b|TransformBroadcaster\b")
+_COMMON_FRAMES = frozenset({"earth", "map", "odom", "world"})
+"""The frames that localization and simulations publish, too."""
 _PLAIN_NAME = re.compile(r"[\w/.-]{2,}")
 
 
@@ -110,7 +113,8 @@ def _list_lost_names(subjects: Sequence[Subject]) -> Iterator[_LostName]:
                 continue
             for name in (str(change.reason.arguments["name"]), *_list_other_names(change)):
                 for word in name.split(", "):
-                    if _PLAIN_NAME.fullmatch(word) and subject.kind is not SubjectKind.PART:
+                    is_lost = _PLAIN_NAME.fullmatch(word) and word.strip("/") not in _COMMON_FRAMES
+                    if is_lost and subject.kind is not SubjectKind.PART:
                         yield _LostName(word.strip("/"), subject.path, templates[change.reason.template])
 
 
@@ -145,7 +149,8 @@ class _Files:
                 continue
             if path.endswith(_SOURCE_SUFFIXES) and not is_launch_file_name(PurePosixPath(path).name):
                 names = read_source_names(self._version.file(path)).of_kind(NameKind.FRAME)
-                if any(item.name.strip("/") == lost.name for item in names):
+                may_send = _BROADCAST.search(text) and re.search(rf"[\"']/?{re.escape(lost.name)}[\"']", text)
+                if may_send or any(item.name.strip("/") == lost.name for item in names):
                     return True
             elif is_launch_file_name(PurePosixPath(path).name) or path.endswith(LAUNCH_SUFFIXES):
                 if any(word in text for word in _TRANSFORM_PUBLISHERS):
