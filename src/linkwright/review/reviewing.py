@@ -25,6 +25,7 @@ from linkwright.review.changes import (
     Subject,
     SubjectKind,
 )
+from linkwright.review.chosen_robots import find_chosen_robots
 from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
@@ -269,6 +270,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_arguments))
         result = _add_changes(result, self._run_step(find_lost_types))
         result = _add_changes(result, self._run_step(find_lost_methods))
+        result = _add_changes(result, self._run_step(find_chosen_robots))
         result = _add_changes(result, self._run_step(find_lost_controllers))
         result = _add_changes(result, self._run_step(find_lost_data))
         result = _add_changes(result, self._run_step(find_lost_installs))
