@@ -50,7 +50,7 @@ from linkwright.review.kinds import (
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import imports_actions
 from linkwright.review.launches.left_parameters import find_left_parameters
-from linkwright.review.launches.missing_programs import find_missing_programs
+from linkwright.review.launches.missing_programs import drop_told_findings, find_missing_programs
 from linkwright.review.launches.passed_arguments import find_passed_arguments
 from linkwright.review.launches.script_callers import find_lost_arguments
 from linkwright.review.left_robot_names import find_left_robot_names
@@ -189,7 +189,7 @@ class _Reviewer:
             file for file in self._changed_files if file.path in moved or not {file.old_path, file.new_path} & reported
         ]
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
-        readable, added = mark_undeclared(self._versions, readable, added)
+        readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
         return Review(
             self._versions.old.name,
             self._versions.new.name,
