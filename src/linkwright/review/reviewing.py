@@ -49,6 +49,7 @@ from linkwright.review.kinds import (
 )
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import imports_actions
+from linkwright.review.launches.left_nodes import find_left_nodes
 from linkwright.review.launches.left_parameters import find_left_parameters
 from linkwright.review.launches.missing_programs import drop_told_findings, find_missing_programs
 from linkwright.review.launches.passed_arguments import find_passed_arguments
@@ -277,6 +278,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_programs))
         result = _add_changes(result, self._run_step(find_missing_programs))
         result = _add_changes(result, self._run_step(find_passed_arguments))
+        result = _add_changes(result, self._run_step(find_left_nodes))
         result = _add_changes(result, self._run_step(find_left_parameters))
         result = _add_changes(result, self._run_step(find_lost_interfaces))
         result = _add_changes(result, self._run_step(find_left_types))
