@@ -96,3 +96,33 @@ def test_file_that_an_argument_chooses_is_replaced_by_a_fixed_one(review_changes
     )
     assert (text in changes) == is_replaced
     assert any(change.endswith("removed") for change in changes) != is_replaced
+
+
+FILE_NODE = """from launch import LaunchDescription
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterFile
+def generate_launch_description():
+    return LaunchDescription([Node(package="arm", executable="a", parameters=[ParameterFile("/a.yaml"{})])])
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        ("", ", allow_substs=True", "[/a.yaml] -> [/a.yaml (allow_substs)]"),
+        (", allow_substs=True", ", allow_substs=False", "[/a.yaml (allow_substs)] -> [/a.yaml]"),
+        ("", ", allow_substs=False", ""),
+    ],
+)
+def test_substitutions_in_a_parameter_file_of_python(repository, compare, old, new, text):
+    repository.commit({"arm/package.xml": "<package><name>arm</name></package>"})
+    repository.commit({"arm/launch/a.launch.py": FILE_NODE.format(old)})
+    repository.write({"arm/launch/a.launch.py": FILE_NODE.format(new)})
+    lines = [str(change.sentence) for subject in compare(repository).subjects for change in subject.changes]
+    assert lines == ([f"node 'arm/a': parameters {text}"] if text else [])
+
+
+def test_substitutions_in_a_parameter_file_of_xml(review_changes):
+    text = '<launch><node pkg="arm" exec="a"><param from="/a.yaml"/></node></launch>\n'
+    changes, _ = review_changes("a.launch.xml", text, 'yaml"', 'yaml" allow_substs="true"')
+    assert changes == ["node 'arm/a': parameters [/a.yaml] -> [/a.yaml (allow_substs)]"]

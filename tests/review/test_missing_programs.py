@@ -38,7 +38,9 @@ def test_a_launch_file_that_starts_a_removed_script_is_named(repository, compare
     write_package(repository, tool, SCRIPTS, launch, "old.py", folder)
     repository.write({"lamp/CMakeLists.txt": CMAKE.format(tool=tool, body=SCRIPTS.replace("scripts/old.py ", ""))})
     (repository.root / "lamp/scripts/old.py").unlink()
-    assert "starts 'old.py' of 'lamp', which no longer exists" in breaking(compare(repository))
+    result = compare(repository)
+    assert "starts 'old.py' of 'lamp', which no longer exists" in breaking(result)
+    assert "LW844" not in [finding.code for finding in result.new_findings]
 
 
 def test_a_launch_file_that_starts_a_script_which_is_no_longer_installed_is_named(repository, compare):

@@ -90,6 +90,22 @@ def is_in_every_workspace(package: str, *, is_ros1: bool) -> bool:
     return is_always_installed(package) or package.startswith(_CORE_PREFIXES)
 
 
+def is_covered(name: str, manifest: Manifest, finder: PackageFinder) -> bool:
+    """Return whether a package is there although the manifest does not name it, or if it names it otherwise.
+
+    Args:
+        name: the name of the package.
+        manifest: the manifest of the package that uses it.
+        finder: the finder of packages.
+    """
+    return (
+        manifest.declares(name)
+        or manifest.declares(f"{name}_vendor")
+        or is_in_every_workspace(name, is_ros1=manifest.is_ros1)
+        or depends_indirectly_on(manifest, name, finder)
+    )
+
+
 def depends_indirectly_on(manifest: Manifest, package: str, finder: PackageFinder) -> bool:
     """Return whether a declared dependency of a manifest depends on a package.
 

@@ -25,6 +25,7 @@ from linkwright.review.changes import (
     Subject,
     SubjectKind,
 )
+from linkwright.review.chosen_robots import find_chosen_robots
 from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
@@ -48,9 +49,12 @@ from linkwright.review.kinds import (
 )
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import imports_actions
-from linkwright.review.launches.missing_programs import find_missing_programs
+from linkwright.review.launches.left_nodes import find_left_nodes
+from linkwright.review.launches.left_parameters import find_left_parameters
+from linkwright.review.launches.missing_programs import drop_told_findings, find_missing_programs
 from linkwright.review.launches.passed_arguments import find_passed_arguments
 from linkwright.review.launches.script_callers import find_lost_arguments
+from linkwright.review.left_robot_names import find_left_robot_names
 from linkwright.review.lost_controllers import find_lost_controllers
 from linkwright.review.lost_data import find_lost_data
 from linkwright.review.lost_files import find_lost_files
@@ -76,6 +80,7 @@ from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.sources.left_types import find_left_types
 from linkwright.review.sources.lost_methods import find_lost_methods
 from linkwright.review.sources.lost_types import find_lost_types
+from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -173,6 +178,7 @@ class _Reviewer:
         all_subjects = [subject for subject in all_subjects if subject.path not in moved]
         reported = _list_reported_paths(all_subjects)
         all_subjects, notes = remove_consequences(self._versions, all_subjects)
+        all_subjects = self._add_users_of_lost_names(all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
         all_subjects = merge_renamed_folders(self._versions, all_subjects)
         unreadable = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
@@ -183,13 +189,16 @@ class _Reviewer:
         other_files = [
             file for file in self._changed_files if file.path in moved or not {file.old_path, file.new_path} & reported
         ]
+        added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
+        readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
         return Review(
             self._versions.old.name,
             self._versions.new.name,
             group_meshes([subject for subject in readable if not subject.is_empty]),
             [file.path for file in other_files],
             {**find_file_states(self._versions, other_files), **moved},
-            *compare_findings(self._versions, old_findings, new_findings, self._new_paths),
+            added,
+            fixed,
             list(
                 dict.fromkeys(
                     [
@@ -199,6 +208,11 @@ class _Reviewer:
                 )
             ),
         )
+
+    def _add_users_of_lost_names(self, subjects: Sequence[Subject]) -> list[Subject]:
+        """Return the subjects with the files that still name a frame or joint which others have lost."""
+        users = self._run_step(lambda versions, _: find_left_robot_names(versions, subjects))
+        return sorted(_add_changes(subjects, users), key=lambda subject: subject.path) if users else list(subjects)
 
     def _collect_findings(
         self, results: Sequence[Callable[[], Findings]], expanded: Sequence[_Pair]
@@ -257,12 +271,15 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_arguments))
         result = _add_changes(result, self._run_step(find_lost_types))
         result = _add_changes(result, self._run_step(find_lost_methods))
+        result = _add_changes(result, self._run_step(find_chosen_robots))
         result = _add_changes(result, self._run_step(find_lost_controllers))
         result = _add_changes(result, self._run_step(find_lost_data))
         result = _add_changes(result, self._run_step(find_lost_installs))
         result = _add_changes(result, self._run_step(find_lost_programs))
         result = _add_changes(result, self._run_step(find_missing_programs))
         result = _add_changes(result, self._run_step(find_passed_arguments))
+        result = _add_changes(result, self._run_step(find_left_nodes))
+        result = _add_changes(result, self._run_step(find_left_parameters))
         result = _add_changes(result, self._run_step(find_lost_interfaces))
         result = _add_changes(result, self._run_step(find_left_types))
         result = _add_changes(result, self._run_step(find_new_lookups))

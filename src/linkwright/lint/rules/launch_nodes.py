@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, counted, joined, nearest, phrase, quoted, quoted_names
 from linkwright.lint.dependencies import depends_indirectly_on, is_always_installed, would_form_cycle
+from linkwright.lint.launched_scripts import find_missing_scripts
 from linkwright.lint.package_fixes import make_dependency_fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
@@ -118,7 +119,9 @@ class LaunchedExecutableUnknown(PackageRule):
 
     ## Why
 
-    The launch fails because the executable is not found in the folder of the package.
+    The launch fails because the executable is not found in the folder of the package. Of a package that CMake builds,
+    only scripts with the suffix `.py` are reported, in launch files in Python and XML, if no file of the package has
+    the name and the build makes no files.
 
     ## Example
 
@@ -140,6 +143,18 @@ class LaunchedExecutableUnknown(PackageRule):
         """Yield a finding for each unknown executable in the launch files of a package."""
         for file in package.launch_files.values():
             yield from self._check_file(file, package)
+        if package.cmake is None:
+            return
+        for script in find_missing_scripts(package):
+            scripts = {PurePosixPath(file).name for file in package.files if file.endswith(".py")}
+            similar_name = next(iter(nearest(script.name, scripts, 1)), None)
+            hint = phrase("no file of the package has the name '{name}'", name=script.name)
+            if similar_name:
+                hint = phrase("did you mean {names}?", names=quoted(similar_name))
+            message = phrase(
+                "the package '{name}' has no executable '{executable}'", name=package.name, executable=script.name
+            )
+            yield self.report(message, span=script.span, source=script.source, hint=hint)
 
     def _check_file(self, file: LaunchFile, package: PackageContext) -> Iterator[Diagnostic]:
         for node in file.nodes:

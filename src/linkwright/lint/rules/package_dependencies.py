@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, SourceText, Span, phrase
-from linkwright.lint.dependencies import depends_indirectly_on, is_in_every_workspace
+from linkwright.lint.dependencies import is_covered
 from linkwright.lint.package_fixes import make_dependency_fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.subject import Subject
@@ -66,7 +66,7 @@ class _DependencyRule(Rule):
             return
         reported = {package.name}
         for use in self.find_uses(package, subject):
-            if use.name in reported or _is_covered(use.name, manifest, subject):
+            if use.name in reported or is_covered(use.name, manifest, subject.finder):
                 continue
             reported.add(use.name)
             yield self.report(
@@ -84,16 +84,6 @@ class _DependencyRule(Rule):
     @abstractmethod
     def describe(self, name: str, manifest: Manifest) -> Phrase:
         """Return the message about a package that the manifest does not name."""
-
-
-def _is_covered(name: str, manifest: Manifest, subject: Subject) -> bool:
-    """Return whether a package is there although the manifest does not name it, or if it names it otherwise."""
-    return (
-        manifest.declares(name)
-        or manifest.declares(f"{name}_vendor")
-        or is_in_every_workspace(name, is_ros1=manifest.is_ros1)
-        or depends_indirectly_on(manifest, name, subject.finder)
-    )
 
 
 class UndeclaredBuildDependency(_DependencyRule):

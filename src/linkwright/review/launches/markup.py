@@ -14,6 +14,7 @@ from linkwright.review.file_pair import LimitError
 from linkwright.review.files.yaml_values import compose_yaml
 from linkwright.review.launches.environment import find_markup_readings
 from linkwright.review.launches.outlines import (
+    ALLOW_SUBSTITUTIONS,
     CONDITION,
     DELETION,
     ENVIRONMENT,
@@ -287,6 +288,8 @@ def _read_node_settings(tag: LaunchTag) -> dict[str, str]:
                 for name, value in read_file_settings(attributes).items()
                 if child.name == _ROSPARAM_TAG
             ]
+            if attributes.get(ALLOW_SUBSTITUTIONS, "false").lower() not in ("false", "0"):
+                items.append(ALLOW_SUBSTITUTIONS)
             items += filter(None, [condition])
             file = attributes.get("from") or attributes["file"]
             files.append(f"{file} ({', '.join(items)})" if items else file)

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.targets import find_targets
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.packages.readers.package_xml import Manifest
-from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.changes import Change, Effect, Location, Subject
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.build_facts import BuildFacts, FactKind
 from linkwright.review.installed_paths import read_package_facts
@@ -33,6 +33,13 @@ _GENERATION = re.compile(
     re.IGNORECASE,
 )
 """A command of a build file that can make a script with another name."""
+_STARTS = (
+    "starts '{name}' of '{package}', which does not exist",
+    "starts '{name}' of '{package}', which is no longer installed",
+    "starts '{name}' of '{package}', which no longer exists",
+)
+_FINDING = "LW844"
+"""The finding about a program that a launch file starts and that does not exist."""
 _COMMENT = re.compile(r"#[^\n]*")
 _SUBMODULE = re.compile(r"^\s*path\s*=\s*(?P<path>\S+)", re.MULTILINE)
 
@@ -151,6 +158,23 @@ def find_missing_programs(versions: Versions, changed_files: Sequence[ChangedFil
                 reported.add(entry.name)
                 location = Location(path, entry.span.line, entry.span.column)
                 yield path, Change(change, Effect.BREAKING, phrase("the node does not start"), location)
+
+
+def drop_told_findings(subjects: Sequence[Subject], findings: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Return the findings without those about programs that a breaking line of the same launch file names."""
+    told = {
+        (subject.path, change.sentence.arguments.get("name"))
+        for subject in subjects
+        for change in subject.changes
+        if change.sentence.template in _STARTS
+    }
+    return [finding for finding in findings if finding.code != _FINDING or _get_program(finding) not in told]
+
+
+def _get_program(finding: Diagnostic) -> tuple[str, object]:
+    """Return the launch file and the name of the program of a finding."""
+    arguments = getattr(finding.message, "arguments", {})
+    return ("" if finding.span is None else finding.span.file), arguments.get("executable")
 
 
 def _make_removal_change(package: str, name: str, *, is_left: bool) -> Phrase:

@@ -26,6 +26,8 @@ SERVER_PARAMETER = "server parameter"
 """The kind of a parameter of ROS 1 that does not belong to a node of the file."""
 PARAMETER = "parameter "
 """The prefix of the settings that are parameters of a node, before the name of the parameter."""
+ALLOW_SUBSTITUTIONS = "allow_substs"
+"""The argument and attribute of a parameter file that lets it contain substitutions."""
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
 _ENVIRONMENT_SUBSTITUTION = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
 _SETTING_CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS
 
 _MAX_DEPTH = 30
 _MAX_CHARACTERS = 10_000
@@ -293,7 +294,9 @@ class ExpressionTexts:
                 return None  # it fails: only a list can be joined
             pieces = arguments if function == "join" else self._split_pieces(first)
             return _join_path(["".join(map(part, self._split_pieces(piece))) for piece in pieces])
-        if function in ("TextSubstitution", "str", "ParameterValue", "ParameterFile", "Path", "PathSubstitution"):
+        if function == "ParameterFile":
+            return part(first) + self._mark_substitutions(argument_of(node, ALLOW_SUBSTITUTIONS))
+        if function in ("TextSubstitution", "str", "ParameterValue", "Path", "PathSubstitution"):
             return part(first)
         if function == "EnvironmentVariable":
             return f"$(env {' '.join(part(argument) or repr('') for argument in arguments)})"
@@ -305,6 +308,15 @@ class ExpressionTexts:
         if function.endswith("LaunchDescriptionSource"):
             return "".join(map(part, self._split_pieces(first)))
         return None
+
+    def _mark_substitutions(self, node: ast.expr | None) -> str:
+        """Return the mark of a parameter file with substitutions, from the argument that allows them."""
+        node = None if node is None else self._python.resolved(node)
+        if node is None or (isinstance(node, ast.Constant) and not node.value):
+            return ""
+        if isinstance(node, ast.Constant):
+            return f" ({ALLOW_SUBSTITUTIONS})"
+        return f" ({ALLOW_SUBSTITUTIONS} {ast.unparse(node)})"
 
     def _is_string(self, node: ast.expr) -> bool:
         """Return whether an expression certainly is a string, such as a sum with a string."""

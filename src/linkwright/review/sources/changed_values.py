@@ -30,6 +30,8 @@ _COUNTERS = frozenset({"0", "1"})
 """Numbers that also change with the form of a statement, such as in ``i + 1``."""
 _MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
+_OPTION_SEPARATOR = re.compile(r"(?<=[\w-]),(?=[\w-])")
+"""The comma between the names of an option, such as ``frame,f``."""
 
 
 def find_value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) -> Iterator[tuple[Phrase, Span]]:
@@ -180,8 +182,10 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
         words = [text[1:-1].rpartition(":=")[2] for text in texts]  # without the old name of a remapping
         return bool(words) and all(any(_has_word(line, word, "") for line in reported) for word in words)
     is_text = item.new.endswith(("'", '"'))
-    # the line may show the name in the namespace of its node handle, such as '~' for a private one, or the namespace
-    patterns = [re.compile(rf"'(?:[\w~/]*[~/])?{re.escape(text)}(?:/[\w~/]*)?'") for text in (old, new)]
+    # the line may show the name in the namespace of its node handle, such as '~' for a private one, or the namespace,
+    # or an option with its dashes, without its letter
+    names = [max(_OPTION_SEPARATOR.split(text), key=len) for text in (old, new)]
+    patterns = [re.compile(rf"'(?:[\w~/]*[~/]|--?)?{re.escape(name)}(?:/[\w~/]*)?'") for name in names]
     return is_text and all(any(pattern.search(line) for line in reported) for pattern in patterns)
 
 

@@ -22,6 +22,7 @@ from linkwright.review.sources.cpp_functions import (
 )
 from linkwright.review.sources.cpp_handles import Handles, add_namespace
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
+from linkwright.review.sources.cpp_options import find_options
 from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
@@ -165,6 +166,8 @@ class _Reader:
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for interface in find_hardware_interfaces(text):
             self._add(interface.kind, interface.name, interface.start, interface.end)
+        for option in find_options(text, _find_arguments):
+            self._add(NameKind.OPTION, option.name, option.start, option.end, option.default, option.details)
         for match in _RATE.finditer(text):
             self._read_rate(match)
         for match in _RECONFIGURATION.finditer(text):

@@ -1,0 +1,130 @@
+"""Find parameter files that still name a node which a launch file or a source has renamed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.files.parameter_names import find_node_name
+from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
+from linkwright.review.launches.formats import is_launch_file
+from linkwright.review.launches.outlines import Entry, LaunchOutline
+from linkwright.review.launches.programs import list_nodes, read_launch_files, try_read_outline
+from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind
+from linkwright.review.sources.reading import read_source_names
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
+
+_SETTINGS_SUFFIXES = (".yaml", ".yml")
+_SOURCE_SUFFIXES = (*CPP_SUFFIXES, PYTHON_SUFFIX)
+_SHARE_PATH = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w-]+)\)/(?P<path>[\w./-]+\.ya?ml)(?![\w.])")
+_WILDCARDS = ("*", "**")
+_PLAIN_NAME = re.compile(r"\w+")
+
+
+def find_left_nodes(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the parameter files that still name a renamed node, each with a change.
+
+    Only the last part of a name counts, without namespaces.
+    """
+    for file in changed_files:
+        if not (file.old_path and file.new_path) or file.is_submodule:
+            continue
+        if not TEST_FOLDERS.isdisjoint(PurePosixPath(file.path).parts):
+            continue
+        if is_launch_file(file.path):
+            yield from _find_in_launch_file(versions, file.old_path, file.new_path)
+        elif file.path.endswith(_SOURCE_SUFFIXES):
+            yield from _find_in_source(versions, file.old_path, file.new_path)
+
+
+def _find_in_launch_file(versions: Versions, old_path: str, new_path: str) -> Iterator[tuple[str, Change]]:
+    """Yield the parameter files that a launch file loads for a node to which it gives another name now."""
+    old, new = try_read_outline(versions.old, old_path), try_read_outline(versions.new, new_path)
+    if old is None or new is None:
+        return
+    started = {_get_name(new, entry) for entry in list_nodes(new)}
+    for entry in list_nodes(new):
+        name = _get_name(new, entry)
+        same = [other for other in list_nodes(old) if other.name == entry.name]
+        old_names = {_get_name(old, other) for other in same}
+        if len(same) != 1 or not _PLAIN_NAME.fullmatch(name) or not old_names.isdisjoint(started):
+            continue
+        for path in _find_files(versions.new, new_path, new, entry):
+            nodes = _read_nodes(versions.new, path)
+            if not nodes or name in nodes or not nodes.keys().isdisjoint(_WILDCARDS):
+                continue
+            for old_name in sorted(old_names & nodes.keys()):
+                yield path, _make_change(path, old_name, name, new_path, nodes[old_name])
+
+
+def _find_in_source(versions: Versions, old_path: str, new_path: str) -> Iterator[tuple[str, Change]]:
+    """Yield the parameter files of the package for a node to which a source gives another name now."""
+    names = []
+    for version, path in ((versions.old, old_path), (versions.new, new_path)):
+        source = read_source_names(version.file(path))
+        if source.error_line:
+            return
+        names.append({item.name for item in source.of_kind(NameKind.NODE)})
+    package = versions.new.package_of(new_path)
+    if package is None or len(names[0]) != 1 or len(names[1]) != 1 or names[0] == names[1]:
+        return
+    (old_name,), (new_name,) = names
+    if not _PLAIN_NAME.fullmatch(old_name) or _is_named(versions.new, old_name, new_name):
+        return
+    for path in versions.new.paths(_SETTINGS_SUFFIXES, package):
+        nodes = _read_nodes(versions.new, path) if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) else {}
+        if old_name in nodes and new_name not in nodes and nodes.keys().isdisjoint(_WILDCARDS):
+            yield path, _make_change(path, old_name, new_name, new_path, nodes[old_name])
+
+
+def _is_named(version: Version, name: str, new_name: str) -> bool:
+    """Return whether a launch file or another source gives a node one of two names."""
+    for _, outline in read_launch_files(version, name, new_name):
+        if {_get_name(outline, entry) for entry in list_nodes(outline)} & {name, new_name}:
+            return True
+    for path in version.paths(_SOURCE_SUFFIXES):
+        if name in version.text(path) and not is_launch_file_name(PurePosixPath(path).name):
+            nodes = read_source_names(version.file(path)).of_kind(NameKind.NODE)
+            if any(item.name == name for item in nodes):
+                return True
+    return False
+
+
+def _find_files(version: Version, path: str, outline: LaunchOutline, entry: Entry) -> Iterator[str]:
+    """Yield the parameter files in the repository that a node loads."""
+    for match in _SHARE_PATH.finditer(outline.resolve(entry.settings.get("parameters", ""))):
+        share = version.share_of(match["package"], version.file(path).parent)
+        file = None if share is None else version.relative(share / match["path"])
+        if file is not None and version.file(file).is_file():
+            yield file
+
+
+def _read_nodes(version: Version, path: str) -> Mapping[str, YamlValue]:
+    """Return the last parts of the names of the nodes in a parameter file, each with its first value."""
+    text = version.text(path)
+    try:
+        values = read_yaml_values(text) if "ros__parameters" in text else {}
+    except UnreadableFileError:
+        return {}
+    nodes: dict[str, YamlValue] = {}
+    for name, value in values.items():
+        node = find_node_name(name)
+        if node:
+            nodes.setdefault(re.split(r"[./]", node.strip("/"))[-1], value)
+    return nodes
+
+
+def _get_name(outline: LaunchOutline, entry: Entry) -> str:
+    return outline.resolve(entry.settings.get("name", "")).strip("/")
+
+
+def _make_change(path: str, old: str, new: str, file: str, value: YamlValue) -> Change:
+    text = phrase("names the node '{old}', which '{file}' now calls '{new}'", old=old, file=file, new=new)
+    reason = phrase("the node '{name}' starts without these parameters", name=new)
+    return Change(text, Effect.BREAKING, reason, Location(path, value.line, 1))

@@ -1,0 +1,148 @@
+"""Mark the lines about packages that a build or source needs now and that ``package.xml`` does not name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Diagnostic, Phrase, joined, phrase
+from linkwright.lint.dependencies import is_covered
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.readers.package_xml import Manifest
+from linkwright.review.changes import Change, Effect, Subject, SubjectKind
+from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX
+from linkwright.review.versions import Version, Versions
+from linkwright.xacro.cache import read_document
+
+_CODES = frozenset({"LW812", "LW813"})
+"""The findings about such packages. They become the reason of the line about the package."""
+_ADDITIONS = (
+    "packages imported for the first time: {names}",
+    "packages included for the first time: {names}",
+    "{kind} added: {names}",
+)
+_INTERFACE_HEADER = r"^[ \t]*#[ \t]*include[ \t]*[\"<]{name}/(?:(?:msg|srv|action)/\w+\.hpp|[A-Z]\w*\.h)[\">]"
+_INTERFACE_PACKAGE = re.compile(r"[a-z][a-z0-9_]*_(?:msgs|srvs|interfaces|actions)")
+_OPTIONAL_INCLUDE = "__has_include"
+_PYTHON_PROJECTS = {
+    name: name
+    for name in (
+        *("flask", "mediapipe", "nmea", "networkx", "open3d", "openai", "osqp", "paho", "pandas", "pygame"),
+        *("pymodbus", "pynput", "pyrealsense2", "requests", "scipy", "serial", "shapely", "smbus", "spidev"),
+        *("tensorflow", "torch", "transforms3d", "ultralytics", "utm", "websocket", "websockets", "zmq"),
+    )
+} | {"RPi": "rpi", "skimage": "scikit", "sklearn": "scikit", "smbus2": "smbus", "usb": "usb"}
+"""Modules that no base package of ROS brings, each with a word in the names of the packages that have it."""
+_LISTS = ("requirements", "dockerfile", "containerfile", "environment", "setup.", "pyproject", "pipfile", "install")
+"""The beginnings of the names of other files that tell what to install."""
+_SCRIPT_SUFFIX = ".sh"
+
+
+def mark_undeclared(
+    versions: Versions, subjects: Sequence[Subject], findings: Sequence[Diagnostic]
+) -> tuple[list[Subject], list[Diagnostic]]:
+    """Return the subjects with breaking lines about undeclared packages, and the findings that no such line repeats.
+
+    A package that only the new version has is left out: nothing depends on it yet.
+    """
+    told: list[Diagnostic] = []
+    result = []
+    for subject in subjects:
+        if subject.new_path is None or not _is_in_old_package(versions, subject.new_path):
+            result.append(subject)
+            continue
+        own = [finding for finding in findings if _is_about(finding, subject.new_path)]
+        marker = _Marker(versions.new, subject, own)
+        changes = [marker.mark(change) for change in subject.changes]
+        told += marker.told
+        result.append(replace(subject, changes=changes))
+    return result, [finding for finding in findings if not any(finding is other for other in told)]
+
+
+class _Marker:
+    """Marks the changes of a file.
+
+    Args:
+        version: the new version.
+        subject: the file.
+        findings: the new findings about undeclared packages in it.
+    """
+
+    def __init__(self, version: Version, subject: Subject, findings: Sequence[Diagnostic]) -> None:
+        self._version = version
+        self._subject = subject
+        self._findings = findings
+        self.told: list[Diagnostic] = []
+
+    def mark(self, change: Change) -> Change:
+        """Return a change, with a reason if it adds an undeclared package."""
+        if change.sentence.template not in _ADDITIONS or change.effect is Effect.BREAKING:
+            return change
+        text = str(change.sentence)
+        told = [finding for finding in self._findings if f"'{_get_name(finding)}'" in text]
+        names = {_get_name(finding): None for finding in told}
+        if change.sentence.template != _ADDITIONS[-1]:
+            names |= dict.fromkeys(self._find_undeclared(re.findall(r"'([^']+)'", text)))
+        if not names:
+            return change
+        self.told += told
+        return replace(change, effect=Effect.BREAKING, reason=self._make_reason(list(names)))
+
+    def _make_reason(self, names: Sequence[str]) -> Phrase:
+        text = joined([f"'{name}'" for name in names])
+        if self._subject.kind is not SubjectKind.BUILD and not self._path.endswith(CPP_SUFFIXES):
+            return phrase("package.xml does not name {names}, without which the import fails", names=text)
+        return phrase("package.xml does not name {names}, without which the build fails", names=text)
+
+    def _find_undeclared(self, names: Sequence[str]) -> Iterator[str]:
+        """Yield the included packages of messages and the imported projects that nothing declares."""
+        folder = self._version.file(self._version.package_of(self._path) or "")
+        manifest = Manifest(read_document(str(folder / MANIFEST)))
+        if any("$" in dependency.name for dependency in manifest.dependencies):
+            return
+        text = self._version.text(self._path)
+        for name in names:
+            if self._path.endswith(PYTHON_SUFFIX):
+                word = _PYTHON_PROJECTS.get(name)
+                is_used = re.search(rf"^(?:import|from)[ \t]+{re.escape(name)}\b", text, re.MULTILINE) is not None
+                if word is not None and is_used and not self._is_listed(word, manifest):
+                    yield name
+            elif _INTERFACE_PACKAGE.fullmatch(name) and _OPTIONAL_INCLUDE not in text:
+                header = re.compile(_INTERFACE_HEADER.replace("{name}", name), re.MULTILINE)
+                if header.search(text) and not is_covered(name, manifest, self._version.finder(folder)):
+                    yield name
+
+    def _is_listed(self, word: str, manifest: Manifest) -> bool:
+        """Return whether a dependency, or a list of packages in the repository, names a project of Python."""
+        names = [dependency.name.lower() for dependency in manifest.dependencies]
+        return any(word in name for name in names) or word.lower() in _read_lists(self._version)
+
+    @property
+    def _path(self) -> str:
+        return self._subject.new_path or self._subject.path
+
+
+def _read_lists(version: Version) -> str:
+    """Return the texts of all files of a repository that tell what to install, in lower case."""
+    paths = [
+        path
+        for path in version.paths(("",))
+        if PurePosixPath(path).name.lower().startswith(_LISTS) or path.endswith(_SCRIPT_SUFFIX)
+    ]
+    return "\n".join(version.text(path) for path in paths).lower()
+
+
+def _is_in_old_package(versions: Versions, path: str) -> bool:
+    folder = versions.new.package_of(path)
+    return folder is not None and versions.old.file((PurePosixPath(folder) / MANIFEST).as_posix()).is_file()
+
+
+def _is_about(finding: Diagnostic, path: str) -> bool:
+    return finding.code in _CODES and finding.span is not None and finding.span.file == path
+
+
+def _get_name(finding: Diagnostic) -> str:
+    arguments = getattr(finding.message, "arguments", {})
+    return str(arguments.get("name", ""))

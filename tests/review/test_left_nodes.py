@@ -1,0 +1,58 @@
+"""The lines of a review about parameter files that still name a renamed node."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import breaking
+
+MANIFEST = "<package><name>lamp</name><version>1.0.0</version></package>\n"
+LAUNCH = """<launch>
+  <node pkg="lamp" exec="lamp" name="{name}"><param from="$(find-pkg-share lamp)/config/lamp.yaml"/></node>
+{more}</launch>
+"""
+SOURCE = 'from rclpy.node import Node\nclass Lamp(Node):\n    def __init__(self):\n        super().__init__("{}")\n'
+SETTINGS = "{}:\n  ros__parameters:\n    level: 2\n"
+OTHER = '  <node pkg="lamp" exec="other" name="lamp"/>\n'
+
+
+@pytest.mark.parametrize(
+    ("settings", "more", "is_found"),
+    [
+        (SETTINGS.format("lamp"), "", True),
+        (SETTINGS.format("/lamp"), "", True),
+        (SETTINGS.format("light"), "", False),
+        (SETTINGS.format("/**"), "", False),
+        (SETTINGS.format("lamp") + SETTINGS.format("light"), "", False),
+        (SETTINGS.format("lamp"), OTHER, False),
+    ],
+)
+def test_a_file_for_a_node_with_another_name_in_the_launch_file(repository, compare, settings, more, is_found):
+    path = "lamp/launch/a.launch.xml"
+    launches = [LAUNCH.format(name=name, more=more) for name in ("lamp", "light")]
+    repository.commit({"lamp/package.xml": MANIFEST, "lamp/config/lamp.yaml": settings, path: launches[0]})
+    repository.write({path: launches[1]})
+    found = [line for line in breaking(compare(repository)) if line.startswith("names the node")]
+    assert found == ([f"names the node 'lamp', which '{path}' now calls 'light'"] if is_found else [])
+
+
+@pytest.mark.parametrize(
+    ("settings", "launch", "other", "is_found"),
+    [
+        (SETTINGS.format("lamp"), "<launch/>\n", "", True),
+        (SETTINGS.format("light"), "<launch/>\n", "", False),
+        (SETTINGS.format("lamp"), LAUNCH.format(name="lamp", more=""), "", False),
+        (SETTINGS.format("lamp"), "<launch/>\n", SOURCE.format("lamp"), False),
+    ],
+)
+def test_a_file_for_a_node_with_another_name_in_the_source(repository, compare, settings, launch, other, is_found):
+    files = {
+        "lamp/package.xml": MANIFEST,
+        "lamp/config/lamp.yaml": settings,
+        "lamp/launch/a.launch.xml": launch,
+        "lamp/lamp/other.py": other,
+    }
+    repository.commit({**files, "lamp/lamp/lamp.py": SOURCE.format("lamp")})
+    repository.write({"lamp/lamp/lamp.py": SOURCE.format("light")})
+    found = [line for line in breaking(compare(repository)) if line.startswith("names the node")]
+    assert found == (["names the node 'lamp', which 'lamp/lamp/lamp.py' now calls 'light'"] if is_found else [])

@@ -1,0 +1,94 @@
+"""The lines of a review about files that still name a frame or joint which a robot has lost."""
+
+from __future__ import annotations
+
+import pytest
+
+MANIFEST = "<package><name>{}</name><version>1.0.0</version></package>\n"
+ROBOT = """<robot name="arm">
+  <link name="base_link"/><link name="upper"/><link name="{link}"/>
+  <joint name="{joint}" type="revolute">
+    <parent link="base_link"/><child link="upper"/><axis xyz="0 1 0"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/>
+  </joint>
+  <joint name="fixed" type="fixed"><parent link="upper"/><child link="{link}"/></joint>
+</robot>
+"""
+LOOKUP = 'class A:\n    def f(self):\n        self.buffer.lookup_transform("map", "{}", 0)\n'
+LAUNCH = """from launch import LaunchDescription
+from launch_ros.actions import Node
+def generate_launch_description():
+    return LaunchDescription([Node(package="driver", executable="driver", parameters=[{"frame_id": "camera"}])])
+"""
+SEMANTIC = '<robot name="arm"><group name="g">{}</group></robot>\n'
+FRAME = "names the frame 'camera', which 'arm/arm.urdf' no longer has"
+JOINT = "names the joint 'shoulder', which 'arm/arm.urdf' no longer has"
+
+
+def find_users(repository, compare, files):
+    """Return the lines about a frame and a joint that the files still name after both have other names."""
+    manifest = {"arm/package.xml": MANIFEST.format("arm")}
+    repository.commit({**manifest, "arm/arm.urdf": ROBOT.format(link="camera", joint="shoulder"), **files})
+    repository.write({"arm/arm.urdf": ROBOT.format(link="lens", joint="swivel")})
+    return [
+        (subject.path, change.location.line, str(change.sentence))
+        for subject, change in compare(repository).breaking_changes
+        if str(change.sentence).startswith("names the")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "line", "sentence"),
+    [
+        ("a.py", LOOKUP.format("camera"), 3, FRAME),
+        ("a.py", LOOKUP.format("base_link"), 0, ""),
+        ("a.rviz", "Visualization Manager:\n  Global Options:\n    Fixed Frame: camera\n", 3, FRAME),
+        ("a.yaml", "driver:\n  ros__parameters:\n    frame_id: camera\n", 3, FRAME),
+        ("a.yaml", "driver:\n  ros__parameters:\n    name: camera\n", 0, ""),
+        ("a.launch.py", LAUNCH, 4, FRAME),
+        ("a.yaml", "controller:\n  ros__parameters:\n    joints: [elbow, shoulder]\n", 3, JOINT),
+        ("a.yaml", "controller:\n  ros__parameters:\n    words: [elbow, shoulder]\n", 0, ""),
+        ("a.srdf", SEMANTIC.format('<joint name="shoulder"/>'), 1, JOINT),
+        ("a.srdf", SEMANTIC.format('<chain base_link="base_link" tip_link="camera"/>'), 1, FRAME),
+        ("a.srdf", SEMANTIC.format('<!-- <joint name="shoulder"/> -->'), 0, ""),
+        ("test/a.yaml", "driver:\n  ros__parameters:\n    frame_id: camera\n", 0, ""),
+    ],
+)
+def test_a_file_that_names_a_lost_frame_or_joint(repository, compare, path, text, line, sentence):
+    path = f"arm/{path}"
+    assert find_users(repository, compare, {path: text}) == ([(path, line, sentence)] if line else [])
+
+
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        ("other.urdf", '<robot name="o"><link name="camera"/></robot>\n'),
+        ("camera.xacro", '<robot><xacro:macro name="c" params="p"><link name="${p}camera"/></xacro:macro></robot>\n'),
+        ("robot.xacro", '<robot><xacro:camera name="camera"/></robot>\n'),
+        ("robot.xacro", '<robot><link name="${p}era"/><xacro:camera p="cam"/></robot>\n'),
+        (
+            "b.py",
+            'import tf\nclass B:\n    def f(self):\n        self.b.sendTransform((0,), (0,), t, "camera", "map")\n',
+        ),
+        ("c.py", 'import tf2_ros\nsender = tf2_ros.TransformBroadcaster()\nt.header.frame_id = "camera"\n'),
+        ("b.launch", '<launch><node pkg="tf" type="static_transform_publisher" args="0 map camera"/></launch>\n'),
+        ("b.yaml", "odometry:\n  ros__parameters:\n    child_frame_id: camera\n"),
+    ],
+)
+def test_a_frame_that_another_file_may_define(repository, compare, path, text):
+    assert find_users(repository, compare, {f"arm/{path}": text, "arm/a.py": LOOKUP.format("camera")}) == []
+
+
+@pytest.mark.parametrize(("mention", "is_found"), [("arm", True), ("leg", False)])
+def test_a_package_counts_if_it_mentions_the_one_of_the_robot(repository, compare, mention, is_found):
+    files = {
+        "user/package.xml": MANIFEST.format("user").replace("</package>", f"<depend>{mention}</depend></package>"),
+        "user/a.py": LOOKUP.format("camera"),
+    }
+    assert find_users(repository, compare, files) == ([("user/a.py", 3, FRAME)] if is_found else [])
+
+
+def test_a_frame_that_a_macro_would_define_with_another_argument(repository, compare):
+    text = '<robot><xacro:macro name="c" params="p"><link name="${p}era"/></xacro:macro><xacro:c p="op"/></robot>\n'
+    files = {"arm/camera.xacro": text, "arm/a.py": LOOKUP.format("camera")}
+    assert find_users(repository, compare, files) == [("arm/a.py", 3, FRAME)]

@@ -1,0 +1,55 @@
+"""The lines of a review about packages that a package needs now and does not declare."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import breaking
+
+MANIFEST = "<package format='2'><name>lamp</name><version>1.0.0</version>{}</package>\n"
+CMAKE = "cmake_minimum_required(VERSION 3.8)\nproject(lamp)\nfind_package(catkin REQUIRED COMPONENTS roscpp{})\n"
+BUILD_REASON = "package.xml does not name '{}', without which the build fails"
+IMPORT_REASON = "package.xml does not name '{}', without which the import fails"
+GUARDED = "try:\n    import serial\nexcept ImportError:\n    serial = None\n"
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "depend", "reason"),
+    [
+        ("CMakeLists.txt", CMAKE.format(""), CMAKE.format(" light_finder"), "", BUILD_REASON.format("light_finder")),
+        ("CMakeLists.txt", CMAKE.format(""), CMAKE.format(" light_finder"), "light_finder", None),
+        ("src/a.cpp", "", "#include <light_msgs/Level.h>\n", "", BUILD_REASON.format("light_msgs")),
+        ("src/a.cpp", "", '#include "light_msgs/msg/level.hpp"\n', "", BUILD_REASON.format("light_msgs")),
+        ("src/a.cpp", "", "#include <light_msgs/Level.h>\n", "light_msgs", None),
+        ("src/a.cpp", "", "#include <light_msgs/helpers.hpp>\n", "", None),
+        ("src/a.cpp", "", "#include <sensor_msgs/Image.h>\n", "", None),
+        ("a.py", "", "from light_msgs.msg import Level\n", "", IMPORT_REASON.format("light_msgs")),
+        ("a.py", "", "from light_msgs.msg import Level\n", "light_msgs", None),
+        ("a.py", "", "import serial\n", "", IMPORT_REASON.format("serial")),
+        ("a.py", "", "import serial\n", "python3-serial", None),
+        ("a.py", "", GUARDED, "", None),
+        ("a.py", "", "import numpy\n", "", None),
+    ],
+)
+def test_an_undeclared_package_is_breaking(repository, compare, path, old, new, depend, reason):
+    dependency = f"<depend>{depend}</depend>" if depend else ""
+    repository.commit({"lamp/package.xml": MANIFEST.format(dependency), f"lamp/{path}": old})
+    repository.write({f"lamp/{path}": new})
+    result = compare(repository)
+    assert [str(change.reason) for _, change in result.breaking_changes] == ([reason] if reason else [])
+    assert result.new_findings == []
+
+
+def test_an_undeclared_package_of_a_new_package_is_a_finding(repository, compare):
+    repository.commit({"README.md": "lamps\n"})
+    repository.write({"lamp/package.xml": MANIFEST.format(""), "lamp/a.py": "from light_msgs.msg import Level\n"})
+    result = compare(repository)
+    assert breaking(result) == []
+    assert "LW813" in [finding.code for finding in result.new_findings]
+
+
+@pytest.mark.parametrize("name", ["requirements.txt", "Dockerfile", "install.sh"])
+def test_a_project_that_a_file_of_the_repository_installs(repository, compare, name):
+    repository.commit({"lamp/package.xml": MANIFEST.format(""), "lamp/a.py": "", name: "pip install pyserial\n"})
+    repository.write({"lamp/a.py": "import serial\n"})
+    assert breaking(compare(repository)) == []
