@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 _SIZE = (480, 360)
 _COLLISION_VIEWS = ("iso", "front")
 _COLLISION_MATERIAL = Material("", (0.62, 0.67, 0.74, 1.0))
-"""The material of collision shapes: without a hue, so that the outlines of changed ones can be told from it."""
+"""The material of collision shapes: without a hue, so that the outlines of changed ones stand out."""
 _POSE_PROPERTIES = ("origin xyz", "origin rpy")
 """The name endings of pose properties. Poses are compared as seen in the image."""
 _MOTION_TOLERANCE = 1e-5

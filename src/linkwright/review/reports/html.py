@@ -163,8 +163,7 @@ def _render_images(images: Sequence[ViewImages]) -> str:
 def _render_image(view: ViewImages) -> str:
     """Return a view of both versions.
 
-    A slider moves the border between the old version, which is left of it, and the new version. A label on each half
-    says which one it is.
+    A slider moves the border between the old version, which is left of it, and the new version. Each half has a label.
     """
     if not view.old or not view.new:
         return _render_single_image(view)
