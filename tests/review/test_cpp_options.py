@@ -1,4 +1,4 @@
-"""The command-line options of C++ programs in the report of a review."""
+"""The command-line options of programs in the report of a review."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import pytest
 from linkwright.diagnostics import SourceText
 from linkwright.review.sources.cpp import read_cpp
 from linkwright.review.sources.names import Detail, NameKind, SourceNames
+from linkwright.review.sources.python import read_python
 from tests.review.conftest import breaking
 
 TCLAP = """#include <tclap/CmdLine.h>
@@ -99,3 +100,11 @@ def test_a_changed_option_is_told_once(repository, compare, old, new, lines):
     assert breaking(result) == lines
     (subject,) = result.subjects
     assert len(subject.changes) == 1
+
+
+@pytest.mark.parametrize("names", ['["frame=", "dim"]', "NAMES"])
+def test_options_of_getopt_in_python(names):
+    source = f'import getopt\nNAMES = ["frame=", "dim"]\noptions, rest = getopt.getopt(argv, "hf:", {names})\n'
+    found = SourceNames()
+    read_python(SourceText("lamp.py", source), found)
+    assert [item.name for item in found.of_kind(NameKind.OPTION)] == ["-h", "-f", "--frame", "--dim"]

@@ -412,6 +412,8 @@ class _Reader:
             self._names.add(SourceName(NameKind.RECONFIGURATION, name, "", self._python.span(call)))
         elif function in ("add_argument", "add_option"):
             self._read_option(call)
+        elif function in ("getopt", "gnu_getopt"):
+            self._read_getopt(call)
         elif reads_parameter(function):
             self._read_helper_call(call)
 
@@ -448,6 +450,17 @@ class _Reader:
                 details.append((detail, _format_expression(self._python, node)))
         text = "" if default is None else _format_expression(self._python, default)
         self._names.add(SourceName(NameKind.OPTION, name, text, self._python.span(call.args[0]), tuple(details)))
+
+    def _read_getopt(self, call: ast.Call) -> None:
+        """Add the options of getopt: the letters of the second argument, and the names in the third."""
+        letters, names = _get_argument(call, 1, "shortopts"), _get_argument(call, 2, "longopts")
+        for letter in re.findall(r"[A-Za-z0-9?]", self._python.text(letters) or ""):
+            self._names.add(SourceName(NameKind.OPTION, f"-{letter}", "", self._python.span(call)))
+        items = None if names is None else self._python.resolved(names)
+        for item in items.elts if isinstance(items, (ast.List, ast.Tuple)) else ():
+            name = (self._python.text(item) or "").rstrip("=?")
+            if name:
+                self._names.add(SourceName(NameKind.OPTION, f"--{name}", "", self._python.span(item)))
 
     def _read_parameter(self, call: ast.Call, function: str) -> None:
         index = 2 if function == "get_parameter_or" else 1
