@@ -7,6 +7,7 @@ import json
 
 import pytest
 
+from linkwright.bridge.rosbridge import actions
 from linkwright.graph import (
     LATCHED_QOS,
     SENSOR_DATA_QOS,
@@ -374,7 +375,8 @@ async def test_client_cancels_a_goal():
         assert "no goal with the id g" in (await client.until("status"))["msg"]
 
 
-async def test_goal_that_cannot_be_reached_has_a_reason():
+async def test_goal_that_cannot_be_reached_has_a_reason(monkeypatch):
+    monkeypatch.setattr(actions, "_SERVER_TIMEOUT_S", 0.2)
     async with rosbridge_setup() as setup, setup.client() as client:
         add_fibonacci(setup, lambda _: None, goal_callback=lambda _: GoalResponse.REJECT)
         reasons = {"/fibonacci": "Action goal was rejected", "/none": "Action /none does not exist"}
@@ -382,6 +384,20 @@ async def test_goal_that_cannot_be_reached_has_a_reason():
             await client.send("send_action_goal", action=action, action_type=FIBONACCI)
             result = await client.until("action_result")
             assert (result["values"], result["result"], result["status"]) == (reason, False, 0)
+
+
+async def test_action_is_found_although_the_match_of_its_topics_is_not_announced(monkeypatch):
+    async def execute(goal):
+        goal.succeed()
+        return goal._server.action_type.Result()
+
+    answers = iter([False] * 3)
+    is_ready = ActionClient.server_is_ready
+    monkeypatch.setattr(ActionClient, "server_is_ready", lambda client: next(answers, True) and is_ready(client))
+    async with rosbridge_setup() as setup, setup.client() as client:
+        add_fibonacci(setup, execute)
+        await client.send("send_action_goal", action="/fibonacci", action_type=FIBONACCI)
+        assert (await client.until("action_result"))["result"] is True
 
 
 async def test_client_offers_an_action():

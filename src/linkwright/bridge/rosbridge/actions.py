@@ -16,9 +16,9 @@ from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_action
 from linkwright.nodes.service_waits import wait_for_future, wait_for_graph
 
-_SERVER_TIMEOUT_S = 1.0
+_SERVER_TIMEOUT_S = 5.0
+_POLL_PERIOD_S = 0.1
 _ENDS = {GoalStatus.SUCCEEDED: GoalHandle.succeed, GoalStatus.CANCELED: GoalHandle.canceled}
-_numbers = count(1)
 
 Send = Callable[[dict[str, Any]], object]
 """A function that sends a message to the client."""
@@ -58,7 +58,7 @@ class SentGoal:
         goal = from_json_arguments(arguments, self._class.Goal, now)
         client = ActionClient(self._node, self._class, self._action, callback_group=ReentrantCallbackGroup())
         try:
-            if not await wait_for_graph(self._node, client.server_is_ready, _SERVER_TIMEOUT_S):
+            if not await self._wait_for_server(client):
                 raise RequestError(f"Action {self._action} does not exist")
             forward = None
             if on_feedback is not None:
@@ -80,6 +80,16 @@ class SentGoal:
             return to_json_values(response.result), int(response.status)
         finally:
             client.destroy()
+
+    async def _wait_for_server(self, client: ActionClient) -> bool:
+        """Wait until the action is available, and return whether it is.
+
+        The graph announces services, but not every match of a topic in another process. So this also polls.
+        """
+        for _ in range(round(_SERVER_TIMEOUT_S / _POLL_PERIOD_S)):
+            if await wait_for_graph(self._node, client.server_is_ready, _POLL_PERIOD_S):
+                return True
+        return client.server_is_ready()
 
     def cancel(self) -> None:
         """Request the cancellation of the goal, also of one that the server has not accepted yet."""
@@ -115,6 +125,7 @@ class OfferedAction:
         self._now = now
         self._class: Any = get_action(full_type_name(type_name, "action"))
         self._goals: dict[str, _OpenGoal] = {}
+        self._numbers = count(1)
         self._server = ActionServer(
             node,
             self._class,
@@ -162,7 +173,7 @@ class OfferedAction:
         return goal
 
     async def _execute(self, handle: GoalHandle) -> Any:
-        identity = f"action_goal:{self._name}:{next(_numbers)}"
+        identity = f"action_goal:{self._name}:{next(self._numbers)}"
         end: asyncio.Future[tuple[GoalStatus, Any]] = asyncio.get_running_loop().create_future()
         self._goals[identity] = _OpenGoal(handle, end)
         self._send(

@@ -16,7 +16,6 @@ from linkwright.messages import get_service
 from linkwright.nodes.service_waits import wait_for_future, wait_for_service
 
 _SERVER_TIMEOUT_S = 1.0
-_numbers = count(1)
 
 
 class ServiceCalls:
@@ -102,6 +101,7 @@ class OfferedService:
         self._now = now
         self._class: Any = get_service(full_type_name(type_name, "srv"))
         self._pending: dict[str, Callable[[Any], object]] = {}
+        self._numbers = count(1)
         self._service = node.create_service(self._class, name, self._on_request, replying=True)
 
     def respond(self, request: Request) -> None:
@@ -127,6 +127,6 @@ class OfferedService:
         self._node.destroy_service(self._service)
 
     def _on_request(self, request: Any, reply: Callable[[Any], object]) -> None:
-        identity = f"service_request:{self._name}:{next(_numbers)}"
+        identity = f"service_request:{self._name}:{next(self._numbers)}"
         self._pending[identity] = reply
         self._send({"op": "call_service", "id": identity, "service": self._name, "args": to_json_values(request)})
