@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
@@ -11,14 +11,14 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, ExpandedElement, Subject, SubjectKind
 from linkwright.review.failures import make_problem
 from linkwright.review.parts.contents import compare_contents, make_comparison
-from linkwright.review.parts.include_graph import IncludeGraph
+from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.interface import (
-    IncludeGraphs,
     compare_arguments,
     compare_macros,
     find_renamed_macros,
     make_macro_removal_reason,
 )
+from linkwright.review.parts.left_uses import find_left_uses
 from linkwright.review.parts.outline import MacroOutline, Outline, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.versions import Version, Versions
@@ -27,6 +27,8 @@ _SUFFIXES = (".xacro", ".urdf", ".macro", ".gazebo", ".trans", ".inc")
 """The name endings of files with descriptions or parts of descriptions."""
 _XACRO = ".xacro"
 _SEMANTIC = ".srdf.xacro"
+_UNREADABLE = "can no longer be read: {reason}"
+"""The change to a robot whose new version fails to expand."""
 _MIN_SIMILARITY = 0.5
 """The minimum share of equal elements of a renamed macro."""
 
@@ -69,7 +71,25 @@ def compare_parts(
                 changes=[*existing.changes, *part.changes],
                 problems=list(dict.fromkeys([*existing.problems, *part.problems])),
             )
-    return result
+    return _add_left_uses(result, comparer.find_left_uses(files))
+
+
+def _add_left_uses(subjects: Sequence[Subject], changes: Iterable[tuple[str, Change]]) -> list[Subject]:
+    """Return the subjects with the uses of lost files and macros, except at a place that a robot cannot read."""
+    unreadable = {
+        (change.location.file, change.location.line)
+        for subject in subjects
+        for change in subject.changes
+        if change.location is not None and change.sentence.template == _UNREADABLE
+    }
+    result = {subject.path: subject for subject in subjects}
+    for path, change in changes:
+        assert change.location is not None
+        if (path, change.location.line) in unreadable:
+            continue
+        subject = result.get(path, Subject(SubjectKind.PART, path, path, path))
+        result[path] = replace(subject, changes=[*subject.changes, change])
+    return list(result.values())
 
 
 class _Comparer:
@@ -105,6 +125,11 @@ class _Comparer:
             self._compare(pair)
             changes += pair.changes
         return Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, changes)
+
+    def find_left_uses(self, files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+        """Yield the descriptions that use what the new version no longer has, each with a change."""
+        changed = [file for file in files if file.path.endswith(_SUFFIXES) and not file.is_submodule]
+        yield from find_left_uses(self._versions, changed, self._graphs)
 
     def _compare(self, pair: PartPair) -> None:
         renamed = dict(_find_renamed_macros(pair))

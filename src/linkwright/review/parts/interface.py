@@ -3,29 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.review.list_changes import change_text
-from linkwright.review.parts.include_graph import IncludeGraph
+from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.outline import MacroOutline, Outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.renamed_names import find_renamed_names
 from linkwright.xacro.macros import Parameter
 from linkwright.xmltree import Element
-
-
-@dataclass(frozen=True)
-class IncludeGraphs:
-    """The includes of both versions.
-
-    Attributes:
-        old: the includes of the old version.
-        new: the includes of the new version.
-    """
-
-    old: IncludeGraph
-    new: IncludeGraph
 
 
 def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, str]) -> None:
