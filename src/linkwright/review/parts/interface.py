@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.review.list_changes import change_text
+from linkwright.review.parts.chosen_parts import compare_chosen_parts
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.outline import MacroOutline, Outline
 from linkwright.review.parts.part_pair import PartPair
@@ -205,7 +206,12 @@ def _compare_argument(pair: PartPair, old: Element, new: Element) -> None:
         pair.add(text, old, new, phrase("callers must pass '{name}'", name=name))
         return
     text = change_text(phrase("default of argument '{name}'", name=name), old_default or "''", new_default or "''")
-    pair.add(text, old, new)
+    if pair.is_complete or pair.is_read(is_old=False):
+        pair.add(text, old, new)  # the robots show the effect
+        return
+    parts = compare_chosen_parts(pair.old, pair.new, name, (old_default or "", new_default))
+    reason = phrase("robots of callers that do not pass '{name}' lack these parts", name=name)
+    pair.add(parts.describe(text), old, new, reason if parts.removed else None)
 
 
 def _is_declared_by_robots(graph: IncludeGraph, path: str, name: str) -> bool:

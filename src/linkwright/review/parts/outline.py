@@ -20,6 +20,11 @@ ARG, MACRO, PROPERTY = "xacro:arg", "xacro:macro", "xacro:property"
 _CONDITIONS = {"xacro:if": "if", "xacro:unless": "unless"}
 _CONDITION_TAGS = {word: tag for tag, word in _CONDITIONS.items()}
 _XACRO = "xacro:"
+STATEMENTS = frozenset(
+    f"{_XACRO}{name}"
+    for name in ("arg", "attribute", "call", "element", "if", "include", "insert_block", "macro", "property", "unless")
+)
+"""The tags of xacro that call no macro of the description."""
 
 
 @dataclass(frozen=True)
