@@ -47,7 +47,7 @@ REASON = "the costmap no longer gets the messages of '{}'"
         (
             ROS1,
             ROS1,
-            "obstacle_layer:\n  observation_sources: laser\n  laser: {data_type: LaserScan, topic: front/scan, marking: true}",
+            "obstacle_layer:\n  " + ROS1.replace("\n", "\n  ").replace("topic: scan", "topic: front/scan"),
             [None, REASON.format("scan"), None, None],
         ),
         ("planner:\n  ros__parameters:\n    topic: /scan\n", "/scan", "/lidar", [None]),
