@@ -42,6 +42,12 @@ class IncludeGraph:
         outline = self._outlines.get(path)
         return () if outline is None else outline.macros
 
+    def is_included(self, path: str) -> bool:
+        """Return whether a description may include a file, whose suffix can be any."""
+        file = self._version.file(path)
+        inclusions = (inclusion for outline in self._outlines.values() for inclusion in outline.inclusions)
+        return any(inclusion.name == file.name or inclusion.may_compute(file) for inclusion in inclusions)
+
     def iterate_outlines(self) -> Iterable[tuple[str, Outline]]:
         """Return the paths and outlines of the descriptions that can be read."""
         return self._outlines.items()

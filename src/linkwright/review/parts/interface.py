@@ -86,7 +86,7 @@ def _report_unpaired_parameters(
 ) -> None:
     """Report removed parameters, and added parameters with and without a default."""
     required = [parameter.name for parameter in added if not _has_default(parameter)]
-    optional = [_format_parameter(parameter) for parameter in added if _has_default(parameter)]
+    optional = [format_parameter(parameter) for parameter in added if _has_default(parameter)]
     for names, change, reason in (
         (
             removed,
@@ -142,8 +142,9 @@ def _format_default(parameter: Parameter) -> str:
     return f"^|{text}" if parameter.forward and text else "^" if parameter.forward else text
 
 
-def _format_parameter(parameter: Parameter) -> str:
-    return f"{parameter.name}:={_format_default(parameter)}"
+def format_parameter(parameter: Parameter) -> str:
+    """Return a parameter as written, with its default."""
+    return f"{parameter.name}:={_format_default(parameter)}" if _has_default(parameter) else parameter.name
 
 
 def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:

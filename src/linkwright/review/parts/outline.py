@@ -16,7 +16,7 @@ from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xmltree import Document, Element
 
-ARG, MACRO, PROPERTY = "xacro:arg", "xacro:macro", "xacro:property"
+ARG, INCLUDE, MACRO, PROPERTY = "xacro:arg", "xacro:include", "xacro:macro", "xacro:property"
 _CONDITIONS = {"xacro:if": "if", "xacro:unless": "unless"}
 _CONDITION_TAGS = {word: tag for tag, word in _CONDITIONS.items()}
 _XACRO = "xacro:"
