@@ -210,7 +210,7 @@ def _summarize_macro(macro: MacroOutline) -> list[Phrase]:
             items.append(phrase("includes {name}", name=child.element.attributes.get("filename", "")))
         elif child.element.tag != PROPERTY:
             items.append(as_phrase(child.key))
-    return items[:_MAX_CONTENTS]
+    return list({str(item): item for item in items}.values())[:_MAX_CONTENTS]
 
 
 def _compare_whole_file(
