@@ -72,7 +72,7 @@ _METAPACKAGE_PREFIXES = (
     *((name, "gazebo_ros") for name in ("gazebo_ros_control", "gazebo_plugins", "hector_gazebo_plugins", "gazebo_dev")),
     *((name, "controller_manager") for name in ("ros_control", "gazebo_ros_control", "combined_robot_hw")),
     *((name, "tf") for name in ("robot_state_publisher", "rviz", "laser_geometry", "costmap_2d", "move_base", "amcl")),
-    *((name, "tf") for name in ("interactive_markers", "robot_localization", "gmapping", "gazebo_plugins", "moveit_")),
+    *((name, "tf") for name in ("interactive_markers", "robot_localization", "gmapping", "gazebo_plugins")),
     *(("navigation", name) for name in ("move_base", "amcl", "map_server", "fake_localization", "robot_pose_ekf")),
     ("slam_gmapping", "gmapping"),
     ("moveit_ros_planning_interface", "moveit_ros_"),
