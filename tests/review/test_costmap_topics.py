@@ -44,6 +44,12 @@ REASON = "the costmap no longer gets the messages of '{}'"
             [REASON.format("scan")],
         ),
         (ROS1, "topic: scan", "topic: front/scan", [REASON.format("scan")]),
+        (
+            ROS1,
+            ROS1,
+            "obstacle_layer:\n  " + ROS1.replace("\n", "\n  ").replace("topic: scan", "topic: front/scan"),
+            [None, REASON.format("scan"), None, None],
+        ),
         ("planner:\n  ros__parameters:\n    topic: /scan\n", "/scan", "/lidar", [None]),
     ],
 )

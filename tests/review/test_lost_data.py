@@ -32,3 +32,24 @@ def test_program_that_names_a_removed_data_file_is_breaking(repository, compare,
     repository.commit(changes)
     found = breaking(compare(repository, "HEAD~1..HEAD"))
     assert [item.partition(":")[0] for item in found] == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (
+            '<mesh filename="package://arm_description/meshes/base.stl"/>',
+            ["names the file 'base.stl', which was removed"],
+        ),
+        ('<!-- <mesh filename="package://arm_description/meshes/base.stl"/> -->', []),
+    ],
+)
+def test_macro_that_names_a_removed_mesh_is_breaking(repository, compare, text, expected):
+    macro = f'<xacro:macro name="base" params=""><link name="b"><visual><geometry>{text}</geometry></visual></link>'
+    xacro = f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{macro}</xacro:macro></robot>'
+    repository.commit(
+        {"a/package.xml": PACKAGE_XML, "a/urdf/base.xacro": xacro, "a/meshes/base.stl": "solid a\nendsolid a\n"}
+    )
+    repository.commit({"a/meshes/base.stl": None})
+    found = breaking(compare(repository, "HEAD~1..HEAD"))
+    assert [item for item in found if item != "mesh removed"] == expected

@@ -144,3 +144,20 @@ def test_unreadable_robots_that_did_not_change_are_counted_in_a_note(package, co
     (note,) = note_texts(result)
     assert note.startswith("2 files that the changes may affect are not compared, such as ")
     assert "the property 'missing' is not defined" in note
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        ("", ["extension 'xacro:lidar front' removed: parent=lower"]),
+        ('<xacro:lidar name="back" parent="lower"/>', ["extension 'xacro:lidar front' removed: parent=lower"]),
+        ('<xacro:laser name="front" parent="lower"/>', []),
+        ('<xacro:lidar name="front" parent="upper"/>', []),
+    ],
+)
+def test_removed_call_of_a_macro_of_a_missing_package_is_breaking(package, compare, new, expected):
+    include = '<xacro:include filename="$(find lidar_description)/urdf/lidar.xacro"/>'
+    call = '<xacro:lidar name="front" parent="lower"/>'
+    package.commit({PATH: ARM.replace("</robot>", f"{include}{call}</robot>")})
+    package.write({PATH: ARM.replace("</robot>", f"{include}{new}</robot>")})
+    assert breaking(compare(package)) == expected

@@ -401,7 +401,7 @@ def test_renamed_meshes_of_a_folder_are_one_breaking_line(repository, compare):
     assert (
         str(change.sentence) == "3 meshes renamed: arm-1.stl -> arm.stl, lid-1.stl -> lid.stl, wheel-1.stl -> wheel.stl"
     )
-    assert str(change.reason) == "descriptions of other packages that name the file do not find it"
+    assert str(change.reason) == "descriptions that name the file do not find it"
     assert not review_subject.problems
 
 

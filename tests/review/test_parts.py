@@ -188,11 +188,14 @@ def test_removed_and_renamed_parts_are_breaking(library, compare):
     assert breaking(result) == [f"renamed from {TOOL}"]
     library.commit({"arm_description/urdf/jaw.xacro": None})
     result = compare(library, "HEAD~1..HEAD")
-    assert breaking(result) == ["included description file removed", "macro 'gripper' removed"]
+    assert breaking(result) == ["description file removed", "macro 'gripper' removed"]
     result = compare(library, "HEAD..HEAD~1")
     assert sentences(subject(result, "arm_description/urdf/jaw.xacro")) == [
-        "included description file added",
-        "macro 'gripper' added",
+        "description file added",
+        (
+            "macro 'gripper' added: parameters name, parent, side:=left, *origin, link ${name}, link ${name}_tip,"
+            " joint ${name}_joint, gazebo ${name}"
+        ),
     ]
 
 

@@ -203,3 +203,38 @@ def test_other_truth_value_or_frame_is_a_change(repository, compare, old, new, e
     repository.commit({PATH: LIGHT})
     repository.write({PATH: LIGHT.replace(old, new)})
     assert sentences(subject(compare(repository), PATH)) == [expected]
+
+
+SPACED = '<sdf version="1.9"><world name="yard"><model name="big robot"><link name="base"/></model></world></sdf>\n'
+
+
+@pytest.mark.parametrize(
+    ("new", "sentence"),
+    [
+        (SPACED.replace("big robot", "robot"), "world yard model big robot renamed to 'robot'"),
+        ('<sdf version="1.9"><world name="yard"/></sdf>\n', "world yard model big robot removed"),
+    ],
+)
+def test_model_whose_name_has_spaces_is_breaking_as_others(package, compare, new, sentence):
+    package.commit({PATH: SPACED})
+    package.write({PATH: new})
+    assert any(item.startswith(sentence) for item in breaking(compare(package)))
+
+
+@pytest.mark.parametrize(("plugin", "is_breaking"), [("", True), ('<plugin name="p" filename="libray.so"/>', False)])
+def test_topic_that_replaces_the_default_topic_of_a_sensor_is_breaking(package, compare, plugin, is_breaking):
+    world = WORLD.replace("<topic>scan</topic>", plugin)
+    package.commit({PATH: world})
+    package.write({PATH: world.replace('type="gpu_lidar">', 'type="gpu_lidar"><topic>scan</topic>')})
+    assert bool(breaking(compare(package))) is is_breaking
+
+
+def test_topic_of_a_sensor_in_a_macro_is_breaking(package, compare):
+    path = "arm_description/urdf/imu.xacro"
+    macro = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="imu" params="">
+  <gazebo reference="imu_link"><sensor name="imu" type="imu"><update_rate>10</update_rate></sensor></gazebo>
+</xacro:macro></robot>
+"""
+    package.commit({path: macro})
+    package.write({path: macro.replace("<update", "<topic>imu/data</topic><update")})
+    assert breaking(compare(package)) == ["macro 'imu': gazebo imu_link sensor imu topic imu/data added"]

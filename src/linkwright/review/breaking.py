@@ -62,6 +62,11 @@ def frame_reason(name: str) -> Phrase:
     return phrase("programs that look up the frame '{name}' do not find it", name=name)
 
 
+def call_reason(name: str) -> Phrase:
+    """Return the reason why removing a call of a macro is breaking."""
+    return phrase("programs that use the frames and topics of '{name}' do not find them", name=name)
+
+
 def name_reason(name: str) -> Phrase:
     """Return the reason why removing a topic, service or other name is breaking."""
     return phrase("programs that use the name '{name}' do not find it", name=name)

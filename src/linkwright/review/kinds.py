@@ -216,7 +216,7 @@ _RULES = (
         (".stl", ".dae", ".obj", ".glb", ".gltf"),
         phrase("mesh added"),
         phrase("mesh removed"),
-        phrase("descriptions of other packages that name the file do not find it"),
+        phrase("descriptions that name the file do not find it"),
         contents=mesh_contents,
     ),
 )

@@ -1,4 +1,4 @@
-"""Find programs and parameter files that still name a removed data file."""
+"""Find programs, parameter files and descriptions that still name a removed data file."""
 
 from __future__ import annotations
 
@@ -9,11 +9,15 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.installed_readers import without_comments
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _READER_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".yaml", ".yml")
 _PROGRAM_SUFFIXES = frozenset({*_READER_SUFFIXES[:6], ".c", ".sh", ".bash"})
 """The suffixes of files that a build file or an import names."""
+_DESCRIPTION_SUFFIXES = (".xacro", ".urdf", ".sdf", ".world", ".gazebo")
+_SHAPE_SUFFIXES = frozenset({".stl", ".dae", ".obj", ".glb", ".gltf", ".ply", ".png", ".jpg", ".jpeg", ".tga"})
+"""The suffixes of meshes and textures, which descriptions name."""
 _COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
 _MIN_NAME_LENGTH = 5
 _MAX_FILES = 200
@@ -34,12 +38,16 @@ def find_lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> 
     remaining_names = {PurePosixPath(path).name for path in versions.new.paths(tuple(lost))}
     lost = {name: path for name, path in lost.items() if name not in remaining_names}
     changed = {file.old_path: file.new_path for file in changed_files}
-    for path in versions.new.paths(_READER_SUFFIXES) if lost else ():
+    for path in versions.new.paths((*_READER_SUFFIXES, *_DESCRIPTION_SUFFIXES)) if lost else ():
         parts = PurePosixPath(path).parts
         if not TEST_FOLDERS.isdisjoint(parts) or ".launch." in path or path.endswith("_launch.py"):
             continue
+        is_description = path.endswith(_DESCRIPTION_SUFFIXES)
         text = versions.new.text(path)
+        text = without_comments(text, path) if is_description else text
         for name, old_path in lost.items():
+            if is_description and PurePosixPath(name).suffix.lower() not in _SHAPE_SUFFIXES:
+                continue
             line = _find_line(text, name)
             if line and versions.new.package_of(path) == versions.old.package_of(old_path):
                 yield path, _make_change(path, name, line, is_renamed=changed.get(old_path) is not None)

@@ -25,6 +25,8 @@ _DEFAULT_TOPICS = {
 """The default topics by plugin, and a pattern for the parameters and remappings that replace them."""
 _TOPIC_TAGS = re.compile(r"topic", re.IGNORECASE)
 _PART_TAGS = ("plugin", "sensor")
+_SENSOR_TOPIC = re.compile(r"(?:.* )?sensor (?P<name>\S+) topic")
+"""The path of the topic of a sensor."""
 _MAX_VALUES = 12
 """The maximum number of values of a plugin, sensor or other element in a line."""
 _FILE = re.compile(r"(lib)?(?P<name>.+?)(\.so)?")
@@ -171,6 +173,34 @@ def is_still_offered(difference: Difference, added: frozenset[str]) -> bool:
     is_name = NAME_TAGS.search(difference.property.rpartition(" ")[2]) is not None
     name = extract_used_name(difference.old if difference.element is None else difference.element.text())
     return is_name and name in added
+
+
+def find_default_topic_reason(difference: Difference, elements: Iterable[Element]) -> Phrase | None:
+    """Return why an added topic of a sensor is breaking, or None for other differences.
+
+    Args:
+        difference: the difference between both versions.
+        elements: the elements of the new version.
+    """
+    match = _SENSOR_TOPIC.fullmatch(f"{difference.name} {difference.property}".strip())
+    if match is None or not is_added(difference):
+        return None
+    sensors = (child for element in elements for child in element.walk() if child.tag == "sensor")
+    sensor = next((child for child in sensors if child.attributes.get("name") == match["name"]), None)
+    return None if sensor is None else find_sensor_reason(sensor)
+
+
+def find_sensor_reason(sensor: Element) -> Phrase | None:
+    """Return why a topic that a sensor newly names is breaking: the default topic is gone.
+
+    The result is None for a sensor of Gazebo classic, whose plugin has its own topics.
+    """
+    if any(sensor.elements("plugin")):
+        return None
+    return phrase(
+        "programs and bridges that use the default topic of the sensor '{name}' get no messages",
+        name=sensor.attributes.get("name", ""),
+    )
 
 
 def find_missing_topics_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:

@@ -60,6 +60,7 @@ from linkwright.review.lost_data import find_lost_data
 from linkwright.review.lost_files import find_lost_files
 from linkwright.review.lost_installs import find_lost_installs
 from linkwright.review.lost_interfaces import find_lost_interfaces
+from linkwright.review.lost_libraries import find_lost_libraries
 from linkwright.review.lost_programs import find_lost_programs
 from linkwright.review.notes import (
     group_equal_problems,
@@ -275,6 +276,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_controllers))
         result = _add_changes(result, self._run_step(find_lost_data))
         result = _add_changes(result, self._run_step(find_lost_installs))
+        result = _add_changes(result, self._run_step(find_lost_libraries))
         result = _add_changes(result, self._run_step(find_lost_programs))
         result = _add_changes(result, self._run_step(find_missing_programs))
         result = _add_changes(result, self._run_step(find_passed_arguments))

@@ -7,17 +7,24 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, counted, joined, nearest, phrase, quoted, quoted_names
-from linkwright.lint.dependencies import depends_indirectly_on, is_always_installed, would_form_cycle
+from linkwright.lint.dependencies import (
+    depends_indirectly_on,
+    is_always_installed,
+    is_in_every_workspace,
+    would_form_cycle,
+)
 from linkwright.lint.launched_scripts import find_missing_scripts
 from linkwright.lint.package_fixes import make_dependency_fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.rules.package_python import is_ament_python
 from linkwright.lint.subject import Subject
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages.share_layout import find_substituted_executables
 
 if TYPE_CHECKING:
+    from linkwright.diagnostics import SourceText
     from linkwright.lint.package import PackageContext
     from linkwright.packages.readers.launch_files import LaunchFile
 
@@ -66,6 +73,14 @@ WELL_KNOWN_PACKAGES = frozenset(
         *("diff_drive_controller", "joint_state_broadcaster", "launch_ros", "image_transport"),
     }
 )
+_XML_SUFFIXES = (".launch", ".launch.xml", "_launch.xml")
+_SETUP_ASSISTANT = ".setup_assistant"
+"""The file of a package whose launch files MoveIt generates; they start packages for every possible use."""
+_TEST_FOLDERS = frozenset({"test", "tests"})
+_COMMENT = lazy_pattern(r"<!--.*?-->", re.DOTALL)
+_STARTED_PACKAGE = lazy_pattern(r"""<(?:node|composable_node)\b[^>]*?\bpkg\s*=\s*["']([\w-]+)["']""")
+_WORD = lazy_pattern(r"[\w-]+")
+_FOUND_PACKAGE = lazy_pattern(r"\$\(find(?:-pkg-share|-pkg-prefix)?\s+([\w-]+)\s*\)")
 _PYTHON_PACKAGES = frozenset({"launch", "launch_ros", "ament_index_python", "launch_xml", "launch_yaml", "xacro"})
 
 
@@ -180,13 +195,14 @@ class LaunchedExecutableUnknown(PackageRule):
 
 
 class UndeclaredLaunchDependency(Rule):
-    """Launch files use packages that ``package.xml`` does not depend on.
+    """Launch files and descriptions use packages that ``package.xml`` does not depend on.
 
     ## Why
 
     rosdep only installs the packages that `package.xml` names. On a machine without the other packages, the launch
-    fails. Some packages are not reported: those of every ROS installation, such as `launch_ros`, dependencies of
-    declared packages, and packages that depend on this package, since declaring them would form a cycle.
+    fails, and so does the expansion of a description that includes their files. Some packages are not reported: those
+    of every ROS installation, such as `launch_ros`, dependencies of declared packages, and packages that depend on this
+    package, since declaring them would form a cycle. Neither are packages that a comment in `package.xml` names.
 
     ## Example
 
@@ -215,11 +231,16 @@ class UndeclaredLaunchDependency(Rule):
             return
         if any("$" in dependency.name for dependency in manifest.dependencies):
             return
+        launched = _find_used_packages(package)
+        text = "" if manifest.document.source is None else manifest.document.source.text
+        mentioned = frozenset(_WORD.findall(" ".join(_COMMENT.findall(text))))  # left out on purpose
         missing_packages = {
             name: note
-            for name, note in _find_used_packages(package).items()
-            if not (
+            for name, note in {**_find_packages_in_descriptions(package), **launched}.items()
+            if name not in mentioned
+            and not (
                 is_always_installed(name)
+                or (manifest.is_ros1 and is_in_every_workspace(name, is_ros1=True))
                 or manifest.declares(name)
                 or depends_indirectly_on(manifest, name, subject.finder)
             )
@@ -235,11 +256,41 @@ class UndeclaredLaunchDependency(Rule):
             len(names),
             names=quoted_names(names),
         )
+        if not launched.keys() >= missing_packages.keys():
+            message = counted(
+                "launch files and descriptions use a package on which package.xml does not depend: {names}",
+                "launch files and descriptions use packages on which package.xml does not depend: {names}",
+                len(names),
+                names=quoted_names(names),
+            )
         hint = counted(
             "add <exec_depend>{name}</exec_depend>", "add an <exec_depend> for each", len(names), name=names[0]
         )
         fix = make_dependency_fix(manifest, names)
         yield self.report(message, manifest.root, notes=[missing_packages[name] for name in names], hint=hint, fix=fix)
+
+
+def _find_packages_in_xml(source: SourceText) -> Iterator[tuple[str, Note]]:
+    """Yield the packages that a launch file in XML uses, each with a note."""
+    text = _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
+    for match in _STARTED_PACKAGE.finditer(text):
+        yield match[1], Note(phrase("'{text}' is started here", text=match[1]), source.span(*match.span(1)))
+    for match in _FOUND_PACKAGE.finditer(text):
+        yield match[1], Note(phrase("'{text}' is searched for here", text=match[1]), source.span(*match.span(1)))
+
+
+def _find_packages_in_descriptions(package: PackageContext) -> dict[str, Note]:
+    """Return the packages whose files descriptions include, by name, each with a note on the first include."""
+    first_uses: dict[str, Note] = {}
+    for document in package.descriptions.values():
+        for element in document.root.walk():
+            match = _FOUND_PACKAGE.match(element.attributes.get("filename", "").strip())
+            if element.tag != "xacro:include" or match is None or match[1] == package.name:
+                continue
+            span = element.span()
+            if span is not None and match[1] not in first_uses:
+                first_uses[match[1]] = Note(phrase("'{text}' is searched for here", text=match[1]), span)
+    return first_uses
 
 
 def _find_used_packages(package: PackageContext) -> dict[str, Note]:
@@ -262,6 +313,11 @@ def _find_used_packages(package: PackageContext) -> dict[str, Note]:
         for match in re.finditer(r"""Command\(\s*\[?\s*["']xacro\b""", file.source.text):
             span = file.source.span(match.end() - len("xacro"), match.end())
             first_uses.setdefault("xacro", Note(phrase("'xacro' is run here"), span))
+    for file_path in () if package.has(_SETUP_ASSISTANT) else package.files:
+        if file_path.endswith(_XML_SUFFIXES) and _TEST_FOLDERS.isdisjoint(file_path.split("/")):
+            source = package.text(file_path)
+            for name, note in () if source is None else _find_packages_in_xml(source):
+                first_uses.setdefault(name, note)
     first_uses.pop(package.name, None)
     return {name: note for name, note in first_uses.items() if re.fullmatch(r"[a-zA-Z]\w*", name)}
 

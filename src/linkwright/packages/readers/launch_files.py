@@ -7,8 +7,16 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 from linkwright.diagnostics import SourceText, Span
+from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass, field
-from linkwright.packages.readers.python_values import PythonFile, SharePath, argument_of, called_name
+from linkwright.packages.readers.python_values import (
+    PythonFile,
+    SharePath,
+    Value,
+    argument_of,
+    called_name,
+    concatenate,
+)
 from linkwright.packages.readers.setup_py import SyntaxProblem, make_syntax_problem
 
 LAUNCH_FUNCTION = "generate_launch_description"
@@ -18,6 +26,10 @@ _LAUNCH_SUFFIXES = (".launch.py", "_launch.py")
 _WRITE_MODES = frozenset("wax")
 """The modes in which ``open`` creates a file."""
 _PATH_FUNCTIONS = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitution", "str", "as_posix"})
+_WORD_SEPARATOR = lazy_pattern(r"\s+|:=|=|file://")
+"""The separators of paths from other text in a command line."""
+_PUNCTUATION = frozenset(".,;:!?'\")]}")
+"""The ends of words of a message."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,9 +206,12 @@ class _PathReader(ast.NodeVisitor):
             super().generic_visit(node)
             return
         assert isinstance(node, ast.expr)
-        value = self._python_file.value(node)
-        if isinstance(value, SharePath) and value.subpath and not self._path_depth:
-            self._facts.paths.append(SharedFile(value.package, value.subpath.strip("/"), self._python_file.span(node)))
+        if not self._path_depth:
+            value = self._python_file.value(node)
+            for path in (value,) if isinstance(value, SharePath) else _find_words(self._python_file, node):
+                if path.subpath:
+                    file = SharedFile(path.package, path.subpath.strip("/"), self._python_file.span(node))
+                    self._facts.paths.append(file)
         self._path_depth += 1
         super().generic_visit(node)
         self._path_depth -= 1
@@ -212,6 +227,33 @@ def _find_names_in_path_operations(tree: ast.AST) -> set[str]:
             names.add(node.id)
         pending.extend((child, is_in_path) for child in ast.iter_child_nodes(node))
     return names
+
+
+def _find_words(python_file: PythonFile, node: ast.expr) -> Iterator[SharePath]:
+    """Yield the paths that are words of a command line, such as in ``"-r " + path``."""
+    words: list[list[Value]] = [[]]
+    for operand in _split_operands(node):
+        value = python_file.value(operand)
+        first, *others = _WORD_SEPARATOR.split(value) if isinstance(value, str) else [value]
+        words[-1].append(first)
+        words += [[piece] for piece in others]
+    for word in words:
+        path = concatenate([piece for piece in word if piece != ""])
+        if isinstance(path, SharePath) and path.subpath[-1:] not in _PUNCTUATION:
+            yield path
+
+
+def _split_operands(node: ast.expr) -> Iterator[ast.expr]:
+    """Yield the expressions whose values are joined to a text."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        yield from _split_operands(node.left)
+        yield from _split_operands(node.right)
+    elif isinstance(node, ast.JoinedStr):
+        for piece in node.values:
+            is_plain = isinstance(piece, ast.FormattedValue) and piece.conversion == -1 and piece.format_spec is None
+            yield piece.value if is_plain and isinstance(piece, ast.FormattedValue) else piece
+    else:
+        yield node
 
 
 def _is_path_operation(node: ast.AST) -> bool:

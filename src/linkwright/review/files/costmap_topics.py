@@ -63,13 +63,26 @@ def _list_topics(values: Mapping[str, YamlValue]) -> Iterator[tuple[str, str, st
         if name.rpartition(".")[2] == _SOURCES:
             layer = _get_parent(name)
             for source in re.split(r"[\s,]+", value.text.strip("[] ")):
-                owner = _join(layer, source, "topic")
-                if owner in values and values[owner].text:
+                owner = _find_owner(values, layer, source)
+                if owner is not None and values[owner].text:
                     yield owner, _find_costmap(layer), values[owner].text.strip("/")
         match = _LAYER_TOPIC.fullmatch(name)
         for topic_name in list_items(value.text) if match is not None else ():
             if match is not None and topic_name not in ("", EMPTY):
                 yield name, match["costmap"], topic_name.strip("/")
+
+
+def _find_owner(values: Mapping[str, YamlValue], layer: str, source: str) -> str | None:
+    """Return the path of the topic of a source; None if there is none.
+
+    The path of a source that moves to a different layer is the new one in the old values, too.
+    """
+    owner = _join(layer, source, "topic")
+    if owner in values:
+        return owner
+    costmap = _find_costmap(layer)
+    moved = (name for name in values if name.endswith(f".{source}.topic") and _find_costmap(name) == costmap)
+    return next(moved, None)
 
 
 def _find_costmap(layer: str) -> str:

@@ -34,6 +34,7 @@ from linkwright.review.left_names import find_left_names
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.plugins import (
     find_added_topics,
+    find_default_topic_reason,
     find_missing_topics_reason,
     format_contents,
     is_added,
@@ -45,7 +46,8 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
 
-_NAMED_ELEMENT = re.compile(r"(?:^|.* )(?P<tag>world|model|include|link|joint|sensor|frame) (?P<name>\S+)")
+_NAMED_TAGS = ("world", "model", "include", "link", "joint", "sensor", "frame")
+_NAMED_ELEMENT = re.compile(rf"(?:^|.* )(?P<tag>{'|'.join(_NAMED_TAGS)}) (?P<name>\S+)")
 """The path of an element whose name programs and other models use."""
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
@@ -70,7 +72,9 @@ def compare_worlds(pair: FilePair) -> None:
     joined_differences = list(join_inertials(drop_rounding(changed)))
     topics = find_added_topics(joined_differences)
     differences = merge_replaced_plugins(joined_differences)
-    changes = [_WorldChange(difference, _find_breaking_reason(difference, topics)) for difference in differences]
+    changes = [
+        _WorldChange(difference, _find_breaking_reason(difference, topics, elements[1])) for difference in differences
+    ]
     separate: list[_WorldChange] = []
     for group in _group_equal_changes(changes):
         parts = trim_common_words([change.path for change in group])
@@ -240,15 +244,21 @@ def _describe_difference(difference: Difference, name: str) -> Phrase:
     return text if contents is None else phrase("{change}: {contents}", change=text, contents=contents)
 
 
-def _find_breaking_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:
-    """Return the reason why a difference breaks users of the world; None if it does not."""
+def _find_breaking_reason(difference: Difference, added: frozenset[str], elements: Sequence[Element]) -> Phrase | None:
+    """Return the reason why a difference breaks users of the world; None if it does not.
+
+    Args:
+        difference: the difference between both versions.
+        added: the topics that the new version adds.
+        elements: the elements of the new version.
+    """
     path = f"{difference.name} {difference.property}".strip()
     is_macro = difference.element is not None and difference.element.tag == "macro"
     if is_macro or _SET_VARIABLE.fullmatch(path) or may_be_equal(difference.old, difference.new):
         return None
-    named = _NAMED_ELEMENT.fullmatch(find_old_path(difference, path) or (path if is_removed(difference) else ""))
-    if named is not None and not (named["tag"] == "include" and "/" in named["name"]):
-        return _make_name_reason(named["tag"], named["name"])
+    named = _find_lost_name(difference, path)
+    if named is not None and not (named[0] == "include" and "/" in named[1]):
+        return _make_name_reason(*named)
     if _INCLUDED_NAME.fullmatch(path) and difference.old:
         return _make_name_reason("include", difference.old)
     if isinstance(difference, PluginReplacement) or (is_removed(difference) and difference.element is not None):
@@ -259,7 +269,27 @@ def _find_breaking_reason(difference: Difference, added: frozenset[str]) -> Phra
     if limit is not None and difference.old and difference.new:
         return find_written_reason(limit["name"], limit["side"], difference.old, difference.new)
     is_used = "plugin " in difference.property or "sensor" in difference.property
-    return find_plugin_name_reason(difference) if is_used else None
+    reason = find_plugin_name_reason(difference) if is_used else None
+    return reason or find_default_topic_reason(difference, elements)
+
+
+def _find_lost_name(difference: Difference, path: str) -> tuple[str, str] | None:
+    """Return the tag and the old name of a removed or renamed element; None for other differences.
+
+    A name can contain spaces.
+    """
+    old_path = find_old_path(difference, path)
+    name = difference.old if old_path is not None else None
+    if old_path is None and is_removed(difference):
+        old_path = path
+        name = None if difference.element is None else difference.element.attributes.get("name")
+    if old_path is None:
+        return None
+    if name and old_path.endswith(f" {name}"):
+        tag = old_path.removesuffix(name).split()[-1]
+        return (tag, name) if tag in _NAMED_TAGS else None
+    match = _NAMED_ELEMENT.fullmatch(old_path)
+    return None if match is None else (match["tag"], match["name"])
 
 
 def _make_name_reason(tag: str, name: str) -> Phrase:

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, joined, joined_first, phrase
+from linkwright.diagnostics.phrase import as_phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Effect, ExpandedElement, Subject, SubjectKind
+from linkwright.review.changes import MAX_NAMES, Change, Effect, ExpandedElement, Subject, SubjectKind
 from linkwright.review.failures import make_problem
 from linkwright.review.parts.contents import compare_contents, make_comparison
-from linkwright.review.parts.include_graph import IncludeGraph
+from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.interface import (
-    IncludeGraphs,
     compare_arguments,
     compare_macros,
     find_renamed_macros,
+    format_parameter,
     make_macro_removal_reason,
 )
-from linkwright.review.parts.outline import MacroOutline, Outline, read_outline
+from linkwright.review.parts.left_uses import find_left_uses
+from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.versions import Version, Versions
 
@@ -27,6 +29,12 @@ _SUFFIXES = (".xacro", ".urdf", ".macro", ".gazebo", ".trans", ".inc")
 """The name endings of files with descriptions or parts of descriptions."""
 _XACRO = ".xacro"
 _SEMANTIC = ".srdf.xacro"
+_UNREADABLE = "can no longer be read: {reason}"
+"""The change to a robot whose new version fails to expand."""
+_MAX_MACROS = 4
+"""The maximum number of added macros of a file that are shown with their contents."""
+_MAX_CONTENTS = 20
+"""The maximum number of items in the contents of an added macro."""
 _MIN_SIMILARITY = 0.5
 """The minimum share of equal elements of a renamed macro."""
 
@@ -69,7 +77,25 @@ def compare_parts(
                 changes=[*existing.changes, *part.changes],
                 problems=list(dict.fromkeys([*existing.problems, *part.problems])),
             )
-    return result
+    return _add_left_uses(result, comparer.find_left_uses(files))
+
+
+def _add_left_uses(subjects: Sequence[Subject], changes: Iterable[tuple[str, Change]]) -> list[Subject]:
+    """Return the subjects with the uses of lost files and macros, except at a place that a robot cannot read."""
+    unreadable = {
+        (change.location.file, change.location.line)
+        for subject in subjects
+        for change in subject.changes
+        if change.location is not None and change.sentence.template == _UNREADABLE
+    }
+    result = {subject.path: subject for subject in subjects}
+    for path, change in changes:
+        assert change.location is not None
+        if (path, change.location.line) in unreadable:
+            continue
+        subject = result.get(path, Subject(SubjectKind.PART, path, path, path))
+        result[path] = replace(subject, changes=[*subject.changes, change])
+    return list(result.values())
 
 
 class _Comparer:
@@ -94,7 +120,8 @@ class _Comparer:
         old = self._read_outline(self._versions.old, file.old_path)
         new = self._read_outline(self._versions.new, file.new_path)
         if not is_compared:
-            changes += _compare_whole_file(file, old, new)
+            graph = self._graphs.old if file.new_path is None else self._graphs.new
+            changes += _compare_whole_file(file, old, new, is_included=graph.is_included(file.path))
         if isinstance(old, Outline) and file.new_path is None and not is_compared:
             changes += _report_lost_macros(
                 [name for name in old.macros if not self._graphs.new.find_files_with_macro(name)]
@@ -105,6 +132,11 @@ class _Comparer:
             self._compare(pair)
             changes += pair.changes
         return Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, changes)
+
+    def find_left_uses(self, files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+        """Yield the descriptions that use what the new version no longer has, each with a change."""
+        changed = [file for file in files if file.path.endswith(_SUFFIXES) and not file.is_submodule]
+        yield from find_left_uses(self._versions, changed, self._graphs)
 
     def _compare(self, pair: PartPair) -> None:
         renamed = dict(_find_renamed_macros(pair))
@@ -155,22 +187,54 @@ def _report_lost_macros(names: Sequence[str]) -> Iterator[Change]:
         yield Change(text, Effect.BREAKING, make_macro_removal_reason(), other_names=tuple(names[1:]))
 
 
+def _report_added_macros(outline: Outline) -> Iterator[Change]:
+    """Yield the changes that macros were added with their file, few of them with their parameters and contents."""
+    macros = list(outline.macros.values())
+    if len(macros) > _MAX_MACROS:
+        yield Change(phrase("macro '{name}' added", name=macros[0].name), other_names=tuple(outline.macros)[1:])
+        return
+    for macro in macros:
+        text = phrase("macro '{name}' added", name=macro.name)
+        contents = _summarize_macro(macro)
+        yield Change(phrase("{change}: {contents}", change=text, contents=joined(contents)) if contents else text)
+
+
+def _summarize_macro(macro: MacroOutline) -> list[Phrase]:
+    """Return the parameters of a macro, and the included files and the elements in it."""
+    items: list[Phrase] = []
+    if macro.parameters:
+        names = joined_first([format_parameter(parameter) for parameter in macro.parameters.values()], MAX_NAMES)
+        items.append(phrase("parameters {names}", names=names))
+    for child in iterate_items(macro.element):
+        if child.element.tag == INCLUDE:
+            items.append(phrase("includes {name}", name=child.element.attributes.get("filename", "")))
+        elif child.element.tag != PROPERTY:
+            items.append(as_phrase(child.key))
+    return list({str(item): item for item in items}.values())[:_MAX_CONTENTS]
+
+
 def _compare_whole_file(
-    file: ChangedFile, old: Outline | Phrase | None, new: Outline | Phrase | None
+    file: ChangedFile, old: Outline | Phrase | None, new: Outline | Phrase | None, *, is_included: bool
 ) -> Iterator[Change]:
-    """Yield the changes to a part as a whole: added, removed, renamed, or unreadable."""
+    """Yield the changes to a part as a whole: added, removed, renamed, or unreadable.
+
+    Args:
+        file: the changed file.
+        old: the old outline, or the reason why it cannot be read.
+        new: the new outline, or the reason why it cannot be read.
+        is_included: whether a description of the version with the file may include it.
+    """
     reason = phrase("launch files and descriptions that name the file do not find it")
     is_semantic = file.path.endswith(_SEMANTIC)
     if isinstance(old, Outline) and file.new_path is None:
-        text = phrase("semantic description removed") if is_semantic else phrase("included description file removed")
-        yield Change(text, Effect.BREAKING, reason)
+        text = phrase("included description file removed") if is_included else phrase("description file removed")
+        yield Change(phrase("semantic description removed") if is_semantic else text, Effect.BREAKING, reason)
     elif isinstance(old, Outline) and file.old_path and file.old_path != file.new_path:
         yield Change(phrase("renamed from {path}", path=file.old_path), Effect.BREAKING, reason)
     if isinstance(new, Outline) and file.old_path is None:
-        yield Change(phrase("semantic description added") if is_semantic else phrase("included description file added"))
-        names = list(new.macros)
-        if names:
-            yield Change(phrase("macro '{name}' added", name=names[0]), other_names=tuple(names[1:]))
+        text = phrase("included description file added") if is_included else phrase("description file added")
+        yield Change(phrase("semantic description added") if is_semantic else text)
+        yield from _report_added_macros(new)
     if isinstance(old, Outline) and new is not None and not isinstance(new, Outline):
         text = phrase("the file can no longer be read: {reason}", reason=new)
         yield Change(text, Effect.BREAKING, phrase("descriptions that include the file cannot be expanded"))

@@ -9,6 +9,7 @@ from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.review.breaking import (
     MOVING_TYPES,
+    call_reason,
     find_extension_reason,
     find_plugin_name_reason,
     frame_reason,
@@ -21,10 +22,12 @@ from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.files.semantics import find_removal_reason
 from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.merging import merge_reasons, name_edit
+from linkwright.review.parts.chosen_parts import find_lost_choice_reason
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
-from linkwright.review.parts.outline import PROPERTY, MacroOutline, uses_name
+from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.plugins import find_sensor_reason
 from linkwright.xmltree import Element
 
 _MAX_CHARACTERS = 80
@@ -37,6 +40,7 @@ _MAX_LINES = 15
 """The maximum number of changes without a reason that are listed for a file."""
 _NAMESPACE = "namespace"
 """A word in plugin tags that do not name a topic or frame by themselves."""
+_XACRO = "xacro:"
 _INCLUDE, _INSERT = "xacro:include", "xacro:insert_block"
 
 
@@ -266,7 +270,9 @@ class _ReportedDifference:
         """The reason why the change is breaking, or None if it is not."""
         difference, old = self.difference, self.difference.old_element
         if old is None:
-            return None
+            return self._find_default_topic_reason()
+        if difference.value == "conditions":
+            return find_lost_choice_reason(difference.old or "", difference.new or "")
         is_removed = difference.is_whole or difference.value == "name"
         if len(difference.path) == 1 and old.tag in ("link", "joint"):
             name = old.attributes.get("name", "")
@@ -279,13 +285,15 @@ class _ReportedDifference:
             return self._find_joint_reason(old)
         if len(difference.path) == 1 and difference.value == "name" and old.tag == "world":
             return world_reason(old.attributes.get("name", ""))
+        if difference.new_element is None and old.tag.startswith(_XACRO):
+            return self._find_lost_call_reason(old)
         if len(difference.path) == 1 and is_removed and old.tag in ("group", "group_state", "end_effector"):
             return find_removal_reason(old.tag, old.attributes.get("name", ""))
         kind, name = difference.value, " ".join(difference.path[1:])
-        if kind not in ("", "text", "conditions"):
+        if kind not in ("", "text"):
             name = f"{name} @{kind}".strip()
         root = difference.path[0]
-        if kind == "conditions" or not root.startswith(("gazebo", "ros2_control")):
+        if not root.startswith(("gazebo", "ros2_control")):
             return None
         if difference.new_element is None and root.startswith("gazebo"):
             return self._find_lost_name_reason(old)
@@ -302,6 +310,21 @@ class _ReportedDifference:
         if tag != "joint" or old.tag not in ("joint", "limit") or not difference.old or not difference.new:
             return None
         return find_written_reason(name, difference.value, difference.old, difference.new)
+
+    def _find_default_topic_reason(self) -> Phrase | None:
+        """Return the reason why an added topic of a sensor is breaking; None for other additions."""
+        element, path = self.difference.new_element, self.difference.path
+        if element is None or element.tag != "topic" or not self.difference.is_whole or len(path) < 2:
+            return None
+        sensors = [sensor for sensor in self.pair.new.root.walk() if sensor.tag == "sensor"]
+        owner = next((sensor for sensor in sensors if any(child is element for child in sensor.elements())), None)
+        return None if owner is None else find_sensor_reason(owner)
+
+    def _find_lost_call_reason(self, old: Element) -> Phrase | None:
+        """Return the reason why removing a call of a macro is breaking; None if its name is still used."""
+        name = old.attributes.get("name", "")
+        is_call = old.tag not in STATEMENTS and bool(name)
+        return call_reason(name) if is_call and name not in _collect_words(self.pair.new.root) else None
 
     def _find_lost_name_reason(self, old: Element) -> Phrase | None:
         """Return the reason why removing a Gazebo element is breaking; None if it is not.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
@@ -35,6 +36,21 @@ class IncludeGraph:
     def find_files_with_macro(self, macro: str) -> list[str]:
         """Return the files that define a macro."""
         return [path for path, outline in self._outlines.items() if macro in outline.macros]
+
+    def find_macros(self, path: str) -> Collection[str]:
+        """Return the names of the macros that a file defines."""
+        outline = self._outlines.get(path)
+        return () if outline is None else outline.macros
+
+    def is_included(self, path: str) -> bool:
+        """Return whether a description may include a file, whose suffix can be any."""
+        file = self._version.file(path)
+        inclusions = (inclusion for outline in self._outlines.values() for inclusion in outline.inclusions)
+        return any(inclusion.name == file.name or inclusion.may_compute(file) for inclusion in inclusions)
+
+    def iterate_outlines(self) -> Iterable[tuple[str, Outline]]:
+        """Return the paths and outlines of the descriptions that can be read."""
+        return self._outlines.items()
 
     def _find_reachable(self, path: str, edges: dict[str, set[str]]) -> Iterator[str]:
         pending, visited = [path], {path}
@@ -87,3 +103,16 @@ class IncludeGraph:
             for other in included:
                 includers[other].add(path)
         return includers
+
+
+@dataclass(frozen=True)
+class IncludeGraphs:
+    """The includes of both versions.
+
+    Attributes:
+        old: the includes of the old version.
+        new: the includes of the new version.
+    """
+
+    old: IncludeGraph
+    new: IncludeGraph

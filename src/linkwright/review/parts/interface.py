@@ -3,29 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.review.list_changes import change_text
-from linkwright.review.parts.include_graph import IncludeGraph
+from linkwright.review.parts.chosen_parts import compare_chosen_parts
+from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.outline import MacroOutline, Outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.renamed_names import find_renamed_names
 from linkwright.xacro.macros import Parameter
 from linkwright.xmltree import Element
-
-
-@dataclass(frozen=True)
-class IncludeGraphs:
-    """The includes of both versions.
-
-    Attributes:
-        old: the includes of the old version.
-        new: the includes of the new version.
-    """
-
-    old: IncludeGraph
-    new: IncludeGraph
 
 
 def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, str]) -> None:
@@ -99,7 +86,7 @@ def _report_unpaired_parameters(
 ) -> None:
     """Report removed parameters, and added parameters with and without a default."""
     required = [parameter.name for parameter in added if not _has_default(parameter)]
-    optional = [_format_parameter(parameter) for parameter in added if _has_default(parameter)]
+    optional = [format_parameter(parameter) for parameter in added if _has_default(parameter)]
     for names, change, reason in (
         (
             removed,
@@ -155,8 +142,9 @@ def _format_default(parameter: Parameter) -> str:
     return f"^|{text}" if parameter.forward and text else "^" if parameter.forward else text
 
 
-def _format_parameter(parameter: Parameter) -> str:
-    return f"{parameter.name}:={_format_default(parameter)}"
+def format_parameter(parameter: Parameter) -> str:
+    """Return a parameter as written, with its default."""
+    return f"{parameter.name}:={_format_default(parameter)}" if _has_default(parameter) else parameter.name
 
 
 def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
@@ -219,7 +207,12 @@ def _compare_argument(pair: PartPair, old: Element, new: Element) -> None:
         pair.add(text, old, new, phrase("callers must pass '{name}'", name=name))
         return
     text = change_text(phrase("default of argument '{name}'", name=name), old_default or "''", new_default or "''")
-    pair.add(text, old, new)
+    if pair.is_complete or pair.is_read(is_old=False):
+        pair.add(text, old, new)  # the robots show the effect
+        return
+    parts = compare_chosen_parts(pair.old, pair.new, name, (old_default or "", new_default))
+    reason = phrase("robots of callers that do not pass '{name}' lack these parts", name=name)
+    pair.add(parts.describe(text), old, new, reason if parts.removed else None)
 
 
 def _is_declared_by_robots(graph: IncludeGraph, path: str, name: str) -> bool:

@@ -16,10 +16,15 @@ from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xmltree import Document, Element
 
-ARG, MACRO, PROPERTY = "xacro:arg", "xacro:macro", "xacro:property"
+ARG, INCLUDE, MACRO, PROPERTY = "xacro:arg", "xacro:include", "xacro:macro", "xacro:property"
 _CONDITIONS = {"xacro:if": "if", "xacro:unless": "unless"}
 _CONDITION_TAGS = {word: tag for tag, word in _CONDITIONS.items()}
 _XACRO = "xacro:"
+STATEMENTS = frozenset(
+    f"{_XACRO}{name}"
+    for name in ("arg", "attribute", "call", "element", "if", "include", "insert_block", "macro", "property", "unless")
+)
+"""The tags of xacro that call no macro of the description."""
 
 
 @dataclass(frozen=True)

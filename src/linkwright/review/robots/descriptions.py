@@ -24,12 +24,13 @@ from linkwright.review.merging import merge_reasons, merge_changes
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.parts.expanded import find_expanded_elements
 from linkwright.review.left_names import find_left_names
-from linkwright.review.plugins import find_added_topics, format_contents, is_still_offered, find_missing_topics_reason
+from linkwright.review.plugins import find_added_topics, find_default_topic_reason, format_contents, is_still_offered, find_missing_topics_reason
 from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
 from linkwright.review.robots.added_links import AddedLinks
 from linkwright.review.robots.cases import Case, find_cases, find_switched_cases
 from linkwright.review.robots.collisions import compare_collisions, may_change_collisions
 from linkwright.review.robots.figures import RobotMeasures, compare_figures
+from linkwright.review.robots.omitted_calls import find_lost_call_reason
 from linkwright.review.robots.joined_values import JoinedDifferences, join_value_differences
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
@@ -139,6 +140,8 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
         reason = (
             (None if is_still_offered(difference, added_names) else find_breaking_reason(difference, old, new))
             or find_missing_topics_reason(difference, added_names)
+            or find_default_topic_reason(difference, new.extensions)
+            or find_lost_call_reason(difference, comparison.differences)
             or _find_expression_reason(difference)
             or find_limits_reason(difference.values if isinstance(difference, JoinedDifferences) else (difference,), new)
         )
