@@ -55,6 +55,7 @@ from linkwright.review.sources.python_bases import select_methods
 from linkwright.review.sources.rates import compare_rates, compare_timers
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
+from linkwright.review.sources.renamed_classes import find_renamed_classes, rename_classes
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.used_packages import compare_usage
@@ -141,12 +142,14 @@ class _SourcePair:
         old, new = self.old.codes.get(old_path), self.new.codes.get(new_path)
         if not old or not new:
             return
+        renamed = find_renamed_classes(old, new)
+        old = rename_classes(old, renamed)
 
         def has_moved(name: str, code: Code) -> bool:
             side, path = (self.new, new_path) if code is old else (self.old, old_path)
             return side.has_function(name, code, path)
 
-        change = find_code_change(old, new, reported, has_moved, self.new.get_names(new_path))
+        change = find_code_change(old, new, reported, has_moved, self.new.get_names(new_path), renamed)
         if change is not None:
             location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
             yield Change(change.text, location=location)

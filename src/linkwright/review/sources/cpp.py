@@ -93,7 +93,7 @@ _NODE = re.compile(
 _INIT = re.compile(r"\bros::init\s*\(")
 _FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
 _RECONFIGURATION = re.compile(r"\bdynamic_reconfigure\s*::\s*Server\s*<\s*(?:\w+\s*::\s*)*(?P<name>\w+)\s*>")
-_POINTER = re.compile(r"&\s*(?:\w+::)+(\w+)")
+_POINTER = re.compile(r"&\s*(?:\w+::)*?((?:\w+::)\w+)(?!::|\w)")
 _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
@@ -368,10 +368,13 @@ class _Reader:
 
         Calls with several functions among their arguments are left out.
         """
-        text = self._text[arguments[0][0] : arguments[-1][1]]
-        functions = set(_POINTER.findall(text))
+        functions = self._find_pointers(arguments)
         if len(functions) == 1:
             self._names.callbacks.setdefault(functions.pop(), (kind, name))
+
+    def _find_pointers(self, arguments: list[tuple[int, int]]) -> set[str]:
+        """Return the member functions whose addresses are among the arguments, qualified by their classes."""
+        return set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
 
     def _find_callback_type(self, kind: NameKind, arguments: list[tuple[int, int]]) -> str:
         """Return the type of the messages or requests that the only callback among the arguments takes.
@@ -380,7 +383,7 @@ class _Reader:
         """
         find_type = {NameKind.SUBSCRIPTION: find_message_type, NameKind.SERVICE: find_service_type}.get(kind)
         first = 2 if kind is NameKind.SUBSCRIPTION else 1
-        functions = set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
+        functions = {name.rpartition("::")[2] for name in self._find_pointers(arguments)}
         words = (self._text[begin:end].strip().lstrip("&") for begin, end in arguments[first : first + 1])
         functions = functions or {word for word in words if word.isidentifier()}
         if find_type is None or len(functions) != 1:
@@ -455,8 +458,9 @@ class _Reader:
             rate = f"{name}({texts[index]})", self._make_span(*arguments[index])
             self._names.rates.append(rate)
             if "imer" in name:
-                functions = set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
-                self._names.timers.append(Timer(functions.pop() if len(functions) == 1 else "", *rate))
+                functions = self._find_pointers(arguments)
+                name = functions.pop().rpartition("::")[2] if len(functions) == 1 else ""
+                self._names.timers.append(Timer(name, *rate))
                 self._add_callback(None, "", arguments)
 
     def _get_literal(self, begin: int, end: int) -> str | None:
