@@ -396,7 +396,7 @@ class _SourcePair:
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self._is_interface(path):
             return None
-        reason = find_removal_reason(items, names, path)
+        reason = find_removal_reason(items, names, self.new.get_names(self.file.new_path), path)
         users = ((item, self.new.find_user(item, path)) for item in (items if reason is not None else ()))
         return next((make_user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
 

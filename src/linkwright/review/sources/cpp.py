@@ -31,6 +31,7 @@ from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKi
 from linkwright.review.sources.node_options import Remappings, read_remappings
 from linkwright.review.sources.parameter_defaults import find_cpp_parameter_default
 from linkwright.review.sources.parameter_helpers import find_helper_calls, is_parameter_name, read_elements
+from linkwright.review.sources.registrations import find_registrations
 from linkwright.review.sources.shared_constants import read_header_constants
 
 _COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
@@ -98,7 +99,6 @@ _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
 )
-_COMPONENT = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(")
 _NAMESPACE = re.compile(r"^[ \t]*(?:inline\s+)?namespace\s+(?P<name>[A-Za-z_]\w*(?:\s*::\s*\w+)*)\s*\{", re.MULTILINE)
 _ALIAS = re.compile(
     r"\btypedef\s+(?P<type>[^;{}]+[\s>*&])(?P<name>\w+)\s*;|\busing\s+(?P<using>\w+)\s*=\s*(?P<used>[^;{}]+);"
@@ -168,9 +168,8 @@ class _Reader:
             self._read_rate(match)
         for match in _RECONFIGURATION.finditer(text):
             self._add(NameKind.RECONFIGURATION, match["name"], match.start("name"), match.end("name"))
-        for match in _COMPONENT.finditer(text):
-            for begin, end in list(_find_arguments(text, match.end() - 1))[:1]:
-                self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)
+        for item in find_registrations(text):
+            self._add(item.kind, item.name, item.start, item.end)
         self._read_classes()
         self._read_functions()
         self._names.conditional_lines += find_cpp_conditions(text)
