@@ -293,3 +293,30 @@ def test_calls_and_declarations_of_a_changed_function_are_not_other_code(review_
     new = "void drive(int speed);\nint state = drive(1);\nvoid drive(int speed) { go(speed); }\n"
     lines = review_lines("arm/src/a.cpp", old, new)
     assert "outside" not in str(lines)
+
+
+DEFAULTS = """class Rover {
+public:
+  int get(int a, bool is_new = false) const {
+    stop();
+    return a;
+  }
+  template <typename T = int>
+  T other(std::vector<T> a = {1, 2}) {
+    return a.front();
+  }
+  int count(int a) { return a; }
+};
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("stop();", "halt();", "code changed in 'Rover::get()'"),
+        ("a.front()", "a.back()", "code changed in 'Rover::other()'"),
+        ("int a) { return a;", "int a) { return n(a);", "code changed in 'Rover::count()'"),
+    ],
+)
+def test_function_with_default_arguments_is_named(review_lines, old, new, line):
+    assert review_lines("arm/src/rover.hpp", DEFAULTS, DEFAULTS.replace(old, new)) == [line]

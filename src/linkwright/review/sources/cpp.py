@@ -220,6 +220,8 @@ class _Reader:
         for name, functions in overloads.items():
             types = _join_overloads(functions)
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
+            if len(functions) == 1 and functions[0].result:
+                details = (*details, (Detail.RESULT, functions[0].result))
             start = self._text.find(name.rpartition("::")[2], functions[0].start)
             self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
         for member in read_declared_members(self._text):

@@ -75,6 +75,7 @@ class Detail(Enum):
     LEVEL = phrase("level")
     REQUIRED = phrase("required")
     ARGUMENTS = phrase("arguments")
+    RESULT = phrase("result")
     CONDITION = phrase("condition")
 
     @property
