@@ -204,6 +204,16 @@ def make_required_reason(kind: NameKind, names: Phrase | str) -> Phrase:
     return phrase("callers that do not pass '{name}' get an error", name=names)
 
 
+def find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
+    """Return the reason why added names are breaking, or None if none of them is required."""
+    names = [item.name for item in items if (Detail.REQUIRED, YES) in item.details]
+    if not names:
+        return None
+    if items[0].kind is NameKind.FUNCTION:
+        return phrase("classes that derive from the class and do not define it do not build")
+    return make_required_reason(items[0].kind, joined_first(names, MAX_NAMES))
+
+
 def _find_qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:
     """Return the reason why a different QoS is breaking, or None.
 
