@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 
@@ -158,8 +158,9 @@ class _Reader:
             for index in (2, 3):
                 self._add_argument(NameKind.FRAME, match.end() - 1, index)
         self._read_members()
-        self._read_helper_calls()
-        for element in read_elements(text):
+        elements = list(read_elements(text))
+        self._read_helper_calls({element.start for element in elements})
+        for element in elements:
             end = element.start + len(element.name)
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for interface in find_hardware_interfaces(text):
@@ -431,10 +432,10 @@ class _Reader:
                 if self._add_literal(member.kind, begin, end, member.type):
                     break
 
-    def _read_helper_calls(self) -> None:
+    def _read_helper_calls(self, element_starts: Collection[int]) -> None:
         """Add the parameters that functions of the repository read.
 
-        The name is one of the first two arguments.
+        The name is one of the first two arguments. Elements of SDF at the given offsets are left out.
         """
         for call in find_helper_calls(self._text):
             if call.function in _KINDS:
@@ -443,7 +444,8 @@ class _Reader:
             arguments = list(_find_arguments(self._text, call.start))
             for index, (begin, end) in enumerate(arguments[:2]):
                 literal = _TEXT.fullmatch(self._text[begin:end])
-                if literal is not None and is_parameter_name(literal["text"]):
+                is_element = literal is not None and begin + literal.start("text") in element_starts
+                if literal is not None and not is_element and is_parameter_name(literal["text"]):
                     values = (_LITERAL.fullmatch(self._text[slice(*argument)]) for argument in arguments[index + 1 :])
                     default = next((value["text"] or value[1] for value in values if value is not None), "")
                     self._add(kind, literal["text"], begin, end, default)
