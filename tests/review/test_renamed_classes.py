@@ -91,6 +91,20 @@ def test_changed_method_of_a_class_with_another_name_is_named(review_lines):
     ]
 
 
+def test_class_without_methods_may_have_another_name(review_lines):
+    old = """class ArmData {
+public:
+  int count = 0;
+  double rate = 1.0;
+};
+Arm::Arm() : data_(std::make_unique<ArmData>()) {}
+void Arm::run() { go(data_->count); }
+"""
+    assert review_lines("arm/src/arm.cpp", old, old.replace("ArmData", "ArmState")) == [
+        "code renamed: 'ArmData' -> 'ArmState'"
+    ]
+
+
 def test_different_class_with_other_methods_is_not_the_old_one(review_lines):
     new = """#include "spring.hpp"
 void Motor::configure(const Element & element)
@@ -130,3 +144,20 @@ def test_callback_in_cpp_is_that_of_its_class(review_lines, old, new, line):
 def test_callback_in_python_is_that_of_its_class(review_lines, name, line):
     new = PYTHON_NODES.replace(f"self.{name} = m.pose", f"self.{name} = m.pose if m else None")
     assert review_lines("arm/arm/nodes.py", PYTHON_NODES, new) == [line]
+
+
+def test_renamed_class_of_an_installed_header_is_one_breaking_change(repository, compare):
+    header = """class Old : public rclcpp::Node {
+public:
+  explicit Old(const rclcpp::NodeOptions & options);
+  void initialize(int a, int b);
+private:
+  int inputs_ = 0;
+};
+"""
+    build = "project(arm)\ninstall(DIRECTORY include/ DESTINATION include)\n"
+    repository.commit({**MANIFEST, "arm/CMakeLists.txt": build, "arm/include/arm/n.hpp": header})
+    repository.write({"arm/include/arm/n.hpp": header.replace("Old", "Teleoperation")})
+    result = compare(repository)
+    assert [line for subject in result.subjects for line in sentences(subject)] == breaking(result)
+    assert breaking(result) == ["class 'Old' renamed to 'Teleoperation'"]

@@ -82,8 +82,9 @@ def find_code_change(
     texts = _format_functions(changed, added, removed, _list_renamed(classes, renamed), names)
     if texts:
         texts += _format_other_code(old, new, lines)
-        methods = [name for name in new.functions if name.startswith(tuple(classes.values()))]
-        new_names = [*(name for _, name in changed), *added, *(name for _, name in renamed), *methods]
+        new_names = [*(name for _, name in changed), *added, *(name for _, name in renamed)]
+        if not new_names and classes:
+            return CodeChange(joined(texts, "; "), _find_class_line(new, next(iter(classes.values()))), is_old=False)
         sides = (new, old) if new_names else (old, new)
         name = new_names[0] if new_names else removed[0]
         line = _find_first_line(sides[0].functions[name], sides[1].functions.get(name, ()))
@@ -194,6 +195,13 @@ def _compare_imports(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | N
     if removed:
         texts.append(phrase("imports removed: {imports}", imports=_join_names(f"'{part.text}'" for part in removed)))
     return CodeChange(joined(texts, "; "), (added or removed)[0].first_line, is_old=not added) if texts else None
+
+
+def _find_class_line(code: Code, name: str) -> int:
+    """Return the first line of a class, or of its methods if another file defines it."""
+    functions = [parts for key, parts in code.functions.items() if key.startswith((f"{name}::", f"{name}."))]
+    lines = [parts[0].first_line for parts in (*functions, code.outside.get(name, ())) if parts]
+    return min(lines, default=1)
 
 
 def _find_first_line(parts: Sequence[Part], others: Sequence[Part]) -> int:

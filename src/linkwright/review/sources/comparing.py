@@ -287,6 +287,8 @@ class _SourcePair:
             return pair_similar(old_items, new_items, self._read_uses(old_items, new_items).differ)
         if kind is NameKind.FUNCTION:
             pairs = list(self._pair_by_code(old_items, new_items))
+        elif kind is NameKind.CLASS:
+            pairs = self._pair_renamed_classes(old_items, new_items)
         else:
             old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
             pairs = pair_by_callback(old_items, new_items, old_names, new_names)
@@ -316,6 +318,14 @@ class _SourcePair:
             matching = [other for other in added if other.details == item.details and new.get_body(other.name) == body]
             if body and len(matching) == 1 and sum(old.get_body(other.name) == body for other in removed) == 1:
                 yield item, matching[0]
+
+    def _pair_renamed_classes(
+        self, removed: Sequence[SourceName], added: Sequence[SourceName]
+    ) -> list[tuple[SourceName, SourceName]]:
+        """Return the removed and added classes that have the same methods or statements."""
+        old, new = self.old.codes.get(self.file.old_path or ""), self.new.codes.get(self.file.new_path or "")
+        renamed = {} if old is None or new is None or not (removed and added) else find_renamed_classes(old, new)
+        return [(item, other) for item in removed for other in added if renamed.get(item.name) == other.name]
 
     def _report_details(
         self, kind: NameKind, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]], old_names: SourceNames

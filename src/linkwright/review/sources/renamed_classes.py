@@ -17,7 +17,8 @@ _MIN_SIMILARITY = 0.5
 def find_renamed_classes(old: Code, new: Code) -> dict[str, str]:
     """Return the new names of the classes that only have another name, by their old names.
 
-    Such a class has the methods of the old one, or most of them, and the new version does not mention the old name.
+    Such a class has most methods of the old one, or most statements of one without methods. The new version does not
+    mention the old name.
     """
     sides = [_list_methods(code) for code in (old, new)]
     removed, added = ({name: sides[i][name] for name in sides[i] if name not in sides[1 - i]} for i in (0, 1))
@@ -53,7 +54,10 @@ def rename_classes(code: Code, renamed: Mapping[str, str]) -> Code:
 
 
 def _list_methods(code: Code) -> dict[str, set[str]]:
-    """Return the names of the methods of each class. Constructors and destructors have marks instead."""
+    """Return the names of the methods of each class, or the statements of a class without methods.
+
+    Constructors and destructors have marks instead of names.
+    """
     methods: dict[str, set[str]] = {}
     for function in code.functions:
         scope, method = _split(function)
@@ -61,6 +65,10 @@ def _list_methods(code: Code) -> dict[str, set[str]]:
             class_name = _split(scope)[1]
             marks = {class_name: _CONSTRUCTOR, f"~{class_name}": _DESTRUCTOR}
             methods.setdefault(scope, set()).add(marks.get(method, method))
+    for name, parts in code.outside.items():
+        if name and name not in methods and len(parts) > 1:
+            word = re.compile(rf"\b{re.escape(_split(name)[1])}\b")
+            methods[name] = {word.sub(_CONSTRUCTOR, part.text) for part in parts[1:]}
     return methods
 
 
