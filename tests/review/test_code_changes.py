@@ -320,3 +320,14 @@ public:
 )
 def test_function_with_default_arguments_is_named(review_lines, old, new, line):
     assert review_lines("arm/src/rover.hpp", DEFAULTS, DEFAULTS.replace(old, new)) == [line]
+
+
+def test_macro_with_the_name_of_a_parameter_is_its_name(repository, compare):
+    text = """#define STAMPED_PARAM "use_stamped"
+Rover::Rover() : Node("rover") {
+  stamped_ = declare_parameter<bool>(STAMPED_PARAM, false);
+}
+"""
+    repository.commit({**MANIFEST, "arm/src/rover.cpp": text})
+    repository.write({"arm/src/rover.cpp": text.replace('"use_stamped"', '"is_stamped"')})
+    assert breaking(compare(repository)) == ["parameter 'use_stamped' (false) renamed to 'is_stamped' (false)"]

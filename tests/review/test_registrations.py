@@ -87,9 +87,11 @@ def test_plugin_of_gazebo_classic_is_its_library(review_source, new, broken):
     assert review_source(CLASSIC, new)[1] == broken
 
 
+@pytest.mark.parametrize("macro", ["PLUGINLIB_EXPORT_CLASS", "CLASS_LOADER_REGISTER_CLASS"])
 @pytest.mark.parametrize("new", [PLUGIN.partition("PLUGINLIB")[0], PLUGIN.replace("arm::Foo", "arm::Bar")])
-def test_class_that_a_plugin_description_declares_must_be_exported(review_source, new):
-    _, broken = review_source(PLUGIN, new, {"arm/plugins.xml": DESCRIPTION})
+def test_class_that_a_plugin_description_declares_must_be_exported(review_source, macro, new):
+    old, new = (text.replace("PLUGINLIB_EXPORT_CLASS", macro) for text in (PLUGIN, new))
+    _, broken = review_source(old, new, {"arm/plugins.xml": DESCRIPTION})
     assert broken == ["names 'arm::Foo', which no source registers any more"]
 
 

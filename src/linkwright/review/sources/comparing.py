@@ -56,7 +56,7 @@ from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.python_bases import select_methods
 from linkwright.review.sources.rates import compare_rates, compare_timers
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
-from linkwright.review.sources.renamed_classes import find_renamed_classes, rename_classes
+from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.used_packages import compare_usage
@@ -131,7 +131,7 @@ class _SourcePair:
         old, new = self.old.codes.get(old_path), self.new.codes.get(new_path)
         if not old or not new:
             return
-        renamed = find_renamed_classes(old, new)
+        renamed = drop_reported(find_renamed_classes(old, new), [str(change.sentence) for change in reported])
         old = rename_classes(old, renamed)
 
         def has_moved(name: str, code: Code) -> bool:
@@ -287,7 +287,7 @@ class _SourcePair:
             return pair_similar(old_items, new_items, self._read_uses(old_items, new_items).differ)
         if kind is NameKind.FUNCTION:
             pairs = list(self._pair_by_code(old_items, new_items))
-        elif kind is NameKind.CLASS:
+        elif kind is NameKind.CLASS and not self.file.path.endswith(PYTHON_SUFFIX):
             pairs = self._pair_renamed_classes(old_items, new_items)
         else:
             old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)

@@ -550,7 +550,8 @@ def _find_constants(text: str) -> Mapping[str, str]:
     for match in _CONSTANT.finditer(text):
         name = match["name"] or match["macro"]
         assignment_count = len(re.findall(rf"\b{name}\b\s*(?:\[\s*\])?\s*=(?!=)", text))
-        is_output = re.search(rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b", text) is not None
+        output = rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b"
+        is_output = match["macro"] is None and re.search(output, text) is not None
         if assignment_count <= 1 and not is_output and name not in constants:
             constants[name] = match["text"] if match["macro"] is None else match["value"]
     return constants

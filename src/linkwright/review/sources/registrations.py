@@ -11,8 +11,8 @@ from linkwright.review.sources.names import NameKind
 _CLASS = r"\s*(?:::)?(?P<name>\w+(?:\s*::\s*\w+)*(?:\s*<[\w\s:,<>]*>)?)\s*"
 _TEXT = r'\s*(?:[^(),;"]*,)?\s*"(?P<text>[^"\\]+)"'
 _PATTERNS = (
-    (NameKind.PLUGIN, rf"\b(?:RCLCPP_COMPONENTS_REGISTER_NODE|CLASS_LOADER_REGISTER_CLASS)\s*\({_CLASS}[,)]"),
-    (NameKind.PLUGINLIB_CLASS, rf"\bPLUGINLIB_EXPORT_CLASS\s*\({_CLASS},"),
+    (NameKind.PLUGIN, rf"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\({_CLASS}\)"),
+    (NameKind.PLUGINLIB_CLASS, rf"\b(?:PLUGINLIB_EXPORT_CLASS|CLASS_LOADER_REGISTER_CLASS)\s*\({_CLASS},"),
     (NameKind.PLUGINLIB_CLASS, rf"\bPLUGINLIB_REGISTER_CLASS\s*\(\s*\w+\s*,{_CLASS},"),
     (NameKind.PLUGINLIB_CLASS, rf"\bPLUGINLIB_DECLARE_CLASS\s*\(\s*\w+\s*,\s*\w+\s*,{_CLASS},"),
     (NameKind.LIBRARY_PLUGIN, rf"\bGZ_REGISTER_[A-Z]+_PLUGIN\s*\({_CLASS}\)"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from linkwright.review.sources.code import Code, Part
@@ -80,3 +80,18 @@ def _split(name: str) -> tuple[str, str]:
     """Return the scope and the last part of a qualified name."""
     scope, _, short = name.rpartition("::" if "::" in name else ".")
     return scope, short
+
+
+def drop_reported(renamed: Mapping[str, str], reported: Iterable[str]) -> dict[str, str]:
+    """Return the renamed classes without those that other lines about the source report as added or removed.
+
+    Args:
+        renamed: the new names by the old ones.
+        reported: the other lines about the source.
+    """
+    lines = [line for line in reported if " renamed to " not in line]
+    return {
+        name: other
+        for name, other in renamed.items()
+        if not any(f"'{_split(word)[1]}'" in line for line in lines for word in (name, other))
+    }
