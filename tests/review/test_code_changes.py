@@ -293,3 +293,41 @@ def test_calls_and_declarations_of_a_changed_function_are_not_other_code(review_
     new = "void drive(int speed);\nint state = drive(1);\nvoid drive(int speed) { go(speed); }\n"
     lines = review_lines("arm/src/a.cpp", old, new)
     assert "outside" not in str(lines)
+
+
+DEFAULTS = """class Rover {
+public:
+  int get(int a, bool is_new = false) const {
+    stop();
+    return a;
+  }
+  template <typename T = int>
+  T other(std::vector<T> a = {1, 2}) {
+    return a.front();
+  }
+  int count(int a) { return a; }
+};
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("stop();", "halt();", "code changed in 'Rover::get()'"),
+        ("a.front()", "a.back()", "code changed in 'Rover::other()'"),
+        ("int a) { return a;", "int a) { return n(a);", "code changed in 'Rover::count()'"),
+    ],
+)
+def test_function_with_default_arguments_is_named(review_lines, old, new, line):
+    assert review_lines("arm/src/rover.hpp", DEFAULTS, DEFAULTS.replace(old, new)) == [line]
+
+
+def test_macro_with_the_name_of_a_parameter_is_its_name(repository, compare):
+    text = """#define STAMPED_PARAM "use_stamped"
+Rover::Rover() : Node("rover") {
+  stamped_ = declare_parameter<bool>(STAMPED_PARAM, false);
+}
+"""
+    repository.commit({**MANIFEST, "arm/src/rover.cpp": text})
+    repository.write({"arm/src/rover.cpp": text.replace('"use_stamped"', '"is_stamped"')})
+    assert breaking(compare(repository)) == ["parameter 'use_stamped' (false) renamed to 'is_stamped' (false)"]

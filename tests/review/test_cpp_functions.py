@@ -97,7 +97,7 @@ def test_many_functions_with_other_arguments_are_one_line(repository, compare):
     lines = "".join(f"  void {name}(int x);\n" for name in names)
     text = f"class Gripper {{\npublic:\n{lines}}};\n"
     repository.commit({**FILES, "a/include/arm/driver.hpp": text})
-    repository.write({"a/include/arm/driver.hpp": text.replace("int", "double")})
+    repository.write({"a/include/arm/driver.hpp": text.replace("int", "Pose")})
     assert breaking(compare(repository)) == [
         "functions with other arguments: Gripper::open, Gripper::close, Gripper::move, Gripper::hold"
     ]

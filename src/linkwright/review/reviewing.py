@@ -62,6 +62,8 @@ from linkwright.review.lost_installs import find_lost_installs
 from linkwright.review.lost_interfaces import find_lost_interfaces
 from linkwright.review.lost_libraries import find_lost_libraries
 from linkwright.review.lost_programs import find_lost_programs
+from linkwright.review.lost_registrations import find_lost_registrations
+from linkwright.review.lost_sources import find_lost_sources
 from linkwright.review.notes import (
     group_equal_problems,
     is_unreadable_as_before,
@@ -278,6 +280,8 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_installs))
         result = _add_changes(result, self._run_step(find_lost_libraries))
         result = _add_changes(result, self._run_step(find_lost_programs))
+        result = _add_changes(result, self._run_step(find_lost_registrations))
+        result = _add_changes(result, self._run_step(find_lost_sources))
         result = _add_changes(result, self._run_step(find_missing_programs))
         result = _add_changes(result, self._run_step(find_passed_arguments))
         result = _add_changes(result, self._run_step(find_left_nodes))

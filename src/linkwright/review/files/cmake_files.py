@@ -349,7 +349,8 @@ def _read_exports(commands: Sequence[Command]) -> Iterator[Fact]:
             base, description = command.arguments[:2]
             yield _make_fact(FactKind.PLUGIN_DESCRIPTION, description, base.text)
         elif command.name == "ament_export_dependencies":
-            yield from (_make_fact(FactKind.EXPORTED_DEPENDENCY, item) for item in command.arguments)
+            known = (item for item in command.arguments if not _VARIABLE.fullmatch(item.text))
+            yield from (_make_fact(FactKind.EXPORTED_DEPENDENCY, item) for item in known)
         elif command.name == "ament_export_libraries":
             yield from (_make_fact(FactKind.EXPORTED_TARGET, item) for item in command.arguments)
         elif command.name == "ament_export_include_directories":

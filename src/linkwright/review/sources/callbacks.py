@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from linkwright.review.sources.names import SourceName, SourceNames
@@ -20,10 +21,25 @@ def pair_by_callback(
         old_names: all names of the old version.
         new_names: all names of the new version.
     """
-    old, new = (
-        {(kind, name): function for function, (kind, name) in names.callbacks.items()}
-        for names in (old_names, new_names)
-    )
-    functions = {function: item for item in added if (function := new.get((item.kind, item.name))) is not None}
-    pairs = ((item, functions.get(old.get((item.kind, item.name), ""))) for item in removed)
+    functions = {
+        function: item for item in added if (function := _find_function(item, new_names, old_names)) is not None
+    }
+    pairs = ((item, functions.get(_find_function(item, old_names, new_names) or "")) for item in removed)
     return [(item, other) for item, other in pairs if other is not None]
+
+
+def _find_function(item: SourceName, names: SourceNames, others: SourceNames) -> str | None:
+    """Return the function that a name calls, or None.
+
+    Its class is left out if only one function of each version has the name, because classes are renamed.
+    """
+    calling = [function for function, callback in names.callbacks.items() if callback == (item.kind, item.name)]
+    if not calling:
+        return None
+    short = _get_short_name(calling[-1])
+    is_unique = all(sum(_get_short_name(name) == short for name in side.callbacks) == 1 for side in (names, others))
+    return short if is_unique else calling[-1]
+
+
+def _get_short_name(function: str) -> str:
+    return re.split(r"\.|::", function)[-1]

@@ -141,6 +141,24 @@ class ChangedSources:
         others = self._get_unchanged(package)
         return not (others.has_name(item) if item.kind in COMMUNICATION_KINDS else others.has_text(item.name))
 
+    def list_owners(self, item: SourceName, path: str) -> dict[str, SourceNames]:
+        """Return the other sources of the package of a file that have a name, by path.
+
+        Of unchanged sources with a parameter, all that contain its name as a text are returned.
+        """
+        package = self.find_package(path)
+        if package is None:
+            return {}
+        key = get_comparison_name(item)
+        changed = {
+            other: names
+            for other, names in self._names.items()
+            if other != path
+            and self.find_package(other) == package
+            and any(get_comparison_name(known) == key for known in names.of_kind(item.kind))
+        }
+        return {**changed, **self._get_unchanged(package).list_owners(item)}
+
     def has_in_unchanged(self, item: SourceName, path: str) -> bool:
         """Return whether an unchanged source of the package has the same topic, service or action."""
         package = self.find_package(path) if item.kind in COMMUNICATION_KINDS else None

@@ -53,6 +53,7 @@ def find_code_change(
     reported: Sequence[Change],
     has_moved: Callable[[str, Code], bool],
     names: SourceNames,
+    renamed_classes: Mapping[str, str],
 ) -> CodeChange | None:
     """Return the changed functions that no other line names, or None.
 
@@ -61,11 +62,12 @@ def find_code_change(
     does if values in that code are reported.
 
     Args:
-        old: the code of the old version.
+        old: the code of the old version. Renamed classes have their new names.
         new: the code of the new version.
         reported: the other lines about the source.
         has_moved: whether a different source has a function with the same name and code.
         names: the names in the new version.
+        renamed_classes: the new names of the renamed classes, by their old names.
     """
     lines = _ReportedLines(reported)
     removed = [name for name in old.functions if name not in new.functions and not has_moved(name, old)]
@@ -82,10 +84,13 @@ def find_code_change(
         pair for pair in pairs if lines.has_unreported_change(old.functions[pair[0]], new.functions[pair[1]], pair[1])
     ]
     removed, added = ([name for name in items if not lines.mentions(name)] for items in (removed, added))
-    texts = _format_functions(changed, added, removed, renamed, names)
+    classes = {name: other for name, other in renamed_classes.items() if not lines.renames(name, other)}
+    texts = _format_functions(changed, added, removed, _list_renamed(classes, renamed), names)
     if texts:
         texts += _format_other_code(old, new, lines)
         new_names = [*(name for _, name in changed), *added, *(name for _, name in renamed)]
+        if not new_names and classes:
+            return CodeChange(joined(texts, "; "), _find_class_line(new, next(iter(classes.values()))), is_old=False)
         sides = (new, old) if new_names else (old, new)
         name = new_names[0] if new_names else removed[0]
         line = _find_first_line(sides[0].functions[name], sides[1].functions.get(name, ()))
@@ -134,7 +139,10 @@ def _format_functions(
     renamed: Sequence[tuple[str, str]],
     names: SourceNames,
 ) -> list[Phrase]:
-    """Return a text for each kind of change to functions. Changed and renamed functions are pairs of names."""
+    """Return a text for each kind of change to functions.
+
+    Changed functions, and renamed classes and functions, are pairs of names.
+    """
     texts = []
     if changed:
         texts.append(
@@ -145,10 +153,13 @@ def _format_functions(
     if removed:
         texts.append(phrase("code removed: {names}", names=_join_names(f"'{name}()'" for name in removed)))
     if renamed:
-        texts.append(
-            phrase("code renamed: {names}", names=_join_names(f"'{old}()' -> '{new}()'" for old, new in renamed))
-        )
+        texts.append(phrase("code renamed: {names}", names=_join_names(f"'{old}' -> '{new}'" for old, new in renamed)))
     return texts
+
+
+def _list_renamed(classes: Mapping[str, str], functions: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return the old and new names of classes, and of functions with parentheses."""
+    return [*classes.items(), *((f"{old}()", f"{new}()") for old, new in functions)]
 
 
 def _format_other_code(old: Code, new: Code, lines: _ReportedLines) -> list[Phrase]:
@@ -222,6 +233,13 @@ def _compare_imports(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | N
     return CodeChange(joined(texts, "; "), (added or removed)[0].first_line, is_old=not added) if texts else None
 
 
+def _find_class_line(code: Code, name: str) -> int:
+    """Return the first line of a class, or of its methods if another file defines it."""
+    functions = [parts for key, parts in code.functions.items() if key.startswith((f"{name}::", f"{name}."))]
+    lines = [parts[0].first_line for parts in (*functions, code.outside.get(name, ())) if parts]
+    return min(lines, default=1)
+
+
 def _find_first_line(parts: Sequence[Part], others: Sequence[Part]) -> int:
     """Return the line of the first statement that differs from the other version."""
     pairs = zip_longest(parts, others)
@@ -277,7 +295,7 @@ def _find_renamed(
 
 def _format_function(name: str, names: SourceNames) -> str:
     """Return the name of a function with the topic, service or action that calls it."""
-    callback = names.callbacks.get(_get_short_name(name))
+    callback = names.find_callback(name)
     if callback is None:
         return f"'{name}()'"
     kind, topic = callback

@@ -4,40 +4,42 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Problem, Subject, SubjectKind
 from linkwright.review.installed_paths import is_exported_header
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
+from linkwright.review.sources.compared_files import is_compared_source
 from linkwright.review.sources.conditions import compare_conditions
 from linkwright.review.sources.cpp_members import has_class
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import (
     compare_computed,
     compare_details,
+    find_required_reason,
     format_name,
     format_names,
     format_rename,
-    make_required_reason,
 )
 from linkwright.review.sources.enumerators import compare_enumerations
 from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
-    CPP_SUFFIXES,
     PYTHON_SUFFIX,
-    YES,
     DefaultName,
-    Detail,
     NameKind,
     SourceName,
     SourceNames,
 )
 from linkwright.review.sources.namespaces import compare_namespaces
-from linkwright.review.sources.package_imports import find_failing_imports, is_installed_module, is_installed_package
+from linkwright.review.sources.other_nodes import find_other_node_reason, has_only_in_other_nodes
+from linkwright.review.sources.package_imports import (
+    drop_defined_imports,
+    find_failing_imports,
+    is_installed_module,
+    is_installed_package,
+)
 from linkwright.review.sources.pairing import (
     compute_similarity,
     has_same_types,
@@ -49,15 +51,14 @@ from linkwright.review.sources.parameter_uses import ParameterUses
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.python_bases import select_methods
 from linkwright.review.sources.rates import compare_rates, compare_timers
-from linkwright.review.sources.reading import is_program_text
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
+from linkwright.review.sources.renamed_classes import find_renamed_classes
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.used_packages import compare_usage
-from linkwright.review.versions import TEST_FOLDERS, Versions
+from linkwright.review.versions import Versions
 
-_SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
 _MAX_FUNCTION_CHANGES = 3
 """The maximum number of functions with changed arguments in a file that have lines of their own."""
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
@@ -70,8 +71,8 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     Moving a name to another file is not a change. Names that are expressions are compared by their
     text.
     """
-    files = [file for file in changed_files if _is_source(versions, file)]
-    files += [file for file in find_constant_users(versions, files) if _is_source(versions, file)]
+    files = [file for file in changed_files if is_compared_source(versions, file)]
+    files += [file for file in find_constant_users(versions, files) if is_compared_source(versions, file)]
     sides = (
         ChangedSources(versions.old, [file.old_path for file in files]),
         ChangedSources(versions.new, [file.new_path for file in files]),
@@ -82,17 +83,6 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
         changes = list(pair.find_parse_failure()) if problems else list(pair.find_changes())
         if changes or problems:
             yield Subject(SubjectKind.SOURCE, file.path, file.old_path, file.new_path, changes, problems=problems)
-
-
-def _is_source(versions: Versions, file: ChangedFile) -> bool:
-    path = PurePosixPath(file.path)
-    if path.name in _SKIPPED_FILES or path.name.startswith(".") or file.is_submodule:
-        return False
-    if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
-        return False
-    version = versions.new if file.new_path else versions.old
-    is_test = path.name.startswith("test_") and (path.suffix not in CPP_SUFFIXES or "gtest" in version.text(file.path))
-    return not is_test and is_program_text(version.file(file.path))
 
 
 @dataclass(frozen=True)
@@ -166,19 +156,32 @@ class _SourcePair:
         path, old_path = self.file.path, self.file.old_path or self.file.path
         only_old = {name: item for name, item in before.items() if name not in after}
         only_new = {name: item for name, item in after.items() if name not in before}
-        removed = [item for item in only_old.values() if self.new.lacks(item, path)]
+        left = [
+            item for item in only_old.values() if has_only_in_other_nodes(item, self.new, self.old, (path, old_path))
+        ]
+        removed = [item for item in only_old.values() if item in left or self.new.lacks(item, path)]
         is_new_node = self.file.old_path is None and new_names.makes_node
         lacks = self.old.lacks
         if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
             lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it
         is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
-        added = [item for item in only_new.values() if is_sole_node or lacks(item, old_path)]
+        added = [
+            item
+            for item in only_new.values()
+            if is_sole_node
+            or lacks(item, old_path)
+            or has_only_in_other_nodes(item, self.old, self.new, (old_path, path))
+        ]
         removed = [item for item in removed if not new_names.has_default(item)]
         added = [item for item in added if not old_names.has_default(item)]
         removed, added = self._select_reported(kind, removed, added, old_names, new_names)
         # a different source of the package still has these names, or already had them
-        remaining_old = [item for item in only_old.values() if self.new.has_in_unchanged(item, path)]
-        existing_new = [item for item in only_new.values() if self.old.has_in_unchanged(item, old_path)]
+        remaining_old = [
+            item for item in only_old.values() if item not in removed and self.new.has_in_unchanged(item, path)
+        ]
+        existing_new = [
+            item for item in only_new.values() if item not in added and self.old.has_in_unchanged(item, old_path)
+        ]
         pairs = self._pair_names(kind, [*removed, *remaining_old], [*added, *existing_new])
         for old_item, new_item in pairs:
             is_harmless = old_item in remaining_old or is_same_frame(old_item, new_item)
@@ -230,7 +233,7 @@ class _SourcePair:
     ) -> tuple[list[SourceName], list[SourceName]]:
         """Return the removed and added names without those of classes that only one version has."""
         if kind is NameKind.IMPORT:
-            return _drop_defined_imports(removed, new_names), _drop_defined_imports(added, old_names)
+            return drop_defined_imports(removed, new_names), drop_defined_imports(added, old_names)
         is_python = self.file.path.endswith(PYTHON_SUFFIX)
         if kind not in (NameKind.FUNCTION, NameKind.MEMBER) or (is_python and kind is NameKind.MEMBER):
             return removed, added
@@ -255,6 +258,8 @@ class _SourcePair:
             return pair_similar(old_items, new_items, self._read_uses(old_items, new_items).differ)
         if kind is NameKind.FUNCTION:
             pairs = list(self._pair_by_code(old_items, new_items))
+        elif kind is NameKind.CLASS and not self.file.path.endswith(PYTHON_SUFFIX):
+            pairs = self._pair_renamed_classes(old_items, new_items)
         else:
             old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
             pairs = pair_by_callback(old_items, new_items, old_names, new_names)
@@ -284,6 +289,14 @@ class _SourcePair:
             matching = [other for other in added if other.details == item.details and new.get_body(other.name) == body]
             if body and len(matching) == 1 and sum(old.get_body(other.name) == body for other in removed) == 1:
                 yield item, matching[0]
+
+    def _pair_renamed_classes(
+        self, removed: Sequence[SourceName], added: Sequence[SourceName]
+    ) -> list[tuple[SourceName, SourceName]]:
+        """Return the removed and added classes that have the same methods or statements."""
+        old, new = self.old.codes.get(self.file.old_path or ""), self.new.codes.get(self.file.new_path or "")
+        renamed = {} if old is None or new is None or not (removed and added) else find_renamed_classes(old, new)
+        return [(item, other) for item in removed for other in added if renamed.get(item.name) == other.name]
 
     def _report_details(
         self, kind: NameKind, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]], old_names: SourceNames
@@ -347,7 +360,7 @@ class _SourcePair:
             return
         if added and (kind not in (NameKind.FUNCTION, NameKind.MEMBER) or self.file.old_path is not None):
             text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
-            reason = _find_required_reason(added) if self.file.old_path is not None else None
+            reason = find_required_reason(added) if self.file.old_path is not None else None
             yield self._make_change(text, added[0].span, self.new, reason)
         new_names = self.new.get_names(self.file.new_path)
         non_public = new_names.non_public | new_names.hidden_classes
@@ -362,12 +375,20 @@ class _SourcePair:
                 text, newly_hidden[0].span, self.old, self._find_removal_reason(newly_hidden, old_names)
             )
 
+    def _is_left_to_others(self, item: SourceName) -> bool:
+        """Return whether only other nodes of the package still have a name that they had before."""
+        paths = self.file.path, self.file.old_path or self.file.path
+        return has_only_in_other_nodes(item, self.new, self.old, paths)
+
     def _find_removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self._is_interface(path):
             return None
-        reason = find_removal_reason(items, names, path)
-        users = ((item, self.new.find_user(item, path)) for item in (items if reason is not None else ()))
+        lost = [item for item in items if not self._is_left_to_others(item)]
+        if not lost:
+            return find_other_node_reason(items)
+        reason = find_removal_reason(lost, names, self.new.get_names(self.file.new_path), path)
+        users = ((item, self.new.find_user(item, path)) for item in (lost if reason is not None else ()))
         return next((make_user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
 
     def _find_rename_reason(self, old_item: SourceName, new_item: SourceName, names: SourceNames) -> Phrase | None:
@@ -548,22 +569,3 @@ class _SourcePair:
         path = side.version.relative(span.file)
         location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
         return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
-
-
-def _find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
-    """Return the reason why added names are breaking, or None if none of them is required."""
-    names = [item.name for item in items if (Detail.REQUIRED, YES) in item.details]
-    if not names:
-        return None
-    if items[0].kind is NameKind.FUNCTION:
-        return phrase("classes that derive from the class and do not define it do not build")
-    return make_required_reason(items[0].kind, joined_first(names, MAX_NAMES))
-
-
-def _drop_defined_imports(items: Sequence[SourceName], names: SourceNames) -> list[SourceName]:
-    """Return the imported names that the other version does not define.
-
-    The result is empty if that version imports all names of a module.
-    """
-    defined = {item.name for kind in (NameKind.CLASS, NameKind.FUNCTION) for item in names.of_kind(kind)}
-    return [] if names.has_star_import else [item for item in items if item.name not in defined]

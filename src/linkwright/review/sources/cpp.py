@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 
@@ -33,6 +33,7 @@ from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKi
 from linkwright.review.sources.node_options import Remappings, read_remappings
 from linkwright.review.sources.parameter_defaults import find_cpp_parameter_default
 from linkwright.review.sources.parameter_helpers import find_helper_calls, is_parameter_name, read_elements
+from linkwright.review.sources.registrations import find_registrations
 from linkwright.review.sources.shared_constants import read_header_constants
 
 _COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
@@ -95,12 +96,11 @@ _NODE = re.compile(
 _INIT = re.compile(r"\bros::init\s*\(")
 _FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
 _RECONFIGURATION = re.compile(r"\bdynamic_reconfigure\s*::\s*Server\s*<\s*(?:\w+\s*::\s*)*(?P<name>\w+)\s*>")
-_POINTER = re.compile(r"&\s*(?:\w+::)+(\w+)")
+_POINTER = re.compile(r"&\s*(?:\w+::)*?((?:\w+::)\w+)(?!::|\w)")
 _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
 )
-_COMPONENT = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(")
 _NAMESPACE = re.compile(r"^[ \t]*(?:inline\s+)?namespace\s+(?P<name>[A-Za-z_]\w*(?:\s*::\s*\w+)*)\s*\{", re.MULTILINE)
 _ALIAS = re.compile(
     r"\btypedef\s+(?P<type>[^;{}]+[\s>*&])(?P<name>\w+)\s*;|\busing\s+(?P<using>\w+)\s*=\s*(?P<used>[^;{}]+);"
@@ -160,8 +160,9 @@ class _Reader:
             for index in (2, 3):
                 self._add_argument(NameKind.FRAME, match.end() - 1, index)
         self._read_members()
-        self._read_helper_calls()
-        for element in read_elements(text):
+        elements = list(read_elements(text))
+        self._read_helper_calls({element.start for element in elements})
+        for element in elements:
             end = element.start + len(element.name)
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for interface in find_hardware_interfaces(text):
@@ -172,9 +173,8 @@ class _Reader:
             self._read_rate(match)
         for match in _RECONFIGURATION.finditer(text):
             self._add(NameKind.RECONFIGURATION, match["name"], match.start("name"), match.end("name"))
-        for match in _COMPONENT.finditer(text):
-            for begin, end in list(_find_arguments(text, match.end() - 1))[:1]:
-                self._add(NameKind.PLUGIN, "".join(text[begin:end].split()), begin, end)
+        for item in find_registrations(text):
+            self._add(item.kind, item.name, item.start, item.end)
         self._read_classes()
         self._read_functions()
         self._names.conditional_lines += find_cpp_conditions(text)
@@ -225,6 +225,8 @@ class _Reader:
         for name, functions in overloads.items():
             types = _join_overloads(functions)
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
+            if len(functions) == 1 and functions[0].result:
+                details = (*details, (Detail.RESULT, functions[0].result))
             start = self._text.find(name.rpartition("::")[2], functions[0].start)
             self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
         for member in read_declared_members(self._text):
@@ -368,10 +370,13 @@ class _Reader:
 
         Calls with several functions among their arguments are left out.
         """
-        text = self._text[arguments[0][0] : arguments[-1][1]]
-        functions = set(_POINTER.findall(text))
+        functions = self._find_pointers(arguments)
         if len(functions) == 1:
             self._names.callbacks.setdefault(functions.pop(), (kind, name))
+
+    def _find_pointers(self, arguments: list[tuple[int, int]]) -> set[str]:
+        """Return the member functions whose addresses are among the arguments, qualified by their classes."""
+        return set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
 
     def _find_callback_type(self, kind: NameKind, arguments: list[tuple[int, int]]) -> str:
         """Return the type of the messages or requests that the only callback among the arguments takes.
@@ -380,7 +385,7 @@ class _Reader:
         """
         find_type = {NameKind.SUBSCRIPTION: find_message_type, NameKind.SERVICE: find_service_type}.get(kind)
         first = 2 if kind is NameKind.SUBSCRIPTION else 1
-        functions = set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
+        functions = {name.rpartition("::")[2] for name in self._find_pointers(arguments)}
         words = (self._text[begin:end].strip().lstrip("&") for begin, end in arguments[first : first + 1])
         functions = functions or {word for word in words if word.isidentifier()}
         if find_type is None or len(functions) != 1:
@@ -427,10 +432,10 @@ class _Reader:
                 if self._add_literal(member.kind, begin, end, member.type):
                     break
 
-    def _read_helper_calls(self) -> None:
+    def _read_helper_calls(self, element_starts: Collection[int]) -> None:
         """Add the parameters that functions of the repository read.
 
-        The name is one of the first two arguments.
+        The name is one of the first two arguments. Elements of SDF at the given offsets are left out.
         """
         for call in find_helper_calls(self._text):
             if call.function in _KINDS:
@@ -439,7 +444,8 @@ class _Reader:
             arguments = list(_find_arguments(self._text, call.start))
             for index, (begin, end) in enumerate(arguments[:2]):
                 literal = _TEXT.fullmatch(self._text[begin:end])
-                if literal is not None and is_parameter_name(literal["text"]):
+                is_element = literal is not None and begin + literal.start("text") in element_starts
+                if literal is not None and not is_element and is_parameter_name(literal["text"]):
                     values = (_LITERAL.fullmatch(self._text[slice(*argument)]) for argument in arguments[index + 1 :])
                     default = next((value["text"] or value[1] for value in values if value is not None), "")
                     self._add(kind, literal["text"], begin, end, default)
@@ -455,8 +461,9 @@ class _Reader:
             rate = f"{name}({texts[index]})", self._make_span(*arguments[index])
             self._names.rates.append(rate)
             if "imer" in name:
-                functions = set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
-                self._names.timers.append(Timer(functions.pop() if len(functions) == 1 else "", *rate))
+                functions = self._find_pointers(arguments)
+                name = functions.pop().rpartition("::")[2] if len(functions) == 1 else ""
+                self._names.timers.append(Timer(name, *rate))
                 self._add_callback(None, "", arguments)
 
     def _get_literal(self, begin: int, end: int) -> str | None:
@@ -543,7 +550,8 @@ def _find_constants(text: str) -> Mapping[str, str]:
     for match in _CONSTANT.finditer(text):
         name = match["name"] or match["macro"]
         assignment_count = len(re.findall(rf"\b{name}\b\s*(?:\[\s*\])?\s*=(?!=)", text))
-        is_output = re.search(rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b", text) is not None
+        output = rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b"
+        is_output = match["macro"] is None and re.search(output, text) is not None
         if assignment_count <= 1 and not is_output and name not in constants:
             constants[name] = match["text"] if match["macro"] is None else match["value"]
     return constants

@@ -6,6 +6,8 @@ import re
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
+from linkwright.review.sources.cpp_types import normalize_type
+
 _PREPROCESSOR = re.compile(r"^[ \t]*#(?:[^\n\\]|\\.|\\\n)*", re.MULTILINE)
 _SCOPE = re.compile(r"\b(?:class|struct)\s+(?:[A-Z]\w*_\w+\s+)?(?P<name>\w+)\s*(?:final\s*)?(?::(?!:).*)?$", re.DOTALL)
 _OPEN_SCOPE = re.compile(r"^(?:inline\s+)?namespace\b|^extern\s*\"")
@@ -15,6 +17,10 @@ _INITIALIZERS = re.compile(r"(?<=\))\s*(?:noexcept\s*)?:(?!:).*$", re.DOTALL)
 _QUALIFIERS = re.compile(
     r"\s*(?:const|volatile|noexcept(?:\([^)]*\))?|override|final|&&?|=\s*0|=\s*default|->[^()]*|\s)*", re.DOTALL
 )
+_TRAILING_RESULT = re.compile(r"->(?P<type>[^=;{]+)")
+_NOT_RESULT = re.compile(
+    r"\[\[.*?\]\]|\b(?:virtual|static|inline|explicit|constexpr|extern|friend)\b|\b[A-Z]\w*_(?:PUBLIC|EXPORT|API|LOCAL|DECL)\b"
+)
 _PARAMETER = re.compile(r"(?P<type>.*[\s*&>])(?P<name>\w+)\s*(?P<array>\[\w*\])?", re.DOTALL)
 _MEMBER = re.compile(r"(?P<type>[\w:][^()=]*[\s*&>])(?P<name>\w+)\s*(?:\[[^\]]*\]\s*)*", re.DOTALL)
 _NOT_MEMBERS = frozenset(
@@ -22,6 +28,9 @@ _NOT_MEMBERS = frozenset(
 )
 """The first words of declarations that do not declare data members."""
 _TYPE_KEYWORDS = frozenset({"const", "unsigned", "signed", "long", "struct", "typename", "short", "enum", "class"})
+_QUALIFYING_WORDS = frozenset({"const", "struct", "typename", "enum", "class"})
+_NOT_NAMES = _TYPE_KEYWORDS | {"int", "char", "double", "float", "bool"}
+"""The words at the end of a parameter that are not its name."""
 _KEYWORDS = frozenset({"if", "for", "while", "switch", "return", "sizeof", "decltype", "alignas", "static_assert"})
 PUBLIC = frozenset({"public"})
 PROTECTED = frozenset({"protected"})
@@ -43,6 +52,7 @@ class DeclaredFunction(NamedTuple):
         parameters: the types of the parameters. A parameter with a default ends with ``= ...``.
         is_pure: whether derived classes must define it.
         is_override: whether it overrides a function of a base class, which determines its callers.
+        result: the type that it returns; empty if it is unknown, as of constructors.
         start: the offset of the declaration.
     """
 
@@ -50,6 +60,7 @@ class DeclaredFunction(NamedTuple):
     parameters: tuple[str, ...]
     is_pure: bool
     is_override: bool
+    result: str
     start: int
 
 
@@ -186,8 +197,20 @@ def _read_function(chunk: str, classes: list[str], start: int) -> Iterator[Decla
         parameters = tuple(_parse_parameter_type(text) for text in _split_parameters(declaration[match.end() : end]))
         name = "::".join([*classes, "".join(match["name"].split())])
         is_override = re.search(r"\b(?:override|final)\b", suffix) is not None
-        yield DeclaredFunction(name, parameters, re.search(r"=\s*0\s*$", suffix) is not None, is_override, start)
+        is_pure = re.search(r"=\s*0\s*$", suffix) is not None
+        result = _read_result(declaration[: match.start()], suffix)
+        yield DeclaredFunction(name, parameters, is_pure, is_override, result, start)
         return
+
+
+def _read_result(prefix: str, suffix: str) -> str:
+    """Return the type of the result of a function, from the texts before its name and behind its parameters."""
+    trailing = _TRAILING_RESULT.search(suffix)
+    text = trailing["type"] if trailing is not None else _NOT_RESULT.sub("", prefix)
+    is_known = re.fullmatch(r"[\w:<>,*&\s]+", text) is not None and not re.search(
+        r"\b(?:auto|template|operator)\b", text
+    )
+    return normalize_type(text) if is_known else ""
 
 
 def _parse_parameter_type(text: str) -> str:
@@ -195,9 +218,9 @@ def _parse_parameter_type(text: str) -> str:
     value, _, default = text.partition("=")
     match = _PARAMETER.fullmatch(value.strip())
     type_name = value
-    if match is not None and set(match["type"].split()) - _TYPE_KEYWORDS and match["name"] not in _TYPE_KEYWORDS:
+    if match is not None and set(match["type"].split()) - _QUALIFYING_WORDS and match["name"] not in _NOT_NAMES:
         type_name = match["type"] + (match["array"] or "")
-    type_name = re.sub(r"\s*([*&<>,:])\s*", r"\1", " ".join(type_name.split()))
+    type_name = normalize_type(type_name)
     return f"{type_name} = ..." if default else type_name
 
 

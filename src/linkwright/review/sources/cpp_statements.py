@@ -168,7 +168,7 @@ class _Reader:
             words = {token.text for token in header}
             if scope is not None:
                 name = "::".join(part for part in (block.name, scope) if part)
-            elif not words & _CONTROLS and "=" not in words:
+            elif not words & _CONTROLS and not _has_assignment(header):
                 name = "::".join(part for part in (block.name, _find_function_name(header)) if part)
                 is_function = True
                 self.functions.add(name)
@@ -187,6 +187,22 @@ class _Reader:
     def _end_statement(self) -> None:
         self.add(self._blocks[-1].name, self._pending)
         self._pending = []
+
+
+def _has_assignment(header: Sequence[Token]) -> bool:
+    """Return whether a header contains ``=`` outside of parentheses and template parameters.
+
+    Inside of them it is the default of a parameter.
+    """
+    pairs = match_brackets(header)
+    index, depth = 0, 0
+    while index < len(header):
+        text = header[index].text
+        depth = max(0, depth + (text == "<") - (text == ">"))
+        if text == "=" and depth == 0 and (not index or header[index - 1].text != "operator"):
+            return True
+        index = pairs.get(index, index) + 1 if text == "(" else index + 1
+    return False
 
 
 def _find_macro_end(header: Sequence[Token]) -> int:

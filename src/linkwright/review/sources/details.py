@@ -8,9 +8,12 @@ from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.sources.names import NO, Detail, NameKind, SourceName
+from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_same_type
+from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
 from linkwright.review.sources.signatures import parse_signature
 
+_KNOWN_IN_BOTH = (Detail.QOS, Detail.ARGUMENTS, Detail.RESULT)
+"""The properties that are compared only if both versions tell them."""
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _BEST_EFFORT = re.compile(r"best_?effort|sensor_?data", re.IGNORECASE)
 _TRANSIENT = re.compile(r"transient_?local|latching", re.IGNORECASE)
@@ -74,7 +77,9 @@ def compare_details(
     old_details, new_details = dict(old.details), dict(new.details)
     for detail in Detail:
         before, after = old_details.get(detail), new_details.get(detail)
-        if before == after or (detail in (Detail.QOS, Detail.ARGUMENTS) and None in (before, after)):
+        if before == after or (detail in _KNOWN_IN_BOTH and None in (before, after)):
+            continue
+        if detail is Detail.RESULT and is_same_type(before or "", after or ""):
             continue
         missing = NO if detail in (Detail.LATCH, Detail.REQUIRED) else "-"
         text = phrase(
@@ -90,11 +95,12 @@ def compare_details(
 
 def _compare_types(old: SourceName, new: SourceName, *, is_computed: bool) -> Iterator[tuple[Phrase, Phrase | None]]:
     if new.kind is NameKind.FUNCTION:
-        reason = phrase("code that calls '{name}' with the old arguments does not build", name=new.name)
-        yield (
-            format_overload_change(new.name, old.type, new.type),
-            None if accepts_all(old.type, new.type) else reason,
-        )
+        reason: Phrase | None = phrase("code that calls '{name}' with the old arguments does not build", name=new.name)
+        if (Detail.REQUIRED, YES) in old.details:
+            reason = phrase("classes that derive from the class and do not define it do not build")
+        elif accepts_all(old.type, new.type):
+            reason = None
+        yield format_overload_change(new.name, old.type, new.type), reason
     elif new.kind in (NameKind.PARAMETER, NameKind.OPTION, NameKind.ELEMENT):
         text = phrase(
             "{kind} '{name}': default {old} -> {new}",
@@ -147,15 +153,23 @@ def accepts_all(old: str, new: str) -> bool:
     return all(any(_accepts(_split_overloads(text), overload) for overload in overloads) for text in old.split("; "))
 
 
+def has_same_parameters(old: str, new: str) -> bool:
+    """Return whether the overloads of a function have the same types, though one version may leave out namespaces."""
+    overloads = [[_split_overloads(text) for text in types.split("; ")] for types in (old, new)]
+    return [len(overload) for overload in overloads[0]] == [len(overload) for overload in overloads[1]] and all(
+        is_same_type(*types) for pair in zip(*overloads, strict=True) for types in zip(*pair, strict=True)
+    )
+
+
 def _split_overloads(text: str) -> list[str]:
     return re.split(r", (?![^<]*>)", text) if text else []
 
 
 def _accepts(old: list[str], new: list[str]) -> bool:
     required = [parameter for parameter in old if not parameter.endswith(_DEFAULT)]
-    types = [parameter.removesuffix(_DEFAULT) for parameter in old]
-    has_equal_types = [parameter.removesuffix(_DEFAULT) for parameter in new[: len(types)]] == types
-    return has_equal_types and all(parameter.endswith(_DEFAULT) for parameter in new[len(required) :])
+    types = [[parameter.removesuffix(_DEFAULT) for parameter in parameters] for parameters in (old, new)]
+    accepts_types = len(new) >= len(old) and all(map(accepts_type, *types))
+    return accepts_types and all(parameter.endswith(_DEFAULT) for parameter in new[len(required) :])
 
 
 def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, after: str | None) -> Phrase | None:
@@ -163,6 +177,9 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
     old, new = before or "", after or ""
     if detail is Detail.QOS:
         return _find_qos_reason(name, old, new)
+    if detail is Detail.RESULT:
+        reason = phrase("code that uses the result as '{type}' does not build", type=old)
+        return None if can_use_result(old, new) else reason
     if detail is Detail.VALUE_TYPE and name.kind is NameKind.PARAMETER and before and after:
         return phrase("values of the old type are rejected")
     if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:
@@ -185,6 +202,16 @@ def make_required_reason(kind: NameKind, names: Phrase | str) -> Phrase:
     if kind is NameKind.PARAMETER:
         return phrase("the program fails where '{name}' is not set", name=names)
     return phrase("callers that do not pass '{name}' get an error", name=names)
+
+
+def find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
+    """Return the reason why added names are breaking, or None if none of them is required."""
+    names = [item.name for item in items if (Detail.REQUIRED, YES) in item.details]
+    if not names:
+        return None
+    if items[0].kind is NameKind.FUNCTION:
+        return phrase("classes that derive from the class and do not define it do not build")
+    return make_required_reason(items[0].kind, joined_first(names, MAX_NAMES))
 
 
 def _find_qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:

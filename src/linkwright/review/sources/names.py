@@ -44,6 +44,10 @@ class NameKind(Enum):
     CLAIMED_INTERFACE = (phrase("claimed interface"), phrase("claimed interfaces"))
     OPTION = (phrase("command-line option"), phrase("command-line options"))
     PLUGIN = (phrase("exported class"), phrase("exported classes"))
+    PLUGINLIB_CLASS = (phrase("class for pluginlib"), phrase("classes for pluginlib"))
+    SIMULATION_PLUGIN = (phrase("plugin of Gazebo"), phrase("plugins of Gazebo"))
+    LIBRARY_PLUGIN = (phrase("plugin of Gazebo Classic"), phrase("plugins of Gazebo Classic"))
+    TREE_NODE = (phrase("node of behavior trees"), phrase("nodes of behavior trees"))
     CLASS = (phrase("class"), phrase("classes"))
     FUNCTION = (phrase("function"), phrase("functions"))
     MEMBER = (phrase("public member"), phrase("public members"))
@@ -71,6 +75,7 @@ class Detail(Enum):
     LEVEL = phrase("level")
     REQUIRED = phrase("required")
     ARGUMENTS = phrase("arguments")
+    RESULT = phrase("result")
     CONDITION = phrase("condition")
 
     @property
@@ -173,8 +178,8 @@ class SourceNames:
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
         is_error_certain: whether it is a syntax error in all versions of Python.
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
-        callbacks: the topic, service or action that calls a function, by the name of the function; its kind is None for
-            a timer.
+        callbacks: the topic, service or action that calls a function, by the name of the function, qualified by its
+            class; its kind is None for a timer.
         inherited_names: the names that each class of a Python source inherits. Classes with unknown base classes are
             left out.
         bound_names: the names that a Python 3 source defines or imports.
@@ -233,6 +238,16 @@ class SourceNames:
     def resolve_aliases(self, types: str) -> str:
         """Return a text with types in which the names that the header gives to types are replaced by these."""
         return re.sub(r"\w+", lambda word: self.aliases.get(word[0], word[0]), types)
+
+    def find_callback(self, function: str) -> tuple[NameKind | None, str] | None:
+        """Return the topic, service or action that calls a function, or None.
+
+        Args:
+            function: the name of the function, qualified by its namespaces and classes.
+        """
+        separator = "::" if "::" in function else "."
+        parts = function.split(separator)
+        return self.callbacks.get(function) or self.callbacks.get(separator.join(parts[-2:]))
 
     def add_default(self, kind: NameKind, expression: str, parameter: str, default: str) -> None:
         """Add the name that an expression has by default, because it reads a parameter."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.packages.manifest import MANIFEST
@@ -83,3 +83,12 @@ def find_failing_imports(version: Version, package: str, path: str, names: Sourc
         is_sibling = (folder / f"{name}.py").is_file() or (folder / name / PACKAGE_FILE).is_file()
         if is_sibling and name not in installed | sys.stdlib_module_names | {folder.name}:
             yield index
+
+
+def drop_defined_imports(items: Sequence[SourceName], names: SourceNames) -> list[SourceName]:
+    """Return the imported names that the other version does not define.
+
+    The result is empty if that version imports all names of a module.
+    """
+    defined = {item.name for kind in (NameKind.CLASS, NameKind.FUNCTION) for item in names.of_kind(kind)}
+    return [] if names.has_star_import else [item for item in items if item.name not in defined]

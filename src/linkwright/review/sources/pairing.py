@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 
+from linkwright.review.sources.details import has_same_parameters
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 
 _MIN_SIMILARITY = 0.6
@@ -88,7 +89,8 @@ def compute_similarity(old: SourceName, new: SourceName) -> float:
 def has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, new_names: SourceNames) -> bool:
     """Return whether a function or member only has other names for the same types."""
     is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
-    return is_member and old_names.resolve_aliases(old.type) == new_names.resolve_aliases(new.type)
+    types = old_names.resolve_aliases(old.type), new_names.resolve_aliases(new.type)
+    return is_member and has_same_parameters(*types)
 
 
 def is_same_frame(old: SourceName, new: SourceName) -> bool:

@@ -23,6 +23,7 @@ from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_defaults import find_parameter_default
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python_bases import find_inherited_names
+from linkwright.review.sources.python_callbacks import CallbackFunctions
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
 from linkwright.review.sources.required_parameters import is_required_parameter
 from linkwright.review.sources.shared_constants import read_imported_constants
@@ -231,6 +232,7 @@ class _Reader:
         self._python = python
         self._names = names
         self._types = PythonTypes(python.tree)
+        self._functions = CallbackFunctions(python.tree)
         self._frame_arguments = find_frame_arguments(python.tree, _FRAME_FIELDS)
 
     def read(self) -> None:
@@ -274,7 +276,7 @@ class _Reader:
                 kind = NameKind.WEB_EVENT
             if kind is not None:
                 self._add(kind, decorator.args[0], None)
-                self._names.callbacks[function.name] = (kind, text)
+                self._names.callbacks[self._functions.qualify(function)] = (kind, text)
 
     def _read_methods(self, definition: ast.ClassDef) -> None:
         """Add the public methods of a class whose base classes are known.
@@ -433,8 +435,7 @@ class _Reader:
         """Add the function that messages, requests, goals or a timer call, if both names are known."""
         text = self._python.text(name)
         is_known = text is not None or kind is None
-        if isinstance(callback, (ast.Name, ast.Attribute)) and is_known:
-            function = callback.id if isinstance(callback, ast.Name) else callback.attr
+        for function in self._functions.find(callback) if callback is not None and is_known else ():
             self._names.callbacks.setdefault(function, (kind, text or ""))
 
     def _read_option(self, call: ast.Call) -> None:

@@ -10,9 +10,9 @@ from linkwright.review.breaking import frame_reason, name_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 
-_CLIENT_KINDS = (
+_HARMLESS_KINDS = (
     *(NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME),
-    NameKind.CLAIMED_INTERFACE,
+    *(NameKind.CLAIMED_INTERFACE, NameKind.PLUGINLIB_CLASS),
 )
 _HEADER_FOLDER = "include"
 
@@ -35,16 +35,19 @@ def is_used_by_others(kind: NameKind, path: str, names: SourceNames) -> bool:
     return pure_path.suffix in CPP_SUFFIXES and _HEADER_FOLDER in pure_path.parts
 
 
-def find_removal_reason(items: Sequence[SourceName], names: SourceNames, path: str) -> Phrase | None:
+def find_removal_reason(
+    items: Sequence[SourceName], names: SourceNames, new_names: SourceNames, path: str
+) -> Phrase | None:
     """Return the reason why removing names is breaking, or None.
 
     Args:
         items: the names, all of the same kind.
         names: all names in the old source.
+        new_names: all names in the new source.
         path: the path of the old source.
     """
     kind = items[0].kind
-    if kind in _CLIENT_KINDS:
+    if kind in _HARMLESS_KINDS:
         return None
     text = joined_first([item.name for item in items], MAX_NAMES)
     if kind is NameKind.PARAMETER:
@@ -59,6 +62,13 @@ def find_removal_reason(items: Sequence[SourceName], names: SourceNames, path: s
         return phrase("callers that pass '{name}' get an error", name=text)
     if kind is NameKind.PLUGIN:
         return phrase("programs and configurations that load the class do not find it")
+    if kind is NameKind.SIMULATION_PLUGIN:
+        return phrase("worlds and descriptions that load '{name}' do not find it", name=text)
+    if kind is NameKind.LIBRARY_PLUGIN:
+        is_left = any(True for _ in new_names.of_kind(kind))
+        return None if is_left else phrase("worlds and descriptions that load the library get no plugin")
+    if kind is NameKind.TREE_NODE:
+        return phrase("behavior trees that use '{name}' cannot be loaded", name=text)
     if kind is NameKind.IMPORT:
         return phrase("programs that import '{name}' do not find it", name=text)
     if kind in (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER):

@@ -13,6 +13,7 @@ from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_added_code, find_code_change
 from linkwright.review.sources.names import DYNAMIC_SUFFIX
+from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 
 
 def compare_statements(
@@ -57,12 +58,14 @@ def _compare_code(
     before, after = old.codes.get(old_path), new.codes.get(new_path)
     if not before or not after:
         return
+    renamed = drop_reported(find_renamed_classes(before, after), [str(change.sentence) for change in reported])
+    before = rename_classes(before, renamed)
 
     def has_moved(name: str, code: Code) -> bool:
         side, path = (new, new_path) if code is before else (old, old_path)
         return side.has_function(name, code, path)
 
-    change = find_code_change(before, after, reported, has_moved, new.get_names(new_path))
+    change = find_code_change(before, after, reported, has_moved, new.get_names(new_path), renamed)
     if change is not None:
         location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
         yield Change(change.text, location=location)

@@ -59,6 +59,15 @@ class UnchangedSources:
         paths = self._find_paths(item.name)
         return any(item.name == other.name for path in paths for other in self._read_names(path, item.kind))
 
+    def list_owners(self, item: SourceName) -> dict[str, SourceNames]:
+        """Return the sources that have a name of the same kind, or contain the text of a parameter, by path."""
+        owners = {}
+        for path in self._find_paths(item.name):
+            names = list(self._read_names(path, item.kind))
+            if item.kind is NameKind.PARAMETER or any(item.name == other.name for other in names):
+                owners[path] = self._names[path]
+        return owners
+
     def find_user(self, item: SourceName) -> str | None:
         """Return the path of a source that uses the other end of a name, or None."""
         kind = _COUNTERPARTS[item.kind]

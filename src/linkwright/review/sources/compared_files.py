@@ -1,0 +1,25 @@
+"""Decide which changed files are sources whose names are compared."""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+
+from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.review.sources.names import CPP_SUFFIXES
+from linkwright.review.sources.reading import is_program_text
+from linkwright.review.versions import TEST_FOLDERS, Versions
+
+_SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
+
+
+def is_compared_source(versions: Versions, file: ChangedFile) -> bool:
+    """Return whether a changed file is a program or header, and neither a test nor a launch file."""
+    path = PurePosixPath(file.path)
+    if path.name in _SKIPPED_FILES or path.name.startswith(".") or file.is_submodule:
+        return False
+    if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
+        return False
+    version = versions.new if file.new_path else versions.old
+    is_test = path.name.startswith("test_") and (path.suffix not in CPP_SUFFIXES or "gtest" in version.text(file.path))
+    return not is_test and is_program_text(version.file(file.path))

@@ -1,0 +1,62 @@
+"""Find names that a node loses or gets although another node of its package has the same names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.changes import MAX_NAMES
+from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources
+from linkwright.review.sources.names import NameKind, SourceName
+
+_CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
+_KINDS = (*COMMUNICATION_KINDS, NameKind.PARAMETER)
+
+
+def has_only_in_other_nodes(
+    item: SourceName, side: ChangedSources, other: ChangedSources, paths: Sequence[str]
+) -> bool:
+    """Return whether the package has a name in both versions only in sources of other nodes.
+
+    Such a name did not move. Sources that one of the files includes or imports, or that include it, are of the same
+    node.
+
+    Args:
+        item: a name that only the other version of a source has.
+        side: the sources of the version that lacks the name.
+        other: the sources of the version that has the name.
+        paths: the paths of the source in `side` and in `other`.
+    """
+    if item.kind not in _KINDS or not all(
+        sources.get_names(path).makes_node for sources, path in zip((side, other), paths, strict=True)
+    ):
+        return False
+    owners = side.list_owners(item, paths[0])
+    return (
+        bool(owners)
+        and all(names.makes_node and not _are_connected(side, paths[0], owner) for owner, names in owners.items())
+        and owners.keys() <= other.list_owners(item, paths[1]).keys()
+    )
+
+
+def find_other_node_reason(items: Sequence[SourceName]) -> Phrase | None:
+    """Return the reason why a node that loses names is breaking, though other nodes have them; None for clients."""
+    if items[0].kind in _CLIENT_KINDS:
+        return None
+    names = joined_first([item.name for item in items], MAX_NAMES)
+    if items[0].kind is NameKind.PARAMETER:
+        return phrase("values of '{name}' for this node have no effect", name=names)
+    return phrase("this node no longer has '{name}'; only another node of the package still has it", name=names)
+
+
+def _are_connected(sources: ChangedSources, path: str, other: str) -> bool:
+    """Return whether one of two files includes or imports the other one or its header."""
+    stems = PurePosixPath(path).stem, PurePosixPath(other).stem
+    return stems[0] == stems[1] or any(
+        re.search(
+            rf"^\s*(?:#\s*include|import|from)\b.*\b{re.escape(stem)}\b", sources.version.text(file), re.MULTILINE
+        )
+        for stem, file in zip(stems, (other, path), strict=True)
+    )

@@ -1,0 +1,99 @@
+"""Names that a node loses or gets although another node of its package has the same names."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+STOP = '    stop_ = create_subscription<String>("stop", 1, std::bind(&Drive::onStop, this, _1));\n'
+RATE = '    declare_parameter("rate", 10.0);\n'
+CLIENT = '    reset_ = create_client<Empty>("reset");\n'
+NODE = f"""class Drive : public rclcpp::Node {{
+public:
+  Drive() : Node("drive") {{
+{STOP}{RATE}{CLIENT}  }}
+}};
+"""
+OTHER = NODE.replace("Drive", "Arm").replace('"drive"', '"arm"')
+PYTHON_NODE = """class Drive(Node):
+    def __init__(self):
+        super().__init__("drive")
+        self.create_publisher(String, "state", 10)
+        self.speed = 1
+"""
+STATE = '        self.create_publisher(String, "state", 10)\n'
+
+
+@pytest.fixture
+def review_node(repository, compare):
+    """Review other texts of sources, and return the sentences and the breaking ones with their reasons."""
+
+    def run(old, new):
+        repository.commit({**MANIFEST, **old})
+        repository.write(new)
+        result = compare(repository)
+        reasons = [f"{change.sentence}: {change.reason}" for _, change in result.breaking_changes]
+        assert len(reasons) == len(breaking(result))
+        return [sentence for subject in result.subjects for sentence in sentences(subject)], reasons
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("lost", "reasons"),
+    [
+        (
+            STOP,
+            [
+                (
+                    "subscriptions removed: 'stop' (String): "
+                    "this node no longer has 'stop'; only another node of the package still has it"
+                )
+            ],
+        ),
+        (RATE, ["parameters removed: 'rate' (10.0): values of 'rate' for this node have no effect"]),
+        (CLIENT, []),
+    ],
+)
+def test_name_that_one_of_two_nodes_loses_is_reported(review_node, lost, reasons):
+    lines, broken = review_node(
+        {"arm/src/drive.cpp": NODE, "arm/src/arm.cpp": OTHER}, {"arm/src/drive.cpp": NODE.replace(lost, "")}
+    )
+    assert len(lines) == 1
+    assert broken == reasons
+
+
+def test_publisher_that_one_of_two_python_nodes_gets_is_reported(review_node):
+    lines, broken = review_node(
+        {"arm/arm/drive.py": PYTHON_NODE.replace(STATE, ""), "arm/arm/arm.py": PYTHON_NODE},
+        {"arm/arm/drive.py": PYTHON_NODE},
+    )
+    assert lines == ["publishers added: 'state' (String)"]
+    assert not broken
+
+
+def test_name_that_moves_to_another_node_is_no_change(review_node):
+    lines, broken = review_node(
+        {"arm/src/drive.cpp": NODE, "arm/src/arm.cpp": OTHER.replace(RATE, "")},
+        {"arm/src/drive.cpp": NODE.replace(RATE, ""), "arm/src/arm.cpp": OTHER},
+    )
+    assert not broken
+    assert not any(line.startswith("parameters") for line in lines)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        "void declare(rclcpp::Node & node) {\n" + RATE.replace("declare", "node.declare") + "}\n",  # no node of its own
+        '#include "drive.hpp"\n' + OTHER,  # may be derived from the node
+    ],
+)
+def test_name_in_a_source_of_the_same_node_is_not_lost(review_node, other):
+    lines, broken = review_node(
+        {"arm/src/drive.cpp": NODE, "arm/src/helper.cpp": other}, {"arm/src/drive.cpp": NODE.replace(RATE, "")}
+    )
+    assert not broken
+    assert not any(line.startswith("parameters") for line in lines)
