@@ -96,6 +96,7 @@ OTHER_FILES = {
         (AMENT, "ament_export_libraries(core)", "", ["exported targets removed: 'core'"], True),
         (AMENT, "dependencies(rclcpp std_msgs)", "dependencies(rclcpp)",
          ["exported dependencies removed: 'std_msgs'"], True),
+        (AMENT, "dependencies(rclcpp std_msgs)", "dependencies(rclcpp std_msgs ${MORE})", [], False),
         (CATKIN, "State.msg Load.msg", "State.msg", ["built interfaces removed: 'msg/Load.msg'"], True),
         (CATKIN, "FILES Home.srv", "FILES", ["built interfaces removed: 'services/Home.srv'"], True),
         (CATKIN, "options(cfg/Arm.cfg)", "options()",

@@ -348,8 +348,9 @@ def _read_exports(commands: Sequence[Command]) -> Iterator[Fact]:
         if command.name == "pluginlib_export_plugin_description_file" and len(command.arguments) > 1:
             base, description = command.arguments[:2]
             yield _make_fact(FactKind.PLUGIN_DESCRIPTION, description, base.text)
-        elif command.name == "ament_export_dependencies":
-            yield from (_make_fact(FactKind.EXPORTED_DEPENDENCY, item) for item in command.arguments)
+        elif command.name == "ament_export_dependencies":  # a variable that nothing sets is empty
+            names = (item for item in command.arguments if not is_open(item.text))
+            yield from (_make_fact(FactKind.EXPORTED_DEPENDENCY, item) for item in names)
         elif command.name == "ament_export_libraries":
             yield from (_make_fact(FactKind.EXPORTED_TARGET, item) for item in command.arguments)
         elif command.name == "ament_export_include_directories":

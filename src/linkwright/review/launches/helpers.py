@@ -16,6 +16,7 @@ from linkwright.review.launches.names import LaunchPythonFile
 _MAX_IMPORT_DEPTH = 5
 """The maximum number of files through which a name is imported."""
 _MAX_BYTES = 1 << 20
+_ENTRY_FUNCTION = "generate_launch_description"
 _MAX_PASSES = 5000
 """The maximum number of loop passes in a launch file that are read one by one."""
 _LAUNCH_MODULE = re.compile(r"launch(_\w+)?(\.|$)")
@@ -47,6 +48,25 @@ def imports_actions(path: Path) -> bool:
     return any(not node.level and _LAUNCH_MODULE.match(node.module or "") for node in imports)
 
 
+def find_program_guard(tree: ast.Module) -> ast.If | None:
+    """Return the ``if __name__ == "__main__"`` statement of a launch file; None if there is none.
+
+    ``ros2 launch`` calls ``generate_launch_description`` and does not run that statement. In a file without this
+    function, the statement may start the actions itself.
+    """
+    if not any(isinstance(node, ast.FunctionDef) and node.name == _ENTRY_FUNCTION for node in tree.body):
+        return None
+    statements = (node for node in tree.body if isinstance(node, ast.If))
+    return next((node for node in statements if _is_program_test(node.test)), None)
+
+
+def _is_program_test(test: ast.expr) -> bool:
+    """Return whether a test is true only for a file that is run as a program."""
+    return isinstance(test, ast.Compare) and any(
+        isinstance(node, ast.Name) and node.id == "__name__" for node in (test.left, *test.comparators)
+    )
+
+
 class HelperFunctions:
     """The functions of a repository that launch files call.
 
@@ -76,7 +96,10 @@ class HelperFunctions:
         """Return the names of a file's functions that make actions and are called in it."""
         names = self._names_by_file.get(id(python))
         if names is None:
-            called = {called_name(node) for node in ast.walk(python.tree) if isinstance(node, ast.Call)}
+            skipped = None if (guard := find_program_guard(python.tree)) is None else id(guard)
+            statements = [statement for statement in python.tree.body if id(statement) != skipped]
+            nodes = (node for statement in statements for node in ast.walk(statement))
+            called = {called_name(node) for node in nodes if isinstance(node, ast.Call)}
             functions = (node for node in _index_definitions(python).values() if isinstance(node, ast.FunctionDef))
             names = frozenset(node.name for node in functions if node.name in called and self._makes_actions(node))
             self._names_by_file[id(python)] = names
