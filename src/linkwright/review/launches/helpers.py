@@ -16,6 +16,9 @@ from linkwright.review.launches.names import LaunchPythonFile
 _MAX_IMPORT_DEPTH = 5
 """The maximum number of files through which a name is imported."""
 _MAX_BYTES = 1 << 20
+_NODE_MODULES = ("rclpy", "rclpy.node", "rclpy.lifecycle")
+_NODE_CALLS = frozenset({"rclpy.init", "rclpy.create_node", "rospy.init_node"})
+"""The calls of programs that are a node."""
 _ENTRY_FUNCTION = "generate_launch_description"
 _MAX_PASSES = 5000
 """The maximum number of loop passes in a launch file that are read one by one."""
@@ -41,11 +44,29 @@ class Function:
 def imports_actions(path: Path) -> bool:
     """Return whether a Python file imports the actions of launch files.
 
-    Such a file can make actions for other files.
+    Such a file can make actions for other files. A program with a node of its own does not.
     """
     file = _try_parse(path)
+    if file is not None and _is_node_program(file.tree):
+        return False
     imports = (node for node in ast.walk(file.tree) if isinstance(node, ast.ImportFrom)) if file else ()
     return any(not node.level and _LAUNCH_MODULE.match(node.module or "") for node in imports)
+
+
+def _is_node_program(tree: ast.Module) -> bool:
+    """Return whether a file makes a node of its own and no launch description.
+
+    Such programs start launch files themselves.
+    """
+    if any(isinstance(node, ast.FunctionDef) and node.name == _ENTRY_FUNCTION for node in tree.body):
+        return False
+    nodes = list(ast.walk(tree))
+    imports = (node for node in nodes if isinstance(node, ast.ImportFrom) and node.module in _NODE_MODULES)
+    classes = {alias.asname or alias.name for node in imports for alias in node.names}
+    bases = {ast.unparse(base) for node in nodes if isinstance(node, ast.ClassDef) for base in node.bases}
+    calls = {called_name(node) for node in nodes if isinstance(node, ast.Call)}
+    made = {*classes, "rclpy.node.Node"} & {*bases, *calls}
+    return bool(made) or not calls.isdisjoint(_NODE_CALLS)
 
 
 def find_program_guard(tree: ast.Module) -> ast.If | None:
