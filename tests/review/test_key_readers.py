@@ -128,3 +128,11 @@ def test_renamed_node_of_a_file_is_breaking_unless_the_file_follows_its_source(
     repository.write({PATH: new_text})
     found = breaking(compare(repository))
     assert found == ([f"{old_name}.ros__parameters.rate 10.0 removed"] if is_breaking else [])
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("arm", False), ("leg", True)])
+def test_renamed_node_with_several_parameters_follows_its_source(repository, compare, name, is_breaking):
+    source = f'auto node = std::make_shared<rclcpp::Node>("{name}");\n'
+    repository.commit({"a/package.xml": FILES["a/package.xml"], PATH: NODE + LIMITS, "a/src/arm.cpp": source})
+    repository.write({PATH: (NODE + LIMITS).replace("arm_node", "arm")})
+    assert breaking(compare(repository)) == (["arm_node renamed to arm"] if is_breaking else [])
