@@ -37,6 +37,7 @@ if(BUILD_TESTING)
 endif()
 ament_package()
 """
+GENERATED = "generate_parameter_library(gains src/gains.yaml)\n"
 CATKIN = """cmake_minimum_required(VERSION 2.8.3)
 project(arm)
 find_package(catkin REQUIRED roscpp tf)
@@ -96,6 +97,9 @@ OTHER_FILES = {
         (AMENT, "ament_export_libraries(core)", "", ["exported targets removed: 'core'"], True),
         (AMENT, "dependencies(rclcpp std_msgs)", "dependencies(rclcpp)",
          ["exported dependencies removed: 'std_msgs'"], True),
+        (AMENT, "dependencies(rclcpp std_msgs)", "dependencies(rclcpp std_msgs ${MORE})", [], False),
+        (AMENT.replace("S core", "S gains core").replace("add_ex", f"{GENERATED}add_ex", 1), "gains core", "core",
+         ["installed libraries removed: 'gains'"], True),
         (CATKIN, "State.msg Load.msg", "State.msg", ["built interfaces removed: 'msg/Load.msg'"], True),
         (CATKIN, "FILES Home.srv", "FILES", ["built interfaces removed: 'services/Home.srv'"], True),
         (CATKIN, "options(cfg/Arm.cfg)", "options()",

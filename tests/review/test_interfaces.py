@@ -125,3 +125,26 @@ def test_fields_of_types_that_only_ros1_has_are_compared(repository, compare):
         "field 'waits': duration[] -> builtin_interfaces/Duration[]",
     ]
     assert not breaking(result)
+
+
+ROS1_MANIFEST = """<package format="2">
+  <name>arm_msgs</name><version>1.0.0</version><description>Messages.</description>
+  <maintainer email="a@b.org">A</maintainer><license>MIT</license>
+  <buildtool_depend>catkin</buildtool_depend>
+</package>
+"""
+
+
+@pytest.mark.parametrize("typed", ["joint_state[] joints", "arm_msgs/joint_state state", "other_msgs/plain_type other"])
+def test_ros1_types_may_begin_with_a_lower_case_letter(repository, compare, typed):
+    files = {"package.xml": ROS1_MANIFEST, "msg/joint_state.msg": "float64 angle\n"}
+    repository.commit({**files, "msg/arm_state.msg": f"int32 id\n{typed}\n"})
+    repository.write({"msg/arm_state.msg": f"uint64 id\n{typed}\n"})
+    result = compare(repository)
+    assert breaking(result) == ["field 'id': int32 -> uint64"]
+
+
+def test_misspelled_primitive_type_in_ros1_is_still_a_mistake(repository, compare):
+    repository.commit({"package.xml": ROS1_MANIFEST, "msg/arm_state.msg": "int32 id\n"})
+    repository.write({"msg/arm_state.msg": "itn32 id\n"})
+    assert breaking(compare(repository)) == ["can no longer be read: there is no type 'itn32'"]

@@ -114,3 +114,25 @@ def test_a_removed_group_of_parameters_is_breaking_unless_its_readers_stop_readi
     (found,) = (found for found in compare(repository).subjects if found.path == PATH)
     reason = "the node 'arm_node' starts without these parameters"
     assert [str(change.reason) for change in found.changes] == [reason if is_breaking else "None"]
+
+
+@pytest.mark.parametrize(
+    ("old_name", "new_name", "is_breaking"), [("arm_node", "arm", False), ("arm", "arm_node", True)]
+)
+def test_renamed_node_of_a_file_is_breaking_unless_the_file_follows_its_source(
+    repository, compare, old_name, new_name, is_breaking
+):
+    source = 'auto node = std::make_shared<rclcpp::Node>("arm");\n'
+    old_text, new_text = (NODE.replace("arm_node", name) for name in (old_name, new_name))
+    repository.commit({"a/package.xml": FILES["a/package.xml"], PATH: old_text, "a/src/arm.cpp": source})
+    repository.write({PATH: new_text})
+    found = breaking(compare(repository))
+    assert found == ([f"{old_name}.ros__parameters.rate 10.0 removed"] if is_breaking else [])
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("arm", False), ("leg", True)])
+def test_renamed_node_with_several_parameters_follows_its_source(repository, compare, name, is_breaking):
+    source = f'auto node = std::make_shared<rclcpp::Node>("{name}");\n'
+    repository.commit({"a/package.xml": FILES["a/package.xml"], PATH: NODE + LIMITS, "a/src/arm.cpp": source})
+    repository.write({PATH: (NODE + LIMITS).replace("arm_node", "arm")})
+    assert breaking(compare(repository)) == (["arm_node renamed to arm"] if is_breaking else [])

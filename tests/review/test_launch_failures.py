@@ -150,3 +150,26 @@ def test_arguments_that_a_function_adds_to_a_list_are_told(review_changes, call,
     changes, _ = review_changes("arm.launch.py", text, 'BOTH = ["left", "right"', 'BOTH = ["left", "right", "top"')
     words = f"[top, --controller-manager, /cm, {word}, --timeout, 5]"
     assert f"node 'controller_manager/spawner' of 'top' added: if `kind == 'both'`, arguments {words}" in changes
+
+
+ACTIONS = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    driver = Node(package="arm", executable="driver")
+    return LaunchDescription([driver])
+"""
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        ("[driver, hand]", ["'hand' is used, but is not defined or imported"]),
+        ("[driver, map]", ["the built-in function 'map' is in a list of actions"]),
+        ("list([driver])", []),
+    ],
+)
+def test_actions_that_are_not_defined_are_breaking(review_changes, new, expected):
+    _, found = review_changes("arm.launch.py", ACTIONS, "[driver]", new)
+    assert found == expected

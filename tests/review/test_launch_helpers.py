@@ -118,3 +118,15 @@ def test_substitutions_in_a_list_are_one_word_of_the_arguments(review_changes):
 def test_comparison_of_an_argument_may_be_a_substitution(review_changes):
     new = 'IfCondition(EqualsSubstitution(LaunchConfiguration("map"), ""))'
     assert review_changes("arm.launch.py", LOOP, 'LaunchConfigurationEquals("map", "")', new) == ([], [])
+
+
+PROGRAM_GUARD = """
+
+if __name__ == "__main__":
+    generate_launch_description()
+"""
+
+
+def test_actions_of_a_file_that_calls_its_own_function_as_a_program_have_no_condition(review_changes):
+    changes, found = review_changes("arm.launch.py", LOOP + PROGRAM_GUARD, ', ("arm", "hand")', "")
+    assert changes == found == ["node 'arm/hand' removed"]

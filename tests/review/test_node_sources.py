@@ -242,3 +242,18 @@ def test_a_topic_whose_parameter_has_another_default_is_lost(repository, compare
     repository.commit({"arm/mapper.py": literal})
     repository.write({"arm/mapper.py": computed})
     assert breaking(compare(repository)) == ["subscription '/lidar/cones' (Bool) has a computed name now: self.topic"]
+
+
+@pytest.mark.parametrize("imported", ["from launch import LaunchService", "from launch.actions import ExecuteProcess"])
+def test_node_that_starts_launch_files_is_a_node(repository, compare, imported):
+    text = f"{imported}\n{PYTHON}"
+    repository.commit({"arm/driver.py": text})
+    repository.write({"arm/driver.py": text.replace('"stair_mode"', '"mode"')})
+    assert breaking(compare(repository)) == ["service 'stair_mode' (SetBool) renamed to 'mode' (SetBool)"]
+
+
+@pytest.mark.parametrize("start", ["\ufeff", "print 'a'\nif 1 < .05:\n    pass\n"])
+def test_python2_and_byte_order_marks_are_read(repository, compare, start):
+    repository.commit({"arm/driver.py": start + PYTHON})
+    repository.write({"arm/driver.py": start + PYTHON.replace('"stair_mode"', '"mode"')})
+    assert breaking(compare(repository)) == ["service 'stair_mode' (SetBool) renamed to 'mode' (SetBool)"]

@@ -61,6 +61,17 @@ def test_untracked_files_are_new(package, compare):
     ]
 
 
+def test_ignored_files_do_not_belong_to_the_checked_out_commit(package):
+    package.commit({"arm_description/config/a.yaml": "rate: 1\n"})
+    package.commit({".gitignore": "config/\n", "arm_description/config/a.yaml": None})
+    package.write({"arm_description/config/a.yaml": "rate: 1\n"})
+    versions = open_versions(package.root, "HEAD~1..HEAD")
+    try:
+        assert not versions.new.file("arm_description/config/a.yaml").exists()
+    finally:
+        versions.close()
+
+
 def test_review_does_not_change_repository(package, compare):
     package.write({"arm_description/urdf/segment.xacro": arm_with_mass(3)})
     before = package.git("status", "--porcelain=v2", "--branch")

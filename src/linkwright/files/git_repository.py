@@ -232,6 +232,19 @@ class GitRepository:
         )
         raise LinkwrightError(Diagnostic("CLI345", message))
 
+    def has_ignored_files(self) -> bool:
+        """Return whether the working tree contains files that git ignores.
+
+        Hidden files and folders, and compiled Python files, do not count.
+        """
+        options = ("--others", "--ignored", "--exclude-standard", "--directory", "-z")
+        names = self.run("ls-files", *options).stdout.split("\0")
+        return any(
+            not any(part.startswith(".") or part == "__pycache__" for part in name.split("/"))
+            for name in names
+            if name and not name.endswith(".pyc")
+        )
+
     def changed_files(self, old_commit: str, new_commit: str | None = None) -> list[ChangedFile]:
         """Return the files that differ between two commits, sorted by path.
 

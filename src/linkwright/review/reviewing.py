@@ -57,6 +57,7 @@ from linkwright.review.launches.script_callers import find_lost_arguments
 from linkwright.review.left_robot_names import find_left_robot_names
 from linkwright.review.lost_controllers import find_lost_controllers
 from linkwright.review.lost_data import find_lost_data
+from linkwright.review.lost_displays import find_lost_displays
 from linkwright.review.lost_files import find_lost_files
 from linkwright.review.lost_installs import find_lost_installs
 from linkwright.review.lost_interfaces import find_lost_interfaces
@@ -275,6 +276,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_types))
         result = _add_changes(result, self._run_step(find_lost_methods))
         result = _add_changes(result, self._run_step(find_chosen_robots))
+        result = _add_changes(result, self._run_step(find_lost_displays))
         result = _add_changes(result, self._run_step(find_lost_controllers))
         result = _add_changes(result, self._run_step(find_lost_data))
         result = _add_changes(result, self._run_step(find_lost_installs))

@@ -302,10 +302,11 @@ def _find_common_commit(repository: GitRepository, old_commit: str, old_name: st
 def _is_checked_out(repository: GitRepository, commit: str) -> bool:
     """Return whether the working tree contains exactly the files of a commit.
 
-    Such files need not be written to another folder. A working tree with links to outside is not used, because foreign
-    files could appear in the report.
+    Such files need not be written to another folder. A working tree with ignored files, such as a build folder or
+    generated meshes, is not used, because a clone does not have them. Neither is one with links to outside, because
+    foreign files could appear in the report.
     """
-    if repository.resolve("HEAD") != commit or repository.changed_files(commit):
+    if repository.resolve("HEAD") != commit or repository.changed_files(commit) or repository.has_ignored_files():
         return False
     root = repository.root
     return not any(leads_outside(root / link, root) for link in repository.list_symbolic_links(commit))

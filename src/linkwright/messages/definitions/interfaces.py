@@ -44,6 +44,11 @@ def is_package_name(text: str) -> bool:
     return _is_words(text) and text == text.lower()
 
 
+def is_ros1_name(text: str) -> bool:
+    """Return whether the name of an interface is valid in ROS 1, where it may begin with a lower-case letter."""
+    return text.isascii() and text.isidentifier() and text[0].isalpha()
+
+
 def is_interface_name(text: str) -> bool:
     """Return whether an interface name is valid.
 

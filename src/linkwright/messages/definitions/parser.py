@@ -21,6 +21,7 @@ from linkwright.messages.definitions.interfaces import (
     is_field_name,
     is_interface_name,
     is_package_name,
+    is_ros1_name,
 )
 from linkwright.messages.errors import DefinitionError
 
@@ -220,8 +221,9 @@ def parse_interface(
         source: the content of the file.
         type_name: the name of the interface, such as ``my_msgs/srv/Count``.
         known_messages: determines which messages exist, to check references.
-        is_ros1: whether to read the file as ROS 1 does. Its field names may contain capital letters, and it may use the
-            types ``time``, ``duration`` and ``Header``. These become the types of ROS 2 with the same fields.
+        is_ros1: whether to read the file as ROS 1 does. Its field names may contain capital letters, the names of its
+            types may begin with lower-case letters, and it may use the types ``time``, ``duration`` and ``Header``.
+            These become the types of ROS 2 with the same fields.
 
     Raises:
         DefinitionError: the file has mistakes; the error contains all of them (MSG110 to MSG119).
@@ -354,7 +356,7 @@ class _Reader:
             parts = text.split("/")
             if len(parts) == 3 and parts[1] == "msg":
                 parts.pop(1)
-            if len(parts) == 2 and is_package_name(parts[0]) and is_interface_name(parts[1]):
+            if len(parts) == 2 and is_package_name(parts[0]) and self._is_message_name(parts[1]):
                 return self._find_existing_message(f"{parts[0]}/msg/{parts[1]}", text, start)
             self._report(
                 "MSG111",
@@ -370,12 +372,15 @@ class _Reader:
             self._report("MSG117", phrase("the type '{text}' is a ROS 1 type", text=text), start, len(text),
                          phrase("use {name} in ROS 2", name=f"'{_ROS1_TYPES[text]}'"))  # fmt: skip
             return None
-        if is_interface_name(text):
+        if self._is_message_name(text) and (is_interface_name(text) or self._known.has_message(type_name)):
             return self._find_existing_message(type_name, text, start)
         self._report(
             "MSG111", phrase("there is no type '{text}'", text=text), start, len(text), did_you_mean(text, PRIMITIVES)
         )
         return None
+
+    def _is_message_name(self, text: str) -> bool:
+        return is_interface_name(text) or (self._is_ros1 and is_ros1_name(text))
 
     def _find_existing_message(self, type_name: str, text: str, start: int) -> str | None:
         if self._known.has_message(type_name):

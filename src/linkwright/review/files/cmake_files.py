@@ -34,6 +34,8 @@ _COMMANDS_AFTER_TARGETS = (
 """The prefixes of commands that refer to targets without creating them."""
 _EXECUTABLE_COMMANDS = ("add_executable", "ament_auto_add_executable", "rosbuild_add_executable", "cuda_add_executable")
 _LIBRARY_COMMANDS = ("add_library", "ament_auto_add_library", "rosbuild_add_library", "cuda_add_library")
+_GENERATED_LIBRARY_COMMANDS = ("generate_parameter_library", "generate_parameter_module")
+"""The commands of generate_parameter_library, which make a library from a YAML file."""
 _LIBRARY_TYPES = ("SHARED", "STATIC", "MODULE", "INTERFACE", "OBJECT")
 _ROS1_INTERFACE_COMMANDS = {
     "add_message_files": ("msg", ".msg"),
@@ -191,7 +193,8 @@ def _get_conditions(source: SourceText) -> dict[int, str]:
 
 def _read_installed_targets(commands: Sequence[Command]) -> Iterator[Fact]:
     """Yield the installed and exported targets, and the executables of components."""
-    libraries = {command.words[0] for command in commands if command.name in _LIBRARY_COMMANDS and command.words}
+    library_commands = _LIBRARY_COMMANDS + _GENERATED_LIBRARY_COMMANDS
+    libraries = {command.words[0] for command in commands if command.name in library_commands and command.words}
     built = _BuiltTargetNames(commands)
     for command in commands:
         arguments = command.arguments

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
 from linkwright.messages.definitions.idl import ENUMERATION, parse_idl_structures
-from linkwright.messages.definitions.interfaces import Constant, Field, Structure, list_structures
+from linkwright.messages.definitions.interfaces import Constant, Field, Structure, is_interface_name, list_structures
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
 from linkwright.messages.definitions.parser import SECTIONS
 from linkwright.packages import MANIFEST, enclosing_package
@@ -143,8 +143,29 @@ def read_structures(file: Path, *, is_ros1: bool | None = None) -> Mapping[str, 
         name = file.parent.parent.name
     type_name = f"{name}/{kind}/{file.stem}"
     is_ros1 = _is_ros1(file) if is_ros1 is None else is_ros1
-    parts = list_structures(parse_source(read_source(file), type_name, TrustedMessages(), is_ros1=is_ros1))
+    known = _TrustedMessages(name, file.parent.parent / "msg")
+    parts = list_structures(parse_source(read_source(file), type_name, known, is_ros1=is_ros1))
     return dict(zip(_PART_PREFIXES[len(parts)], parts, strict=True))
+
+
+class _TrustedMessages(TrustedMessages):
+    """Messages of which only the own ones with lower-case names are looked up.
+
+    Otherwise, a misspelled primitive type would be accepted as a message of the package.
+
+    Args:
+        package: the name of the package.
+        folder: the folder with its messages.
+    """
+
+    def __init__(self, package: str, folder: Path) -> None:
+        self._package = package
+        self._folder = folder
+
+    def has_message(self, type_name: str) -> bool:
+        """Return whether a message exists, or may exist in another package."""
+        package, _, name = type_name.split("/")
+        return package != self._package or is_interface_name(name) or (self._folder / f"{name}.msg").is_file()
 
 
 def _find_renamed_structures(old: Mapping[str, Structure], new: Mapping[str, Structure]) -> dict[str, str]:

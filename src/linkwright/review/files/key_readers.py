@@ -84,6 +84,22 @@ class KeyReaders:
             and not any(_names(self.versions.new, path, pattern) for path in _list_sources(self.versions.new))
         )
 
+    def have_renamed_node(self, node: str, new_nodes: Iterable[str]) -> bool:
+        """Return whether the programs name one of the new nodes of the file, and no longer a lost one.
+
+        The file then follows the programs.
+
+        Args:
+            node: the lost node.
+            new_nodes: the nodes that only the new version of the file has.
+        """
+        return not self._is_node_named(node) and any(map(self._is_node_named, new_nodes))
+
+    def _is_node_named(self, node: str) -> bool:
+        """Return whether a program of the new version contains the last part of a node's name as a text."""
+        pattern = re.compile(rf"[\"'/]{re.escape(re.split(r'[./]', node)[-1])}[\"']")
+        return any(_names(self.versions.new, path, pattern) for path in self._list_paths(_PROGRAM_SUFFIXES, ()))
+
     @cached_property
     def _is_file_used(self) -> bool:
         """Whether a program contains the name of the file."""

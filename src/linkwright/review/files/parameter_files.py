@@ -112,8 +112,8 @@ def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Nod
     labels = find_item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
     old_values, new = ({} if root is None else collect_values(root, labels) for root in (old_root, new_root))
     moveit = MoveItRules(old_values, new)
-    old = _report_renamed(pair, old_values, new, moveit)
     readers = KeyReaders(pair.versions, pair.new_path)
+    old = _report_renamed(pair, old_values, new, moveit, readers)
     rules = NameRules(old, new, readers)
     new_keys = frozenset(_get_last_key(part) for name in new for part in list_part_paths(name))
     for name, value in new.items():
@@ -207,7 +207,11 @@ def _is_below(name: str, part: str) -> bool:
 
 
 def _report_renamed(
-    pair: FilePair, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], moveit: MoveItRules
+    pair: FilePair,
+    old: Mapping[str, YamlValue],
+    new: Mapping[str, YamlValue],
+    moveit: MoveItRules,
+    readers: KeyReaders,
 ) -> Mapping[str, YamlValue]:
     """Report renamed and moved parts of a file, and return the old values with the new names."""
     renamed = find_renamed_parts(old, new)
@@ -217,7 +221,9 @@ def _report_renamed(
         text = phrase("{old} moved to {name}", old=old_part, name=new_part)
         if get_parent(old_part) == get_parent(new_part):
             text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
-        reason = moveit.find_renaming_reason(old_part) or find_part_renaming_reason(old_part, new_part, old)
+        reason = moveit.find_renaming_reason(old_part)
+        if reason is None and not _follows_node(old_part, new_part, old, readers):
+            reason = find_part_renaming_reason(old_part, new_part, old)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         change = Change(text, effect, reason, Location(pair.new_path, first_value.line, first_value.column))
         kind = None if reason is None else reason.template
@@ -227,6 +233,13 @@ def _report_renamed(
         reason = merge_reasons(change.reason for change in (first, *others))
         pair.changes.append(replace(first, reason=reason, other_names=names))
     return rename_parts(old, renamed)
+
+
+def _follows_node(part: str, new_part: str, values: Mapping[str, YamlValue], readers: KeyReaders) -> bool:
+    """Return whether a renamed part is a node that the programs renamed, too."""
+    name = next((name for name in values if _is_below(name, part)), part)
+    node, new_node = find_node_name(name), find_node_name(f"{new_part}{name.removeprefix(part)}")
+    return None not in (node, new_node) and node != new_node and readers.have_renamed_node(node or "", [new_node or ""])
 
 
 def _are_equal(name: str, old: YamlValue, new: YamlValue) -> bool:

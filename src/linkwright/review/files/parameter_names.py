@@ -65,6 +65,7 @@ class NameRules:
     def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], readers: KeyReaders) -> None:
         self._readers = readers
         self._new_nodes = {node for name in new if (node := find_node_name(name)) is not None}
+        self._added_nodes = self._new_nodes - {find_node_name(name) for name in old}
         self._controllers = {*find_controllers(old), *find_controllers(new)}
         self._controllers |= {match["controller"] for name in old if (match := _CLAIM.fullmatch(name)) is not None}
         self._new = new
@@ -120,6 +121,8 @@ class NameRules:
             return make_controller_reason(controller["controller"])
         node = _NODE.match(parameter)
         if node is not None and not self._has_node(parameter):
+            if self._readers.have_renamed_node(node["node"], self._added_nodes):
+                return None
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         if _PLUGIN_LIST.search(parameter) and _find_name_items(old):
             return _make_plugin_reason(_find_name_items(old))

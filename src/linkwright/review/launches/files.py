@@ -40,9 +40,9 @@ from linkwright.review.launches.titles import (
     join_titles,
 )
 from linkwright.review.launches.transforms import find_other_publisher
+from linkwright.review.launches.undefined import report_undefined_names
 from linkwright.review.launches.unused_arguments import report_unused_arguments
 from linkwright.review.sources.names import PYTHON_SUFFIX
-from linkwright.review.sources.reading import read_source_names
 
 _MAX_STATEMENT_CHARACTERS = 120
 """The maximum number of characters of a statement that are shown."""
@@ -103,18 +103,7 @@ def compare_launch_files(pair: FilePair) -> None:
         _compare_code(pair, old, new)
         if pair.new_file.suffix == PYTHON_SUFFIX:
             compare_imports(pair)
-        _report_undefined_names(pair)
-
-
-def _report_undefined_names(pair: FilePair) -> None:
-    """Report the names that a Python launch file still uses but no longer defines or imports."""
-    if pair.new_file.suffix != PYTHON_SUFFIX:
-        return
-    old_names = read_source_names(pair.old_file).bound_names
-    for name, span in read_source_names(pair.new_file).undefined_names.items():
-        if name in old_names:
-            text = phrase("'{name}' is used, but is no longer defined or imported", name=name)
-            pair.add(text, pair.location(span), phrase("the code that uses the name fails"))
+        report_undefined_names(pair)
 
 
 def _report_undeclared(pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry]) -> None:

@@ -16,6 +16,10 @@ from linkwright.review.launches.names import LaunchPythonFile
 _MAX_IMPORT_DEPTH = 5
 """The maximum number of files through which a name is imported."""
 _MAX_BYTES = 1 << 20
+_NODE_MODULES = ("rclpy", "rclpy.node", "rclpy.lifecycle")
+_NODE_CALLS = frozenset({"rclpy.init", "rclpy.create_node", "rospy.init_node"})
+"""The calls of programs that are a node."""
+_ENTRY_FUNCTION = "generate_launch_description"
 _MAX_PASSES = 5000
 """The maximum number of loop passes in a launch file that are read one by one."""
 _LAUNCH_MODULE = re.compile(r"launch(_\w+)?(\.|$)")
@@ -40,11 +44,48 @@ class Function:
 def imports_actions(path: Path) -> bool:
     """Return whether a Python file imports the actions of launch files.
 
-    Such a file can make actions for other files.
+    Such a file can make actions for other files. A program with a node of its own does not.
     """
     file = _try_parse(path)
+    if file is not None and _is_node_program(file.tree):
+        return False
     imports = (node for node in ast.walk(file.tree) if isinstance(node, ast.ImportFrom)) if file else ()
     return any(not node.level and _LAUNCH_MODULE.match(node.module or "") for node in imports)
+
+
+def _is_node_program(tree: ast.Module) -> bool:
+    """Return whether a file makes a node of its own and no launch description.
+
+    Such programs start launch files themselves.
+    """
+    if any(isinstance(node, ast.FunctionDef) and node.name == _ENTRY_FUNCTION for node in tree.body):
+        return False
+    nodes = list(ast.walk(tree))
+    imports = (node for node in nodes if isinstance(node, ast.ImportFrom) and node.module in _NODE_MODULES)
+    classes = {alias.asname or alias.name for node in imports for alias in node.names}
+    bases = {ast.unparse(base) for node in nodes if isinstance(node, ast.ClassDef) for base in node.bases}
+    calls = {called_name(node) for node in nodes if isinstance(node, ast.Call)}
+    made = {*classes, "rclpy.node.Node"} & {*bases, *calls}
+    return bool(made) or not calls.isdisjoint(_NODE_CALLS)
+
+
+def find_program_guard(tree: ast.Module) -> ast.If | None:
+    """Return the ``if __name__ == "__main__"`` statement of a launch file; None if there is none.
+
+    ``ros2 launch`` calls ``generate_launch_description`` and does not run that statement. In a file without this
+    function, the statement may start the actions itself.
+    """
+    if not any(isinstance(node, ast.FunctionDef) and node.name == _ENTRY_FUNCTION for node in tree.body):
+        return None
+    statements = (node for node in tree.body if isinstance(node, ast.If))
+    return next((node for node in statements if _is_program_test(node.test)), None)
+
+
+def _is_program_test(test: ast.expr) -> bool:
+    """Return whether a test is true only for a file that is run as a program."""
+    return isinstance(test, ast.Compare) and any(
+        isinstance(node, ast.Name) and node.id == "__name__" for node in (test.left, *test.comparators)
+    )
 
 
 class HelperFunctions:
@@ -76,7 +117,10 @@ class HelperFunctions:
         """Return the names of a file's functions that make actions and are called in it."""
         names = self._names_by_file.get(id(python))
         if names is None:
-            called = {called_name(node) for node in ast.walk(python.tree) if isinstance(node, ast.Call)}
+            skipped = None if (guard := find_program_guard(python.tree)) is None else id(guard)
+            statements = [statement for statement in python.tree.body if id(statement) != skipped]
+            nodes = (node for statement in statements for node in ast.walk(statement))
+            called = {called_name(node) for node in nodes if isinstance(node, ast.Call)}
             functions = (node for node in _index_definitions(python).values() if isinstance(node, ast.FunctionDef))
             names = frozenset(node.name for node in functions if node.name in called and self._makes_actions(node))
             self._names_by_file[id(python)] = names

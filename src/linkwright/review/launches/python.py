@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
-from linkwright.review.launches.helpers import Function, HelperFunctions
+from linkwright.review.launches.helpers import Function, HelperFunctions, find_program_guard
 from linkwright.review.launches.list_additions import find_added_items
 from linkwright.review.launches.literals import CoveredLiterals, Literals
 from linkwright.review.launches.names import is_chosen_value
@@ -165,7 +165,8 @@ class _Reader:
         elif isinstance(node, (ast.ListComp, ast.GeneratorExp)):
             self._visit_loop(node.generators[0].target, node.generators[0].iter, [node.elt], scope)
         elif isinstance(node, ast.If):
-            self._visit_branches(node, scope)
+            if node is not find_program_guard(self.python.tree):
+                self._visit_branches(node, scope)
         elif isinstance(node, ast.FunctionDef):
             if node.name not in self.helpers.find_local_names(self.python):
                 self._visit_body(node, scope)

@@ -37,7 +37,7 @@ def try_read_source(path: Path) -> SourceText | None:
     try:
         if path.stat().st_size > _MAX_BYTES:
             return None
-        text = path.read_text("utf-8", errors="replace")
+        text = path.read_text("utf-8-sig", errors="replace")  # without a byte order mark
         return SourceText(str(path), blank_disabled(text) if path.suffix in CPP_SUFFIXES else text)
     except OSError:
         return None

@@ -1,0 +1,62 @@
+"""Report undefined names in Python launch files, and built-in functions in the place of actions."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections.abc import Iterator
+
+from linkwright.diagnostics import SourceText, Span, phrase
+from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.file_pair import FilePair
+from linkwright.review.sources.names import PYTHON_SUFFIX
+from linkwright.review.sources.reading import read_source_names, try_read_source
+from linkwright.review.sources.undefined_names import find_bound_names
+
+_LIST_CLASSES = ("LaunchDescription", "GroupAction")
+"""The classes whose first argument is a list of actions."""
+
+
+def report_undefined_names(pair: FilePair) -> None:
+    """Report the undefined names and misplaced functions that only the new version of a launch file uses."""
+    if pair.new_file.suffix != PYTHON_SUFFIX:
+        return
+    old, new = read_source_names(pair.old_file), read_source_names(pair.new_file)
+    for name, span in new.undefined_names.items():
+        if name in old.bound_names:
+            text = phrase("'{name}' is used, but is no longer defined or imported", name=name)
+            pair.add(text, pair.location(span), phrase("the code that uses the name fails"))
+    known = {*old.bound_names, *(name for name, _ in _find_unbound_actions(try_read_source(pair.old_file)))}
+    for name, span in _find_unbound_actions(try_read_source(pair.new_file)):
+        if name in known:
+            continue
+        if callable(getattr(builtins, name, None)):
+            text = phrase("the built-in function '{name}' is in a list of actions", name=name)
+        elif name in new.undefined_names:
+            text = phrase("'{name}' is used, but is not defined or imported", name=name)
+        else:
+            continue
+        pair.add(text, pair.location(span), phrase("the launch file fails"))
+
+
+def _find_unbound_actions(source: SourceText | None) -> Iterator[tuple[str, Span]]:
+    """Yield the names in lists of actions that a file does not define.
+
+    The lists are those that functions return, and those of descriptions.
+    """
+    try:
+        python = None if source is None else PythonFile(source)
+    except (SyntaxError, ValueError):
+        return
+    if python is None:
+        return
+    bound_names = set(find_bound_names(python.tree))
+    for node in ast.walk(python.tree):
+        actions = None
+        if isinstance(node, ast.Return):
+            actions = node.value
+        elif isinstance(node, ast.Call) and called_name(node).rpartition(".")[2] in _LIST_CLASSES:
+            actions = next(iter(node.args), None)
+        for item in actions.elts if isinstance(actions, ast.List) else ():
+            if isinstance(item, ast.Name) and item.id not in bound_names:
+                yield item.id, python.span(item)
