@@ -7,7 +7,8 @@ import pytest
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences
 
-MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+DEPENDENCIES = "<depend>old_msgs</depend><depend>new_msgs</depend></package>"
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm").replace("</package>", DEPENDENCIES)}
 RCLPY = """from rclpy.node import Node
 from {0}_msgs.msg import State
 

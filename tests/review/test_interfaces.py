@@ -119,7 +119,7 @@ def test_fields_of_types_that_only_ros1_has_are_compared(repository, compare):
     repository.write({path: fields})
     result = compare(repository)
     assert sentences(subject(result, path)) == [
-        "can be read now; in the old version: there is no type 'time'",
+        "can be read now; in the old version: the type 'time' is a ROS 1 type",
         "field 'x' renamed to 'y'",
         "field 'stamp': time -> builtin_interfaces/Time",
         "field 'waits': duration[] -> builtin_interfaces/Duration[]",

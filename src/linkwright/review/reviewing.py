@@ -62,6 +62,7 @@ from linkwright.review.lost_files import find_lost_files
 from linkwright.review.lost_installs import find_lost_installs
 from linkwright.review.lost_interfaces import find_lost_interfaces
 from linkwright.review.lost_libraries import find_lost_libraries
+from linkwright.review.lost_lifecycles import find_lost_lifecycles
 from linkwright.review.lost_programs import find_lost_programs
 from linkwright.review.lost_registrations import find_lost_registrations
 from linkwright.review.lost_sources import find_lost_sources
@@ -277,6 +278,7 @@ class _Reviewer:
         result = _add_changes(result, self._run_step(find_lost_methods))
         result = _add_changes(result, self._run_step(find_chosen_robots))
         result = _add_changes(result, self._run_step(find_lost_displays))
+        result = _add_changes(result, self._run_step(find_lost_lifecycles))
         result = _add_changes(result, self._run_step(find_lost_controllers))
         result = _add_changes(result, self._run_step(find_lost_data))
         result = _add_changes(result, self._run_step(find_lost_installs))

@@ -1,0 +1,27 @@
+"""Classes of nodes that are no longer lifecycle nodes."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import breaking
+
+CPP = "class Motors : public rclcpp_lifecycle::LifecycleNode {\n};\n"
+PYTHON = "class Motors(LifecycleNode):\n    pass\n"
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "is_lost"),
+    [
+        ("arm/motors.hpp", CPP, CPP.replace("rclcpp_lifecycle::Lifecycle", "rclcpp::"), True),
+        ("arm/motors.hpp", CPP, CPP.replace("public rclcpp_lifecycle::", "public "), False),
+        ("arm/motors.py", PYTHON, PYTHON.replace("Lifecycle", ""), True),
+        ("arm/motors.py", PYTHON, PYTHON.replace("LifecycleNode", "Base"), False),
+        ("arm/motors.py", PYTHON.replace("Lifecycle", ""), PYTHON, False),
+    ],
+)
+def test_class_that_becomes_a_plain_node_is_breaking(repository, compare, path, old, new, is_lost):
+    repository.commit({path: old})
+    repository.write({path: new})
+    expected = "class 'Motors' is no longer a lifecycle node"
+    assert (expected in breaking(compare(repository))) == is_lost
