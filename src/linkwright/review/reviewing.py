@@ -25,7 +25,6 @@ from linkwright.review.changes import (
     Subject,
     SubjectKind,
 )
-from linkwright.review.chosen_robots import find_chosen_robots
 from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
@@ -49,23 +48,7 @@ from linkwright.review.kinds import (
 )
 from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
 from linkwright.review.launches.helpers import imports_actions
-from linkwright.review.launches.left_nodes import find_left_nodes
-from linkwright.review.launches.left_parameters import find_left_parameters
-from linkwright.review.launches.missing_programs import drop_told_findings, find_missing_programs
-from linkwright.review.launches.passed_arguments import find_passed_arguments
-from linkwright.review.launches.script_callers import find_lost_arguments
-from linkwright.review.left_robot_names import find_left_robot_names
-from linkwright.review.lost_controllers import find_lost_controllers
-from linkwright.review.lost_data import find_lost_data
-from linkwright.review.lost_displays import find_lost_displays
-from linkwright.review.lost_files import find_lost_files
-from linkwright.review.lost_installs import find_lost_installs
-from linkwright.review.lost_interfaces import find_lost_interfaces
-from linkwright.review.lost_libraries import find_lost_libraries
-from linkwright.review.lost_lifecycles import find_lost_lifecycles
-from linkwright.review.lost_programs import find_lost_programs
-from linkwright.review.lost_registrations import find_lost_registrations
-from linkwright.review.lost_sources import find_lost_sources
+from linkwright.review.launches.missing_programs import drop_told_findings
 from linkwright.review.notes import (
     group_equal_problems,
     is_unreadable_as_before,
@@ -73,19 +56,17 @@ from linkwright.review.notes import (
     make_unreadable_notes,
 )
 from linkwright.review.other_files import find_file_states
-from linkwright.review.package_lookups import find_new_lookups
 from linkwright.review.parts import compare_parts
-from linkwright.review.references import find_lost_references
 from linkwright.review.removed_programs import merge_removed_options
 from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import match_moved_files, remove_consequences
 from linkwright.review.robots.semantics import find_semantic_files
-from linkwright.review.sources.callers import find_broken_callers
 from linkwright.review.sources.comparing import source_subjects
-from linkwright.review.sources.left_types import find_left_types
-from linkwright.review.sources.lost_methods import find_lost_methods
-from linkwright.review.sources.lost_types import find_lost_types
 from linkwright.review.undeclared_packages import mark_undeclared
+from linkwright.review.users.left_robot_names import find_left_robot_names
+from linkwright.review.users.lost_files import find_lost_files
+from linkwright.review.users.references import find_lost_references
+from linkwright.review.users.searches import SEARCHES
 from linkwright.review.versions import Version, Versions
 
 _Pair = tuple[KindRule, "str | None", "str | None"]
@@ -272,27 +253,8 @@ class _Reviewer:
         result += self._run_step(compare_rosbuild_manifests)
         paths = {subject.path for subject in result}
         result += (subject for subject in self._run_step(source_subjects) if subject.path not in paths)
-        result = _add_changes(result, self._run_step(find_broken_callers))
-        result = _add_changes(result, self._run_step(find_lost_arguments))
-        result = _add_changes(result, self._run_step(find_lost_types))
-        result = _add_changes(result, self._run_step(find_lost_methods))
-        result = _add_changes(result, self._run_step(find_chosen_robots))
-        result = _add_changes(result, self._run_step(find_lost_displays))
-        result = _add_changes(result, self._run_step(find_lost_lifecycles))
-        result = _add_changes(result, self._run_step(find_lost_controllers))
-        result = _add_changes(result, self._run_step(find_lost_data))
-        result = _add_changes(result, self._run_step(find_lost_installs))
-        result = _add_changes(result, self._run_step(find_lost_libraries))
-        result = _add_changes(result, self._run_step(find_lost_programs))
-        result = _add_changes(result, self._run_step(find_lost_registrations))
-        result = _add_changes(result, self._run_step(find_lost_sources))
-        result = _add_changes(result, self._run_step(find_missing_programs))
-        result = _add_changes(result, self._run_step(find_passed_arguments))
-        result = _add_changes(result, self._run_step(find_left_nodes))
-        result = _add_changes(result, self._run_step(find_left_parameters))
-        result = _add_changes(result, self._run_step(find_lost_interfaces))
-        result = _add_changes(result, self._run_step(find_left_types))
-        result = _add_changes(result, self._run_step(find_new_lookups))
+        for search in SEARCHES:
+            result = _add_changes(result, self._run_step(search))
         return sorted(merge_removed_options(result), key=lambda subject: subject.path)
 
     def _find_removed_submodules(self) -> Iterator[Subject]:

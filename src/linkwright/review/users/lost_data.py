@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.installed_readers import without_comments
+from linkwright.review.users.installed_readers import without_comments
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _READER_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".yaml", ".yml")

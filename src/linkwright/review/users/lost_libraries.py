@@ -12,7 +12,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.files.build_facts import BuildFacts, FactKind
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.installed_paths import read_package_facts
-from linkwright.review.installed_readers import without_comments
+from linkwright.review.users.installed_readers import without_comments
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _READER_SUFFIXES = (".sdf", ".world", ".urdf", ".xacro", ".gazebo", ".xml")

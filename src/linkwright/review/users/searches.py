@@ -1,0 +1,41 @@
+"""The searches of a review for files that still use what is gone, in the order of their lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changes import Change
+from linkwright.review.chosen_robots import find_chosen_robots
+from linkwright.review.launches.left_nodes import find_left_nodes
+from linkwright.review.launches.left_parameters import find_left_parameters
+from linkwright.review.launches.missing_programs import find_missing_programs
+from linkwright.review.launches.passed_arguments import find_passed_arguments
+from linkwright.review.launches.script_callers import find_lost_arguments
+from linkwright.review.sources.callers import find_broken_callers
+from linkwright.review.sources.left_types import find_left_types
+from linkwright.review.sources.lost_methods import find_lost_methods
+from linkwright.review.sources.lost_types import find_lost_types
+from linkwright.review.users.lost_controllers import find_lost_controllers
+from linkwright.review.users.lost_data import find_lost_data
+from linkwright.review.users.lost_displays import find_lost_displays
+from linkwright.review.users.lost_installs import find_lost_installs
+from linkwright.review.users.lost_interfaces import find_lost_interfaces
+from linkwright.review.users.lost_libraries import find_lost_libraries
+from linkwright.review.users.lost_lifecycles import find_lost_lifecycles
+from linkwright.review.users.lost_programs import find_lost_programs
+from linkwright.review.users.lost_registrations import find_lost_registrations
+from linkwright.review.users.lost_sources import find_lost_sources
+from linkwright.review.users.package_lookups import find_new_lookups
+from linkwright.review.versions import Versions
+
+Search = Callable[[Versions, Sequence[ChangedFile]], Iterable[tuple[str, Change]]]
+"""A function that yields the path of each user, and the line about it."""
+
+SEARCHES: tuple[Search, ...] = (
+    *(find_broken_callers, find_lost_arguments, find_lost_types, find_lost_methods, find_chosen_robots),
+    *(find_lost_displays, find_lost_lifecycles, find_lost_controllers, find_lost_data, find_lost_installs),
+    *(find_lost_libraries, find_lost_programs, find_lost_registrations, find_lost_sources, find_missing_programs),
+    *(find_passed_arguments, find_left_nodes, find_left_parameters, find_lost_interfaces, find_left_types),
+    find_new_lookups,
+)
