@@ -131,7 +131,7 @@ def test_a_bug_that_no_single_file_causes_is_a_note(two_messages, compare, monke
             raise KeyError("broken")
         yield from ()
 
-    monkeypatch.setattr(reviewing, "find_lost_types", fail)
+    monkeypatch.setattr(reviewing, "SEARCHES", (fail,))
     result = compare(two_messages)
     assert len(breaking(result)) == 2
     assert any("a part of the review is missing" in str(note) for note in result.notes)
