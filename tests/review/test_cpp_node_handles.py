@@ -159,6 +159,8 @@ void Arm::start({}) {{
         ("ros::NodeHandle & nh", 'nh.getParam("gain", g);', 'pnh.getParam("gain", g);', []),
         ("", 'other.getParam("gain", g);', 'pnh.getParam("gain", g);', []),
         ("", 'nh = make(); nh.getParam("gain", g);', 'pnh.getParam("gain", g);', []),
+        ("", 'getRosParam("gain", g);', 'pnh.getParam("gain", g);', []),
+        ("", 'pnh.getParam("gain", g);', 'getRosParam("gain", g);', []),
     ],
 )  # fmt: skip
 def test_parameter_that_becomes_private_is_renamed(repository, compare, arguments, old, new, expected):

@@ -449,6 +449,7 @@ class _Reader:
                     values = (_LITERAL.fullmatch(self._text[slice(*argument)]) for argument in arguments[index + 1 :])
                     default = next((value["text"] or value[1] for value in values if value is not None), "")
                     self._add(kind, literal["text"], begin, end, default)
+                    self._names.unknown_scopes.add(literal["text"])  # the function has the node handle
                     break
 
     def _read_rate(self, match: re.Match[str]) -> None:

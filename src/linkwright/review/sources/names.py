@@ -168,7 +168,8 @@ class SourceNames:
         counts: the number of places with a literal name, by kind and name.
         conditional_lines: the branches of ``if`` statements.
         default_names: the names that parameters give by default.
-        unknown_scopes: the parameters of ROS 1 that may be private, because a caller passes the node handle.
+        unknown_scopes: the parameters of ROS 1 that may be private, because a caller passes the node handle, or
+            another function has it.
         rates: the texts of rates and periods, each with its location.
         timers: the timers, in the order of the source.
         overrides: the names of functions that override a function of a base class, qualified by their classes.
