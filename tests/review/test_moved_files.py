@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.files.git_repository import GitRepository
 from linkwright.review.reports.sections import list_other_files
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
@@ -83,4 +84,17 @@ def test_added_package_is_described(repository, compare):
     (found,) = compare(repository, "HEAD~1..HEAD").subjects
     assert sentences(found) == [
         "package added: 'arm' 1.0.0, catkin; depends on xacro; arm/ has a package with the same name"
+    ]
+
+
+def test_renamed_files_with_equal_contents_are_paired_by_their_names(repository):
+    text = LAUNCH.format(name="speech") + "<!-- the launch file of a node -->\n" * 8
+    old = {f"arm/launch/n_{name}.launch": text for name in ("leds", "speech", "voice")}
+    new = {"arm/launch/leds.launch": text.replace("speech", "leds"), "arm/launch/speech.launch": text}
+    commits = [repository.commit(old), repository.commit({**dict.fromkeys(old), **new})]
+    files = GitRepository(repository.root, "arm", "", downloads_lfs=False).changed_files(*commits)
+    assert [(file.old_path, file.new_path) for file in files] == [
+        ("arm/launch/n_leds.launch", "arm/launch/leds.launch"),
+        ("arm/launch/n_voice.launch", None),
+        ("arm/launch/n_speech.launch", "arm/launch/speech.launch"),
     ]

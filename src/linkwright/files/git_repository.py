@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, phrase
+from linkwright.files.equal_files import pair_paths
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
 
@@ -248,7 +249,8 @@ class GitRepository:
     def changed_files(self, old_commit: str, new_commit: str | None = None) -> list[ChangedFile]:
         """Return the files that differ between two commits, sorted by path.
 
-        Renamed files are recognized as git recognizes them, unless the clone lacks the contents of a file.
+        Renamed files are recognized as git recognizes them, unless the clone lacks the contents of a file. Of several
+        renamed files with equal contents, the old and new paths are paired by their similarity.
 
         Args:
             old_commit: the hash of the old commit.
@@ -267,7 +269,7 @@ class GitRepository:
         if result.returncode != 0:
             message = phrase("git cannot compare the commits: {reason}", reason=foreign(result.stderr.strip()))
             raise LinkwrightError(Diagnostic("CLI346", message))
-        files = list(_parse_raw_changes(result.stdout))
+        files = _pair_equal_files(list(_parse_raw_changes(result.stdout)))
         if new_commit is None:
             names = self.run("ls-files", "--others", "--exclude-standard", "-z").stdout.split("\0")
             files += [ChangedFile(None, name) for name in names if name]
@@ -297,8 +299,33 @@ def read_lfs_hash(path: Path) -> str | None:
     return match["hash"].decode() if match else None
 
 
-def _parse_raw_changes(text: str) -> Iterator[ChangedFile]:
-    """Yield the files in the output of ``git diff --raw -z``.
+def _pair_equal_files(files: Sequence[tuple[str, ChangedFile]]) -> list[ChangedFile]:
+    """Return the changed files, with the renamed files of equal contents paired by their paths.
+
+    Args:
+        files: the changed files, each with the mode and hash of its old contents.
+    """
+    groups: dict[str, list[ChangedFile]] = {}
+    for contents, file in files:
+        is_moved = file.old_path is not None and file.old_path != file.new_path
+        groups.setdefault(contents if is_moved else file.path, []).append(file)
+    paired: list[ChangedFile] = []
+    for group in groups.values():
+        old_paths = [file.old_path for file in group if file.old_path]
+        pairs = pair_paths(old_paths, [file.new_path for file in group if file.new_path]) if len(group) > 1 else {}
+        if not pairs:
+            paired += group
+            continue
+        for file in group:
+            if file.new_path:
+                paired.append(ChangedFile(pairs[file.new_path], file.new_path, file.is_submodule, file.is_executable))
+        left = [path for path in old_paths if path not in pairs.values()]
+        paired += [ChangedFile(path, None, group[0].is_submodule) for path in left]
+    return paired
+
+
+def _parse_raw_changes(text: str) -> Iterator[tuple[str, ChangedFile]]:
+    """Yield the files in the output of ``git diff --raw -z``, each with the mode and hash of its old contents.
 
     A file is ``:OLDMODE NEWMODE OLDHASH NEWHASH STATUS``, a path and, if it was renamed, its new path. Each of them
     ends with a null byte.
@@ -307,13 +334,14 @@ def _parse_raw_changes(text: str) -> Iterator[ChangedFile]:
     for header in fields:
         if not header:
             return
-        old_mode, new_mode, _, _, status = header.lstrip(":").split(" ")
+        old_mode, new_mode, old_hash, _, status = header.lstrip(":").split(" ")
         old_path = new_path = next(fields)
         if status.startswith(("R", "C")):
             new_path = next(fields)
-        yield ChangedFile(
+        file = ChangedFile(
             None if old_mode == _NO_FILE_MODE or status.startswith("C") else old_path,
             None if new_mode == _NO_FILE_MODE else new_path,
             _SUBMODULE_MODE in (old_mode, new_mode),
             new_mode == _PROGRAM_MODE if {old_mode, new_mode} == {_PROGRAM_MODE, _PLAIN_MODE} else None,
         )
+        yield f"{old_mode} {old_hash}", file
