@@ -97,3 +97,18 @@ def test_default_of_a_parameter_that_a_launch_file_sets_is_not_lost(repository, 
     repository.commit({**MANIFEST, PATH: RCLPY, "arm/launch/arm.launch.xml": launch})
     repository.write({PATH: RCLPY.replace("String, self.a", "String, self.b")})
     assert not breaking(compare(repository))
+
+
+@pytest.mark.parametrize(
+    ("call", "expected"),
+    [
+        ("ArmNode.__init__(self)", "nodes added: 'steps'"),
+        ("Node.__init__(self, 'arm')", "nodes added: 'arm', 'steps'"),
+    ],
+)
+def test_instance_is_no_name_of_a_node(repository, compare, call, expected):
+    text = "import rospy\nclass Steps(ArmNode):\n  def __init__(self):\n    {}\n    rospy.init_node('steps')\n"
+    repository.commit(MANIFEST)
+    repository.write({PATH: text.format(call)})
+    (found,) = compare(repository).subjects
+    assert [line for line in sentences(found) if "nodes" in line] == [expected]

@@ -361,7 +361,8 @@ class _Reader:
             function == "__init__" and self._is_node_constructor(call)
         ):
             self._names.makes_node = True
-            self._add(NameKind.NODE, _get_argument(call, 0, "node_name"), None)
+            index = int(bool(call.args) and ast.unparse(call.args[0]) == "self")  # ``Base.__init__(self, ...)``
+            self._add(NameKind.NODE, _get_argument(call, index, "node_name"), None)
         else:
             self._names.makes_node |= function == "init_node"  # a node with a computed name
             self._read_other_call(call, function)
