@@ -10,6 +10,7 @@ JOINT = '<joint name="j" type="fixed"><parent link="base"/><child link="{}"/></j
 NODE = '<node pkg="state" exec="state"><param name="robot_description" value="{}"/></node>'
 MARKUP = '<launch><arg name="model" default="{model}"/>' + NODE.format("$(command 'xacro {path}')") + "</launch>\n"
 PATH = "$(find-pkg-share arm)/urdf/$(var model).urdf"
+SHORT, LONG = ("$(find-pkg-share arm)/urdf/short.urdf", "$(find-pkg-share arm)/urdf/long.urdf")
 PYTHON = """from launch import LaunchDescription
 from launch_ros.actions import Node
 def load_file(package, path):
@@ -23,9 +24,9 @@ def generate_launch_description():
 SENTENCE = "the robot 'arm/urdf/long.urdf' has no links tip of 'arm/urdf/short.urdf'"
 
 
-def find_lines(repository, compare, path, old, new, **robots):
+def find_lines(repository, compare, path, old, new, others=None, **robots):
     repository.commit({"arm/package.xml": MANIFEST, path: old, **{f"arm/urdf/{k}.urdf": v for k, v in robots.items()}})
-    repository.write({path: new})
+    repository.write({path: new, **(others or {})})
     result = compare(repository)
     return [str(change.sentence) for _, change in result.breaking_changes if "has no links" in str(change.sentence)]
 
@@ -49,3 +50,29 @@ def test_a_second_robot_is_not_another_one(repository, compare):
     old, more = (MARKUP.format(model=model, path=PATH) for model in ("short", "long"))
     both = old.replace("</launch>", NODE.format("$(find-pkg-share arm)/urdf/long.urdf") + "</launch>")
     assert find_lines(repository, compare, "arm/launch/a.launch.xml", both, more, **robots) == []
+
+
+INCLUDE = """<launch>
+  <include file="$(find-pkg-share arm)/launch/{file}.launch.xml"><arg name="model" value="{model}"/></include>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "included", "expected"),
+    [
+        (("a", "short"), ("b", "short"), {}, [SENTENCE]),
+        (("a", "short"), ("a", "long"), {}, []),
+        (("c", "short"), ("c", "long"), {}, [SENTENCE]),
+        (("a", "short"), ("a", "long"), {"arm/launch/a.launch.xml": MARKUP.format(model="short", path=LONG)},
+         [SENTENCE]),
+    ],
+)  # fmt: skip
+def test_another_robot_of_an_included_file_lacks_links(repository, compare, old, new, included, expected):
+    robots = {name: ROBOT.format(each, JOINT.format(each)) for name, each in (("short", "tip"), ("long", "hand"))}
+    paths = {"a": SHORT, "b": LONG, "c": PATH}
+    files = {f"arm/launch/{k}.launch.xml": MARKUP.format(model="short", path=path) for k, path in paths.items()}
+    repository.commit(files)
+    old, new = (INCLUDE.format(file=file, model=model) for file, model in (old, new))
+    found = find_lines(repository, compare, "arm/launch/s.launch.xml", old, new, included, **robots)
+    assert found == expected

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.review.file_pair import UnreadableFileError
@@ -24,7 +25,7 @@ _PACKAGE_PATH = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<
 _OWN_FOLDER = "$(dirname)/"
 _MOVABLE_KINDS = ("node", "include", "process", "argument")
 _STARTING_KINDS = ("node", "include", "process", "action")
-_MAX_INCLUDE_DEPTH = 3
+MAX_INCLUDE_DEPTH = 3
 _MAX_INCLUDED_FILES = 30
 _MAX_BYTES = 1 << 20
 _MAX_SEARCHED_FILES = 60
@@ -38,6 +39,18 @@ _FILE_WITHOUT_NODES = re.compile(
 _MoveKey = tuple[str, str, "str | None", tuple[str, ...]]
 """The kind, the name, the name of the node and the names that it serves."""
 _USED_ARGUMENT = re.compile(r"\$\((?:var|arg) (?P<name>[\w./-]+)\)")
+
+
+class IncludedFile(NamedTuple):
+    """An included launch file.
+
+    Attributes:
+        file: the path of the file.
+        outline: the actions of the file; the arguments that the including file passes are the defaults.
+    """
+
+    file: Path
+    outline: LaunchOutline
 
 
 class IncludedActions:
@@ -83,7 +96,7 @@ class IncludedActions:
         outlines: dict[str, LaunchOutline] = {}
         queue = [(self._version.file(self._path), self.outline, 0)]
         for file, outline, depth in queue:
-            for entry in outline.entries if depth < _MAX_INCLUDE_DEPTH else ():
+            for entry in outline.entries if depth < MAX_INCLUDE_DEPTH else ():
                 included_file = self.find_included_file(entry, file)
                 path = None if included_file is None else self._version.relative(included_file)
                 if included_file is None or path is None or path in outlines or len(outlines) >= _MAX_INCLUDED_FILES:
@@ -143,18 +156,29 @@ class IncludedActions:
 
     def _find_action_programs(self, entry: Entry, outline: LaunchOutline, file: Path, depth: int) -> Iterator[Program]:
         """Yield the shared programs that an include starts by default."""
-        resolved = replace(entry, name=outline.resolve(entry.name))
-        included_file = self.find_included_file(resolved, file) if depth < _MAX_INCLUDE_DEPTH else None
+        included = self.read_included_file(entry, outline, file) if depth < MAX_INCLUDE_DEPTH else None
+        if included is not None:
+            yield from self._find_file_programs(included.outline, included.file, depth + 1)
+            return
+        name = outline.resolve(entry.name)
+        if not _FILE_WITHOUT_NODES.search(name):
+            yield entry.kind, name
+
+    def read_included_file(self, entry: Entry, outline: LaunchOutline, file: Path) -> IncludedFile | None:
+        """Return the file that an action includes, or None if the repository does not have it or cannot read it.
+
+        Args:
+            entry: the action.
+            outline: the actions of the including file.
+            file: the including file.
+        """
+        included_file = self.find_included_file(replace(entry, name=outline.resolve(entry.name)), file)
         included_outline = None if included_file is None else self._read_outline(included_file)
         if included_file is None or included_outline is None:
-            if not _FILE_WITHOUT_NODES.search(resolved.name):
-                yield resolved.kind, resolved.name
-            return
+            return None
         passed_values = {name: outline.resolve(value) for name, value in entry.settings.items()}
         inherited_values = {} if outline.is_ros1 or included_outline.is_ros1 else outline.values
-        yield from self._find_file_programs(
-            included_outline.with_defaults({**inherited_values, **passed_values}), included_file, depth + 1
-        )
+        return IncludedFile(included_file, included_outline.with_defaults({**inherited_values, **passed_values}))
 
     def _read_outline(self, file: Path) -> LaunchOutline | None:
         if file not in self._outlines:
