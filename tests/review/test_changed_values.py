@@ -57,6 +57,7 @@ void Light::handle(double value) {
   pub_ = make<std::array<int, 4>>("light", 8);
   RCLCPP_INFO(get_logger(), "level 9");
   map_["near"] = {1, 2, 3};
+  state_.message = "Lidar not ready";
 }
 }
 """
@@ -140,6 +141,8 @@ def test_of_statements_without_a_counterpart_the_function_is_told(review_lines, 
         ("100.0", "200.0", "values in Light::handle: std::min(level_ + 1, 100.0 -> 200.0)"),
         ("0.5f", "0.7f", "values in Light::handle: value > 0.5f -> 0.7f"),
         ("int, 4", "int, 5", "values in Light::handle: 4 -> 5"),
+        ('"Lidar not', '"Laser not',
+         'values in Light::handle: state_.message "Lidar not ready" -> "Laser not ready"'),
         ('"light", 8', '"light", 9', 'values in Light::handle: make("light", 8 -> 9)'),
         ("{1, 2, 3}", "{1, 2, 4}", 'values in Light::handle: map_["near"] {1, 2, 3} -> {1, 2, 4}'),
     ],

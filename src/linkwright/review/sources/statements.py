@@ -128,13 +128,13 @@ def parse_statement(tokens: Sequence[Token]) -> Statement:
 
 def _find_literals(tokens: Sequence[Token]) -> Iterator[Literal]:
     """Yield the literals of a statement, except keys and assigned names."""
-    index = _find_assignment_end(tokens)
+    index = start = _find_assignment_end(tokens)
     pairs = match_brackets(tokens)
     while index < len(tokens):
         last = _find_list_end(tokens, index, pairs)
         if last is None:
             last = _find_literal_end(tokens, index)
-        if last is not None and not _is_key(tokens, last) and not _is_for_readers(tokens, index, last):
+        if last is not None and not _is_key(tokens, last) and not _is_for_readers(tokens, index, last, start):
             # the kind of a number decides how it is divided
             is_divided = "/" in (
                 tokens[index - 1].text if index else "",
@@ -228,17 +228,30 @@ def _is_key(tokens: Sequence[Token], last: int) -> bool:
     return is_text and last + 1 < len(tokens) and tokens[last + 1].text == ":"
 
 
-def _is_for_readers(tokens: Sequence[Token], first: int, last: int) -> bool:
-    """Return whether a literal is a string for human readers."""
+def _is_for_readers(tokens: Sequence[Token], first: int, last: int, start: int) -> bool:
+    """Return whether a literal is a string for human readers.
+
+    A sentence that is assigned to a member, such as the field of a message, is a value.
+
+    Args:
+        tokens: the tokens of the statement.
+        first: the index of the first token of the literal.
+        last: the index of the last token of the literal.
+        start: the index of the first token after the last assignment, or 0.
+    """
     if any(token.kind is not TokenKind.TEXT for token in tokens[first : last + 1]):
         return False
-    is_named = first > 1 and tokens[first - 1].text == "=" and tokens[first - 2].text in TEXTS_FOR_READERS
+    is_named = first > 1 and tokens[first - 1].text == "=" and tokens[first - 2].text.lower() in TEXTS_FOR_READERS
     is_formatted = last + 1 < len(tokens) and tokens[last + 1].text in ("%", ".")
     value = _normalize_literal(tokens[first : last + 1])
+    is_member = 2 < start == first and tokens[start - 3].text in _JOINERS
+    is_assigned = is_member and all(token.text == ";" for token in tokens[last + 1 :])
+    is_sentence = len(value.split(None, _MIN_PROSE_WORDS)) >= _MIN_PROSE_WORDS
+    is_of_several_lines = "\n" in value or "\\n" in value
     return (
         is_named
         or is_formatted
-        or len(value.split(None, _MIN_PROSE_WORDS)) >= _MIN_PROSE_WORDS
+        or (is_sentence and (not is_assigned or is_of_several_lines))
         or _HASH.fullmatch(value) is not None
     )
 
