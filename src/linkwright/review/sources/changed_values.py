@@ -13,7 +13,13 @@ from linkwright.review.sources.cpp_statements import read_cpp_statements
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.python_statements import read_python_statements
 from linkwright.review.sources.reading import try_read_source
-from linkwright.review.sources.statements import Difference, Literal, Statement, find_literal_differences
+from linkwright.review.sources.statements import (
+    Difference,
+    Literal,
+    Statement,
+    find_expression_difference,
+    find_literal_differences,
+)
 from linkwright.review.sources.tokens import TokenKind
 
 _DEFINITION = re.compile(r"\b([A-Z]\w+)(?=\s*(?:=(?!=)|[{\[,]))|define\s+(\w+)")
@@ -61,7 +67,7 @@ def find_value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) 
             item
             for pair in _pair_statements(old.get(name, []), statements, masks)
             for item in (
-                find_literal_differences(*pair) if _have_same_shape(*pair, masks) else _find_number_change(*pair)
+                find_literal_differences(*pair) if _have_same_shape(*pair, masks) else _find_value_change(*pair)
             )
             if not _is_reported(item, reported) and not _is_renamed(item, old_source.text, new_source.text)
         ]
@@ -128,6 +134,12 @@ def _pair_statements(
             pairs = list(zip(*same, strict=False))
             if len(same[0]) == len(same[1]) and not _are_reordered(pairs):
                 yield from (pair for pair in pairs if _are_versions(*pair))
+
+
+def _find_value_change(old: Statement, new: Statement) -> Iterator[Difference]:
+    """Yield the assigned expression, or else the number, that differs between two statements of other shapes."""
+    differences = list(find_expression_difference(old, new))
+    yield from differences or _find_number_change(old, new)
 
 
 def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:

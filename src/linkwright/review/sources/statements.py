@@ -26,6 +26,9 @@ _KEYWORDS = frozenset(
 )
 _COMPARISONS = frozenset({"==", "!=", "<", ">", "<=", ">="})
 _SIGNS = frozenset({"-", "+"})
+_CONSTANT_OPERATORS = frozenset({"+", "-", "*", "/", "(", ")", "[", "]", "{", "}", ",", ".", "::"})
+_CONSTANT_WORDS = frozenset({"math", "np", "numpy", "pi", "std", "numbers"})
+"""The operators and names of an expression whose value depends on no variable."""
 _MIN_PROSE_WORDS = 3
 """The minimum number of words of a sentence for human readers."""
 _HASH = re.compile(r'"[0-9a-fA-F]{32,}"')
@@ -319,6 +322,30 @@ def find_literal_differences(old: Statement, new: Statement) -> Iterator[Differe
             yield Difference(change_text(label, *map(_format_list, texts)), *texts, token)
             continue
         yield Difference(_add_context(new, start, end, expression, brackets), *texts, token)
+
+
+def find_expression_difference(old: Statement, new: Statement) -> Iterator[Difference]:
+    """Yield the expression of numbers and constants that an assignment has in place of another one."""
+    starts = _find_assignment_end(old.tokens), _find_assignment_end(new.tokens)
+    if not all(starts) or old.get_text(0, starts[0] - 1) != new.get_text(0, starts[1] - 1):
+        return
+    values = [
+        [token for token in statement.tokens[start:] if token.text != ";"]
+        for statement, start in zip((old, new), starts, strict=True)
+    ]
+    if not all(tokens and all(map(_is_of_constant_expression, tokens)) for tokens in values):
+        return
+    texts = join_tokens(values[0]), join_tokens(values[1])
+    shown = texts if sum(map(len, texts)) <= 2 * _MAX_EXPRESSION_CHARACTERS else differing_excerpts(*texts)
+    name = _find_name_before(new.tokens, starts[1] - 2, match_brackets(new.tokens))
+    yield Difference(f"{name} {shown[0]} -> {shown[1]}".strip(), *texts, values[1][0])
+
+
+def _is_of_constant_expression(token: Token) -> bool:
+    if token.kind is TokenKind.OPERATOR:
+        return token.text in _CONSTANT_OPERATORS
+    is_constant = _CONSTANT.fullmatch(token.text) is not None or token.text in _CONSTANT_WORDS
+    return token.kind is TokenKind.NUMBER or (token.kind is TokenKind.WORD and is_constant)
 
 
 def format_literal(statement: Statement, literal: Literal) -> str:
