@@ -274,3 +274,43 @@ def test_a_new_absolute_include_folder_is_told(repository, compare, command, fol
         line for subject in compare(repository).subjects for line in sentences(subject) if "include folders" in line
     ]
     assert found == [f"absolute include folders added: '{folder}'" for folder in folders]
+
+
+GTEST = """if(CATKIN_ENABLE_TESTING)
+  {}
+  target_link_libraries(homing ${{GTEST_LIBRARIES}})
+endif()
+"""
+PROGRAM_OF_A_TEST = "add_executable(homing test/homing.cpp)\n  add_rostest(test/homing.launch DEPENDENCIES homing)"
+
+
+@pytest.mark.parametrize("command", ["add_rostest_gtest", "add_rostest_gmock", "add_rostest_with_parameters_gmock"])
+def test_program_of_a_test_that_another_command_builds_is_not_removed(repository, compare, command):
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": CATKIN + GTEST.format(PROGRAM_OF_A_TEST)})
+    test = f"{command}(homing test/homing.launch test/homing.cpp)"
+    repository.write({"a/CMakeLists.txt": CATKIN + GTEST.format(test)})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["tests: 'test/homing.launch' renamed to 'homing'"]
+    assert breaking(compare(repository)) == []
+    repository.commit({"a/CMakeLists.txt": CATKIN + GTEST.format(test)})
+    repository.write({"a/CMakeLists.txt": CATKIN + GTEST.format(test.replace("homing.launch", "home.test"))})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["tests: 'homing': test/homing.launch -> test/home.test"]
+
+
+@pytest.mark.parametrize(
+    "command", ["catkin_add_gtest", "ament_add_gtest", "ament_add_gmock_executable", "ament_add_google_benchmark"]
+)
+def test_executable_that_becomes_a_test_of_the_same_name_is_not_removed(repository, compare, command):
+    text = CATKIN.replace("add_executable(driver", f"{command}(driver")
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": CATKIN})
+    repository.write({"a/CMakeLists.txt": text})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["tests added: 'driver'"]
+
+
+def test_executable_that_a_test_of_python_replaces_is_removed(repository, compare):
+    text = CATKIN.replace("add_executable(driver src/driver.cpp)", "ament_add_pytest_test(driver test/driver.py)")
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": CATKIN})
+    repository.write({"a/CMakeLists.txt": text})
+    assert breaking(compare(repository)) == ["built executables removed: 'driver'"]

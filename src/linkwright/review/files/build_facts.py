@@ -150,11 +150,13 @@ class TargetParts:
         libraries: the names of packages and libraries that are linked to it, with their locations.
         sources: its sources relative to the package, with their locations.
         is_test: whether it is a test.
+        is_test_program: whether it is a test that is built as a program.
     """
 
     libraries: dict[str, Span] = field(default_factory=dict)
     sources: dict[str, Span] = field(default_factory=dict)
     is_test: bool = False
+    is_test_program: bool = False
 
 
 @dataclass
@@ -235,7 +237,8 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         removed = [fact for name, fact in old_facts.items() if name not in new_facts]
         if kind in BUILT_KINDS:
             installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
-            added, removed = ([fact for fact in facts if fact.name not in installed] for facts in (added, removed))
+            added = [fact for fact in added if fact.name not in installed | _find_test_programs(old)]
+            removed = [fact for fact in removed if fact.name not in installed | _find_test_programs(new)]
         _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new))
         if kind is FactKind.STOP:
             _report_reworded_errors(pair, removed, added)
@@ -244,6 +247,11 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     _compare_files(pair, old, new)
     compare_other_commands(pair, old.other_commands, new.other_commands)
     old.environment.compare(pair, new.environment)
+
+
+def _find_test_programs(facts: BuildFacts) -> set[str]:
+    """Return the targets that are built as programs of tests."""
+    return {name for name, parts in facts.targets.items() if parts.is_test_program}
 
 
 def _compare_values(pair: FilePair, old: tuple[BuildFacts, Fact], new: tuple[BuildFacts, Fact]) -> None:
@@ -297,6 +305,8 @@ def _report_renamed(
         new = next((fact for fact in added if fact.name == names.rename_derived(old.name)), None)
         new = new or next((fact for fact in added if names.has_same_edit(old.name, fact.name)), None)
         new = new or next((fact for fact in added if fact.name == targets.get(old.name)), None)
+        if kind is FactKind.TEST:
+            new = new or next((fact for fact in added if fact.value == old.name), None)
         if new is not None:
             removed.remove(old)
             added.remove(new)

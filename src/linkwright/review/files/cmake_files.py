@@ -23,7 +23,7 @@ from linkwright.review.files.build_facts import (
     compare_build_files,
 )
 from linkwright.review.files.cmake_branches import find_conditions, iterate_conditional_commands
-from linkwright.review.files.cmake_targets import compare_targets, read_targets
+from linkwright.review.files.cmake_targets import builds_test, compare_targets, read_targets
 from linkwright.review.versions import Version
 
 CMAKE_FILE = "CMakeLists.txt"
@@ -51,6 +51,7 @@ _INSTALL_KEYWORDS = frozenset(
     {"EXPORT", "ARCHIVE", "LIBRARY", "RUNTIME", "OBJECTS", "INCLUDES", "DESTINATION", "COMPONENT", "OPTIONAL"}
 )
 _TEST_COMMAND = re.compile(r"(\w+_)?add_(\w*_)?(\w*tests?|gmock|gbenchmark|catch2|file_check)")
+_LAUNCH_SUFFIXES = (".launch", ".test", ".xml")
 _PACKAGE_KEYWORDS = frozenset(
     {
         *("INCLUDE_DIRS", "LIBRARIES", "CATKIN_DEPENDS", "DEPENDS", "CFG_EXTRAS", "EXPORTED_TARGETS", "DEPENDENCIES"),
@@ -402,11 +403,18 @@ def _read_tests(commands: Sequence[Command]) -> Iterator[Fact]:
         if _is_test(command):
             words = command.words
             index = words.index("NAME") + 1 if "NAME" in words[:-1] and command.name == "add_test" else 0
-            yield _make_fact(FactKind.TEST, command.arguments[index])
+            yield _make_fact(FactKind.TEST, command.arguments[index], _find_launch_file(command))
+
+
+def _find_launch_file(command: Command) -> str:
+    """Return the launch file of a test program, or an empty text if it has none."""
+    files = command.words[1:2] if builds_test(command.name) else []
+    return next((file for file in files if file.endswith(_LAUNCH_SUFFIXES) and not is_open(file)), "")
 
 
 def _is_test(command: Command) -> bool:
-    return bool(command.arguments) and _TEST_COMMAND.fullmatch(command.name) is not None
+    is_test = _TEST_COMMAND.fullmatch(command.name) is not None or builds_test(command.name)
+    return bool(command.arguments) and is_test
 
 
 def _read_settings(commands: Sequence[Command]) -> Iterator[Fact]:
