@@ -314,3 +314,27 @@ def test_executable_that_a_test_of_python_replaces_is_removed(repository, compar
     repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": CATKIN})
     repository.write({"a/CMakeLists.txt": text})
     assert breaking(compare(repository)) == ["built executables removed: 'driver'"]
+
+
+CONDITIONAL = "if({})\n  find_package(catkin REQUIRED COMPONENTS {})\nendif()\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (CONDITIONAL.format("A", "roslint"), "if(A)\n  find_package(roslint)\nendif()\n",
+         ["calls of find_package: 'roslint': any version -> any version, optional",
+          "calls of find_package removed: 'catkin (if A)'"]),
+        ("", CONDITIONAL.format("A", "tf2"), ["calls of find_package added: 'catkin (if A)', 'tf2 (if A)'"]),
+        (CONDITIONAL.format("A", "roscpp"), CONDITIONAL.format("B", "roscpp"),
+         ["calls of find_package 'catkin', 'roscpp': if A -> if B"]),
+        ("if(A)\nfind_package(x)\nendif()\nif(B AND C)\nfind_package(x)\nendif()\n", "find_package(x)\n",
+         ["calls of find_package 'x': if A OR (B AND C) -> always"]),
+        ("", "if(A)\nfind_package(x 1.2 REQUIRED)\nendif()\n", ["calls of find_package added: 'x 1.2 (if A)'"]),
+    ],
+)  # fmt: skip
+def test_calls_of_find_package_under_different_conditions_are_different_calls(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": CATKIN + old})
+    repository.write({"a/CMakeLists.txt": CATKIN + new})
+    found = subject(compare(repository), "a/CMakeLists.txt")
+    assert [text for text in sentences(found) if "find_package" in text] == expected

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import PurePosixPath
 
@@ -223,9 +223,11 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Report the differences between the facts of two versions of a build file."""
     conditions: dict[tuple[str, str], list[Fact]] = {}
     for kind in FactKind:
-        old_facts, new_facts = (
-            {fact.name: fact for fact in facts.facts if fact.kind is kind and _is_reported(pair, facts, fact)}
-            for facts in (old, new)
+        old_facts, new_facts = _index_facts(
+            *(
+                [fact for fact in facts.facts if fact.kind is kind and _is_reported(pair, facts, fact)]
+                for facts in (old, new)
+            )
         )
         for name, fact in new_facts.items():
             if name in old_facts:
@@ -247,6 +249,44 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     _compare_files(pair, old, new)
     compare_other_commands(pair, old.other_commands, new.other_commands)
     old.environment.compare(pair, new.environment)
+
+
+def _index_facts(
+    old: Sequence[Fact], new: Sequence[Fact]
+) -> tuple[dict[tuple[str, str | None], Fact], dict[tuple[str, str | None], Fact]]:
+    """Return the facts of a kind in two versions. Facts that belong together have the same key.
+
+    The last fact of a name counts, except for packages: calls of find_package under different conditions are
+    different facts. If both versions have a package under conditions that the other lacks, these calls are one fact.
+    """
+    sides = old, new
+    if not any(fact.kind is FactKind.PACKAGE for fact in (*old, *new)):
+        old_facts, new_facts = ({(fact.name, None): fact for fact in facts} for facts in sides)
+        return old_facts, new_facts
+    old_keys, new_keys = ({(fact.name, fact.condition) for fact in facts} for facts in sides)
+    changed = {name for name, _ in old_keys - new_keys} & {name for name, _ in new_keys - old_keys}
+    indexes: list[dict[tuple[str, str | None], Fact]] = []
+    for facts in sides:
+        index: dict[tuple[str, str | None], Fact] = {}
+        conditions: dict[str, dict[str, None]] = {}
+        for fact in facts:
+            key = fact.name, fact.condition
+            if fact.name in changed and key not in old_keys & new_keys:
+                conditions.setdefault(fact.name, {})[fact.condition] = None
+                index[fact.name, None] = replace(fact, condition=_join_conditions(list(conditions[fact.name])))
+            else:
+                index[key] = fact
+        indexes.append(index)
+    return indexes[0], indexes[1]
+
+
+def _join_conditions(conditions: Sequence[str]) -> str:
+    """Return the condition under which one of several conditions holds. An empty condition always holds."""
+    if "" in conditions:
+        return ""
+    if len(conditions) == 1:
+        return conditions[0]
+    return " OR ".join(f"({text})" if " AND " in text else text for text in conditions)
 
 
 def _find_test_programs(facts: BuildFacts) -> set[str]:
@@ -371,10 +411,10 @@ def _format_facts(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> P
 
 def _format_fact(fact: Fact) -> str:
     """Return the name of a fact, with its value or condition if a reader needs it."""
-    if fact.kind is FactKind.SETTING or (fact.kind is FactKind.PACKAGE and fact.value not in ("", ANY_VERSION)):
-        return f"{fact.name} {fact.value}"
+    has_version = fact.kind is FactKind.PACKAGE and fact.value not in ("", ANY_VERSION)
+    text = f"{fact.name} {fact.value}" if has_version or fact.kind is FactKind.SETTING else fact.name
     is_unconditional = not fact.condition or fact.kind not in _CONDITIONAL_KINDS
-    return fact.name if is_unconditional else f"{fact.name} (if {fact.condition})"
+    return text if is_unconditional else f"{text} (if {fact.condition})"
 
 
 def _report_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequence[Fact]]) -> None:

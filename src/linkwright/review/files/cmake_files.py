@@ -395,7 +395,8 @@ def _read_packages(commands: Sequence[Command]) -> Iterator[Fact]:
             for component in options[start:]:
                 if not component.text.isupper():  # a keyword, such as REQUIRED
                     name = component.text if package.text == "catkin" else f"{package.text} {component.text}"
-                    yield _make_fact(FactKind.PACKAGE, component, name=name)
+                    required = ANY_VERSION if package.text == "catkin" else ""
+                    yield _make_fact(FactKind.PACKAGE, component, required, name)
 
 
 def _read_tests(commands: Sequence[Command]) -> Iterator[Fact]:
