@@ -29,8 +29,8 @@ def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bo
     old_package, new_package = versions.old.package_of(old_path), versions.new.package_of(new_path)
     if old_package is None or old_package != new_package:
         return False
-    old_installed_paths = _find_installed_paths(versions.old, old_package, old_path)
-    return old_installed_paths is not None and old_installed_paths == _find_installed_paths(
+    old_installed_paths = find_installed_paths(versions.old, old_package, old_path)
+    return old_installed_paths is not None and old_installed_paths == find_installed_paths(
         versions.new, old_package, new_path
     )
 
@@ -51,7 +51,7 @@ def keeps_type(versions: Versions, old_path: str, new_path: str) -> bool:
     return is_built and Manifest(read_document(str(versions.new.root / package / MANIFEST))).is_ros1
 
 
-def _find_installed_paths(version: Version, package: str, path: str) -> frozenset[str] | None:
+def find_installed_paths(version: Version, package: str, path: str) -> frozenset[str] | None:
     """Return the installed paths of a file, or None if they are unknown.
 
     They do not contain the name of the package.
