@@ -110,7 +110,8 @@ def find_python_packages(version: Version, package: str) -> list[str]:
 def is_exported_header(version: Version, package: str, path: str) -> bool:
     """Return whether other packages find a header.
 
-    Such a header is installed, or is in a folder that catkin or the manifest of rosbuild exports.
+    Such a header is installed, or is in a folder that catkin or the manifest of rosbuild exports. If not all installed
+    files are known, a header in a folder that a package of ament exports counts as installed.
     """
     facts = read_package_facts(version, package)
     source = PurePosixPath(path).relative_to(package).as_posix()
@@ -119,6 +120,9 @@ def is_exported_header(version: Version, package: str, path: str) -> bool:
         return True
     if facts is None:
         return False
-    folders = (fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER)
-    is_installed = any(target.startswith("include/") and source == other for target, other in facts.files.items())
-    return is_installed or any(PurePosixPath(source).is_relative_to(folder) for folder in folders)
+    if any(target.startswith("include/") and source == other for target, other in facts.files.items()):
+        return True
+    folders = set(facts.header_paths)
+    if not facts.is_complete:
+        folders |= {fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER}
+    return any(PurePosixPath(source).is_relative_to(folder) for folder in folders)

@@ -172,6 +172,8 @@ class BuildFacts:
         project: the name of the package; empty if it is not known.
         environment: the environment variables that the file reads.
         targets: the parts of targets, by target.
+        header_paths: the headers and folders of headers relative to the package that other packages find although
+            `files` does not contain them.
     """
 
     facts: list[Fact] = field(default_factory=list)
@@ -182,6 +184,7 @@ class BuildFacts:
     project: str = ""
     environment: EnvironmentVariables = field(default_factory=lambda: EnvironmentVariables(()))
     targets: dict[str, TargetParts] = field(default_factory=dict)
+    header_paths: frozenset[str] = frozenset()
 
     @property
     def is_complete(self) -> bool:

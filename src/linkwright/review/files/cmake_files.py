@@ -23,6 +23,7 @@ from linkwright.review.files.build_facts import (
     compare_build_files,
 )
 from linkwright.review.files.cmake_branches import find_conditions, iterate_conditional_commands
+from linkwright.review.files.cmake_headers import find_header_paths
 from linkwright.review.files.cmake_targets import builds_test, compare_targets, read_targets
 from linkwright.review.versions import Version
 
@@ -105,6 +106,8 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     facts.facts += _read_skipped_targets(source, commands, program.variables)
     facts.facts += _read_build_failures(source, commands)
     facts.targets = read_targets(commands)
+    exported_folders = [fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER]
+    facts.header_paths = frozenset(find_header_paths(commands, exported_folders))
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     facts.environment = EnvironmentVariables(
         (match[1], source.span(match.start(), match.end())) for match in _ENVIRONMENT.finditer(text)
