@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import PurePosixPath
+from typing import TypeAlias
 
 from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES
@@ -254,9 +255,11 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     old.environment.compare(pair, new.environment)
 
 
-def _index_facts(
-    old: Sequence[Fact], new: Sequence[Fact]
-) -> tuple[dict[tuple[str, str | None], Fact], dict[tuple[str, str | None], Fact]]:
+_FactIndex: TypeAlias = "dict[tuple[str, str | None], Fact]"
+"""The facts of a kind in a version, by name and, for some calls of find_package, condition."""
+
+
+def _index_facts(old: Sequence[Fact], new: Sequence[Fact]) -> tuple[_FactIndex, _FactIndex]:
     """Return the facts of a kind in two versions. Facts that belong together have the same key.
 
     The last fact of a name counts, except for packages: calls of find_package under different conditions are
@@ -264,13 +267,12 @@ def _index_facts(
     """
     sides = old, new
     if not any(fact.kind is FactKind.PACKAGE for fact in (*old, *new)):
-        old_facts, new_facts = ({(fact.name, None): fact for fact in facts} for facts in sides)
-        return old_facts, new_facts
+        return {(fact.name, None): fact for fact in old}, {(fact.name, None): fact for fact in new}
     old_keys, new_keys = ({(fact.name, fact.condition) for fact in facts} for facts in sides)
     changed = {name for name, _ in old_keys - new_keys} & {name for name, _ in new_keys - old_keys}
-    indexes: list[dict[tuple[str, str | None], Fact]] = []
+    indexes: list[_FactIndex] = []
     for facts in sides:
-        index: dict[tuple[str, str | None], Fact] = {}
+        index: _FactIndex = {}
         conditions: dict[str, dict[str, None]] = {}
         for fact in facts:
             key = fact.name, fact.condition

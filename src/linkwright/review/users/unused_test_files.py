@@ -15,7 +15,10 @@ def is_unused_test_file(versions: Versions, old_path: str, new_path: str) -> boo
     package = versions.old.package_of(old_path)
     if package is None or TEST_FOLDERS.isdisjoint(PurePosixPath(old_path).relative_to(package).parts):
         return False
-    if versions.new.package_of(new_path) != package or find_installed_paths(versions.old, package, old_path) != set():
+    if (
+        versions.new.package_of(new_path) != package
+        or find_installed_paths(versions.old, package, old_path) != frozenset()
+    ):
         return False
     name = re.compile(rf"(?<![\w.-]){re.escape(PurePosixPath(old_path).name)}(?![\w.-])")
     return not any(name.search(versions.new.text(path)) for path in versions.new.paths(READER_SUFFIXES))
