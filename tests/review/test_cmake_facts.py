@@ -70,6 +70,13 @@ OTHER_FILES = {
     [
         (AMENT, "core rclcpp::rclcpp", "core rclcpp::rclcpp tf2::tf2", ["'driver' linked to 'tf2'"], False),
         (AMENT, "core rclcpp::rclcpp", "core ${rclcpp_TARGETS}", [], False),
+        (AMENT, "core rclcpp::rclcpp", "core rclcpp::rclcpp rclcpp::more",
+         ["'driver' linked to 'rclcpp::more'"], False),
+        (AMENT, "core rclcpp::rclcpp", "core rclcpp::more", [], False),
+        (AMENT.replace("core rclcpp::", "core rclcpp::more rclcpp::"), "core rclcpp::more rclcpp::rclcpp",
+         "core rclcpp", ["'driver' no longer linked to 'rclcpp::more'"], False),
+        (AMENT.replace("core rclcpp::rclcpp", "core rclcpp::more"), "core rclcpp::more", "core ${rclcpp_TARGETS}",
+         [], False),
         (AMENT, "src/core.cpp", "src/core.cpp src/more.cpp", ["sources of 'core' added: 'src/more.cpp'"], False),
         (AMENT, "test/core.cpp", "test/core.cpp test/more.cpp",
          ["sources of 'test_core' added: 'test/more.cpp'"], False),

@@ -59,13 +59,14 @@ def builds_test(command: str) -> bool:
 
 
 def _get_library_name(text: str, command: str) -> str:
-    """Return the name of a library, or of its package if it is a target of a package."""
+    """Return the name of a library, or of its package if it has the name of the package or is in a variable of it."""
     variable = _VARIABLE.fullmatch(text)
     if variable is not None:
         return variable[1]
     if command == "rosbuild_link_boost":
         return f"boost_{text}"
-    return text if text.startswith("$<") else text.partition("::")[0]
+    package, _, library = text.partition("::")
+    return package if library == package else text
 
 
 def _get_span(argument: Argument) -> Span:
@@ -121,7 +122,14 @@ class _TargetChange(NamedTuple):
 
 
 def _find_unpaired_names(items: Mapping[str, Span], others: Mapping[str, Span]) -> list[str]:
-    return [item for item in items if item not in others]
+    """Return the names that only one side has.
+
+    A library of a package such as ``a::b``, and the package ``a`` on the other side, are a pair.
+    """
+    replaced = {item for item in others if item not in items}
+    packages = {item.partition("::")[0] for item in replaced if "::" in item}
+    unpaired = [item for item in items if item not in others and item not in packages]
+    return [item for item in unpaired if "::" not in item or item.partition("::")[0] not in replaced]
 
 
 def _format_change(kind: str, targets: Sequence[str], items: Sequence[str], *, is_added: bool) -> Phrase:
