@@ -345,3 +345,23 @@ def test_calls_of_find_package_under_different_conditions_are_different_calls(re
     repository.write({"a/CMakeLists.txt": CATKIN + new})
     found = subject(compare(repository), "a/CMakeLists.txt")
     assert [text for text in sentences(found) if "find_package" in text] == expected
+
+
+EXPORT = "pluginlib_export_plugin_description_file(base tools.xml)\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_repeated"),
+    [
+        (EXPORT, EXPORT * 2, True),
+        (EXPORT * 2, EXPORT * 2 + "# end\n", False),
+        (EXPORT, EXPORT + EXPORT.replace("base", "other"), False),
+        (EXPORT * 2, EXPORT, False),
+    ],
+)
+def test_plugin_description_that_is_exported_twice_is_told(repository, compare, old, new, is_repeated):
+    files = {**MANIFEST, **OTHER_FILES, "a/tools.xml": "<library path='core'/>\n"}
+    repository.commit({**files, "a/CMakeLists.txt": AMENT + old})
+    repository.write({"a/CMakeLists.txt": AMENT + new})
+    lines = [text for found in compare(repository).subjects for text in sentences(found) if "times" in text]
+    assert lines == (["plugin description 'tools.xml' is exported 2 times"] if is_repeated else [])

@@ -250,6 +250,7 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             _report_reworded_errors(pair, removed, added)
         _report_unpaired(pair, kind, removed, added)
     _report_conditions(pair, conditions)
+    _report_repeated_exports(pair, old, new)
     _compare_files(pair, old, new)
     compare_other_commands(pair, old.other_commands, new.other_commands)
     old.environment.compare(pair, new.environment)
@@ -331,6 +332,22 @@ def _report_unpaired(pair: FilePair, kind: FactKind, removed: Sequence[Fact], ad
     if removed:
         location = pair.location(removed[0].span, is_old=True)
         pair.add(_format_facts(kind, removed, is_added=False), location, kind.reason)
+
+
+def _report_repeated_exports(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+    """Report the plugin descriptions that the new version exports more than once under the same condition."""
+    spans: dict[tuple[str, str, str], list[Span | None]] = {}
+    old_counts: dict[tuple[str, str, str], int] = {}
+    for fact in old.facts:
+        key = fact.name, fact.value, fact.condition
+        old_counts[key] = old_counts.get(key, 0) + (fact.kind is FactKind.PLUGIN_DESCRIPTION)
+    for fact in new.facts:
+        if fact.kind is FactKind.PLUGIN_DESCRIPTION:
+            spans.setdefault((fact.name, fact.value, fact.condition), []).append(fact.span)
+    for key, found in spans.items():
+        if len(found) > max(old_counts.get(key, 0), 1):
+            text = phrase("plugin description '{name}' is exported {count} times", name=key[0], count=len(found))
+            pair.add(text, pair.location(found[-1]))
 
 
 def _report_renamed(
