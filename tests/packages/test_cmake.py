@@ -425,6 +425,28 @@ def test_undecidable_condition_reads_all_branches(package: Path, condition: str)
     assert copied_paths(text, package) == {"urdf/arm.urdf": "a/arm.urdf"}
 
 
+_SET_TWICE = "set(FOLDER a_${x})\n  set(FOLDER b_${x})\n  install(FILES urdf/arm.urdf DESTINATION ${FOLDER})"
+_USED_LATER = "\ninstall(DIRECTORY launch DESTINATION ${FOLDER})"
+
+
+@pytest.mark.parametrize("before", ["", "set(FOLDER c)\n"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"set(x 1)\nif(A)\n  {_SET_TWICE}\nendif()",
+        f"set(x 1)\nif(A)\n  if(B)\n  {_SET_TWICE}\n  endif()\nendif()",
+        f"set(x 1)\nif(A)\n  set(FOLDER d)\nelse()\n  {_SET_TWICE}\nendif()",
+        f"function(copy x)\n  {_SET_TWICE}\nendfunction()\nif(A)\n  copy(1)\nendif()",
+    ],
+)
+def test_variable_that_a_branch_sets_twice_has_the_second_value_in_it(package: Path, text: str, before: str) -> None:
+    assert copied_paths(before + text, package) == {"urdf/arm.urdf": "b_1/arm.urdf"}
+    install_rules = rules(before + text + _USED_LATER, package)
+    is_local = "function" in text and before != ""
+    is_new = "function" not in text and "else" not in text and before == ""
+    assert install_rules.is_complete is (is_local or is_new)
+
+
 def test_files_generated_by_build_are_installed(package: Path) -> None:
     (package / "robot.urdf.in").write_text("@NAME@")
     install_rules = rules(

@@ -70,6 +70,13 @@ OTHER_FILES = {
     [
         (AMENT, "core rclcpp::rclcpp", "core rclcpp::rclcpp tf2::tf2", ["'driver' linked to 'tf2'"], False),
         (AMENT, "core rclcpp::rclcpp", "core ${rclcpp_TARGETS}", [], False),
+        (AMENT, "core rclcpp::rclcpp", "core rclcpp::rclcpp rclcpp::more",
+         ["'driver' linked to 'rclcpp::more'"], False),
+        (AMENT, "core rclcpp::rclcpp", "core rclcpp::more", [], False),
+        (AMENT.replace("core rclcpp::", "core rclcpp::more rclcpp::"), "core rclcpp::more rclcpp::rclcpp",
+         "core rclcpp", ["'driver' no longer linked to 'rclcpp::more'"], False),
+        (AMENT.replace("core rclcpp::rclcpp", "core rclcpp::more"), "core rclcpp::more", "core ${rclcpp_TARGETS}",
+         [], False),
         (AMENT, "src/core.cpp", "src/core.cpp src/more.cpp", ["sources of 'core' added: 'src/more.cpp'"], False),
         (AMENT, "test/core.cpp", "test/core.cpp test/more.cpp",
          ["sources of 'test_core' added: 'test/more.cpp'"], False),
@@ -274,3 +281,87 @@ def test_a_new_absolute_include_folder_is_told(repository, compare, command, fol
         line for subject in compare(repository).subjects for line in sentences(subject) if "include folders" in line
     ]
     assert found == [f"absolute include folders added: '{folder}'" for folder in folders]
+
+
+GTEST = """if(CATKIN_ENABLE_TESTING)
+  {}
+  target_link_libraries(homing ${{GTEST_LIBRARIES}})
+endif()
+"""
+PROGRAM_OF_A_TEST = "add_executable(homing test/homing.cpp)\n  add_rostest(test/homing.launch DEPENDENCIES homing)"
+
+
+@pytest.mark.parametrize("command", ["add_rostest_gtest", "add_rostest_gmock", "add_rostest_with_parameters_gmock"])
+def test_program_of_a_test_that_another_command_builds_is_not_removed(repository, compare, command):
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": CATKIN + GTEST.format(PROGRAM_OF_A_TEST)})
+    test = f"{command}(homing test/homing.launch test/homing.cpp)"
+    repository.write({"a/CMakeLists.txt": CATKIN + GTEST.format(test)})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["tests: 'test/homing.launch' renamed to 'homing'"]
+    assert breaking(compare(repository)) == []
+    repository.commit({"a/CMakeLists.txt": CATKIN + GTEST.format(test)})
+    repository.write({"a/CMakeLists.txt": CATKIN + GTEST.format(test.replace("homing.launch", "home.test"))})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["tests: 'homing': test/homing.launch -> test/home.test"]
+
+
+@pytest.mark.parametrize(
+    "command", ["catkin_add_gtest", "ament_add_gtest", "ament_add_gmock_executable", "ament_add_google_benchmark"]
+)
+def test_executable_that_becomes_a_test_of_the_same_name_is_not_removed(repository, compare, command):
+    text = CATKIN.replace("add_executable(driver", f"{command}(driver")
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": CATKIN})
+    repository.write({"a/CMakeLists.txt": text})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["tests added: 'driver'"]
+
+
+def test_executable_that_a_test_of_python_replaces_is_removed(repository, compare):
+    text = CATKIN.replace("add_executable(driver src/driver.cpp)", "ament_add_pytest_test(driver test/driver.py)")
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": CATKIN})
+    repository.write({"a/CMakeLists.txt": text})
+    assert breaking(compare(repository)) == ["built executables removed: 'driver'"]
+
+
+CONDITIONAL = "if({})\n  find_package(catkin REQUIRED COMPONENTS {})\nendif()\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (CONDITIONAL.format("A", "roslint"), "if(A)\n  find_package(roslint)\nendif()\n",
+         ["calls of find_package: 'roslint': any version -> any version, optional",
+          "calls of find_package removed: 'catkin (if A)'"]),
+        ("", CONDITIONAL.format("A", "tf2"), ["calls of find_package added: 'catkin (if A)', 'tf2 (if A)'"]),
+        (CONDITIONAL.format("A", "roscpp"), CONDITIONAL.format("B", "roscpp"),
+         ["calls of find_package 'catkin', 'roscpp': if A -> if B"]),
+        ("if(A)\nfind_package(x)\nendif()\nif(B AND C)\nfind_package(x)\nendif()\n", "find_package(x)\n",
+         ["calls of find_package 'x': if A OR (B AND C) -> always"]),
+        ("", "if(A)\nfind_package(x 1.2 REQUIRED)\nendif()\n", ["calls of find_package added: 'x 1.2 (if A)'"]),
+    ],
+)  # fmt: skip
+def test_calls_of_find_package_under_different_conditions_are_different_calls(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": CATKIN + old})
+    repository.write({"a/CMakeLists.txt": CATKIN + new})
+    found = subject(compare(repository), "a/CMakeLists.txt")
+    assert [text for text in sentences(found) if "find_package" in text] == expected
+
+
+EXPORT = "pluginlib_export_plugin_description_file(base tools.xml)\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_repeated"),
+    [
+        (EXPORT, EXPORT * 2, True),
+        (EXPORT * 2, EXPORT * 2 + "# end\n", False),
+        (EXPORT, EXPORT + EXPORT.replace("base", "other"), False),
+        (EXPORT * 2, EXPORT, False),
+    ],
+)
+def test_plugin_description_that_is_exported_twice_is_told(repository, compare, old, new, is_repeated):
+    files = {**MANIFEST, **OTHER_FILES, "a/tools.xml": "<library path='core'/>\n"}
+    repository.commit({**files, "a/CMakeLists.txt": AMENT + old})
+    repository.write({"a/CMakeLists.txt": AMENT + new})
+    lines = [text for found in compare(repository).subjects for text in sentences(found) if "times" in text]
+    assert lines == (["plugin description 'tools.xml' is exported 2 times"] if is_repeated else [])

@@ -85,3 +85,30 @@ def test_removed_class_of_an_installed_header_is_breaking(repository, compare):
     repository.commit(FILES)
     repository.write({"a/include/arm/driver.hpp": HEADER.replace("class Driver {\n};\n", "")})
     assert breaking(compare(repository)) == ["classes removed: 'Driver'"]
+
+
+EXPORT = "ament_export_include_directories(include)\n"
+LIBRARY = "project(arm)\nadd_library(core src/core.cpp)\n{}\ninstall(TARGETS core {} DESTINATION lib)\n"
+FILE_SET = "target_sources(core PUBLIC FILE_SET HEADERS BASE_DIRS include FILES include/arm/{}.hpp)"
+PROPERTIES = "set_target_properties(core PROPERTIES VERSION 1 PUBLIC_HEADER include/arm/driver.hpp)"
+
+
+@pytest.mark.parametrize(
+    ("cmake", "is_interface"),
+    [
+        (LIBRARY.format(EXPORT, ""), False),
+        (LIBRARY.format(FILE_SET.format("driver"), ""), False),
+        (LIBRARY.format(FILE_SET.format("driver"), "FILE_SET HEADERS"), True),
+        (LIBRARY.format(FILE_SET.format("other"), "FILE_SET HEADERS"), False),
+        (LIBRARY.format(PROPERTIES, "PUBLIC_HEADER"), True),
+        (LIBRARY.format(PROPERTIES, ""), False),
+        (LIBRARY.format(EXPORT, "") + "install(DIRECTORY include/ DESTINATION include)\n", True),
+        (LIBRARY.format(EXPORT, "") + "install(DIRECTORY ${HEADERS} DESTINATION include)\n", True),
+        (LIBRARY.format("", "") + "ament_auto_package()\n", True),
+    ],
+)
+def test_header_is_an_interface_only_if_something_installs_it(repository, compare, cmake, is_interface):
+    repository.commit({**FILES, "a/CMakeLists.txt": cmake})
+    repository.write({"a/include/arm/driver.hpp": HEADER.replace("class Driver {\n};\n", "")})
+    expected = ["classes removed: 'Driver'"] if is_interface else []
+    assert [text for text in breaking(compare(repository)) if "classes" in text] == expected

@@ -98,3 +98,34 @@ def test_renamed_files_with_equal_contents_are_paired_by_their_names(repository)
         ("arm/launch/n_voice.launch", None),
         ("arm/launch/n_speech.launch", "arm/launch/speech.launch"),
     ]
+
+
+TEST = """project(arm)
+if(BUILD_TESTING)
+  ament_add_gtest(grip test/grip.cpp ${{CMAKE_CURRENT_SOURCE_DIR}}/test/{}.yaml)
+endif()
+{}ament_package()
+"""
+INSTALLED = "install(DIRECTORY test DESTINATION share/arm)\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "install", "other_files", "is_breaking"),
+    [
+        ("new_grip", "", {}, False),
+        ("grip", "", {}, True),
+        ("new_grip", INSTALLED, {}, True),
+        ("new_grip", "", {"arm/launch/grip.launch.py": "NAME = 'test/grip.yaml'\n"}, True),
+    ],
+)
+def test_renamed_file_that_only_tests_use_is_breaking_if_its_old_name_is_used(
+    repository, compare, name, install, other_files, is_breaking
+):
+    values = "grip:\n  ros__parameters:\n    force: 2.0\n    speed: 1.0\n"
+    old = {"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": TEST.format("grip", install), **other_files}
+    repository.commit({**old, "arm/test/grip.yaml": values})
+    new = {"arm/CMakeLists.txt": TEST.format(name, install) + "# new\n"}
+    repository.commit({**new, "arm/test/grip.yaml": None, "arm/test/new_grip.yaml": values})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert sentences(subject(result, "arm/test/new_grip.yaml")) == ["renamed from arm/test/grip.yaml"]
+    assert ("renamed from arm/test/grip.yaml" in breaking(result)) is is_breaking

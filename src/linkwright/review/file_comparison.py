@@ -13,6 +13,7 @@ from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.installed_paths import keeps_installed_path, keeps_type
 from linkwright.review.kinds import KindRule, adapt_rule_to_contents
 from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot
+from linkwright.review.users.unused_test_files import is_unused_test_file
 from linkwright.review.versions import Version, Versions
 
 
@@ -88,9 +89,10 @@ def _make_renaming_change(versions: Versions, rule: KindRule, old_path: str, new
     if rule.kind is SubjectKind.INTERFACE and keeps_type(versions, old_path, new_path):
         text = phrase("moved from {folder}, the type keeps its name", folder=f"{old.parent}/")
         return Change(text, path_change=PathChange.MOVED)
-    effect = Effect.CHANGED if rule.removal_reason is None else Effect.BREAKING
+    reason = None if is_unused_test_file(versions, old_path, new_path) else rule.removal_reason
+    effect = Effect.CHANGED if reason is None else Effect.BREAKING
     text = phrase("renamed from {path}", path=old_path)
-    return Change(text, effect, rule.removal_reason, path_change=PathChange.RENAMED)
+    return Change(text, effect, reason, path_change=PathChange.RENAMED)
 
 
 def _add_contents(rule: KindRule, text: Phrase, version: Version, path: str) -> Phrase:

@@ -29,8 +29,8 @@ def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bo
     old_package, new_package = versions.old.package_of(old_path), versions.new.package_of(new_path)
     if old_package is None or old_package != new_package:
         return False
-    old_installed_paths = _find_installed_paths(versions.old, old_package, old_path)
-    return old_installed_paths is not None and old_installed_paths == _find_installed_paths(
+    old_installed_paths = find_installed_paths(versions.old, old_package, old_path)
+    return old_installed_paths is not None and old_installed_paths == find_installed_paths(
         versions.new, old_package, new_path
     )
 
@@ -51,7 +51,7 @@ def keeps_type(versions: Versions, old_path: str, new_path: str) -> bool:
     return is_built and Manifest(read_document(str(versions.new.root / package / MANIFEST))).is_ros1
 
 
-def _find_installed_paths(version: Version, package: str, path: str) -> frozenset[str] | None:
+def find_installed_paths(version: Version, package: str, path: str) -> frozenset[str] | None:
     """Return the installed paths of a file, or None if they are unknown.
 
     They do not contain the name of the package.
@@ -110,7 +110,8 @@ def find_python_packages(version: Version, package: str) -> list[str]:
 def is_exported_header(version: Version, package: str, path: str) -> bool:
     """Return whether other packages find a header.
 
-    Such a header is installed, or is in a folder that catkin or the manifest of rosbuild exports.
+    Such a header is installed, or is in a folder that catkin or the manifest of rosbuild exports. If not all installed
+    files are known, a header in a folder that a package of ament exports counts as installed.
     """
     facts = read_package_facts(version, package)
     source = PurePosixPath(path).relative_to(package).as_posix()
@@ -119,6 +120,9 @@ def is_exported_header(version: Version, package: str, path: str) -> bool:
         return True
     if facts is None:
         return False
-    folders = (fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER)
-    is_installed = any(target.startswith("include/") and source == other for target, other in facts.files.items())
-    return is_installed or any(PurePosixPath(source).is_relative_to(folder) for folder in folders)
+    if any(target.startswith("include/") and source == other for target, other in facts.files.items()):
+        return True
+    folders = set(facts.header_paths)
+    if not facts.is_complete:
+        folders |= {fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER}
+    return any(PurePosixPath(source).is_relative_to(folder) for folder in folders)

@@ -160,6 +160,7 @@ class CMakeProgram:
     _routines: dict[str, _Routine] = field(default_factory=dict)
     _folder: str = ""
     _unknown_conditions: int = 0
+    _replaced_values: dict[str, str | None] = field(default_factory=dict)  # before the current branch of an `if`
     _enclosing_depths: dict[str, int] = field(default_factory=dict)  # e.g. `break` -> unknown conditions around it
     _exit_command: str = ""
     _parent_values: dict[str, str] = field(default_factory=dict)
@@ -228,8 +229,14 @@ class CMakeProgram:
                 continue
             is_uncertain = is_uncertain or is_true is None
             self._unknown_conditions += is_uncertain
+            outer_values, self._replaced_values = self._replaced_values, {}
             yield from self._run_block(branch)
             self._unknown_conditions -= is_uncertain
+            for name, value in self._replaced_values.items():
+                outer_values.setdefault(name, value)
+                if is_uncertain and value is not None and self.variables.get(name) != value:
+                    self.variables[name] = UNKNOWN
+            self._replaced_values = outer_values
             if is_true:
                 return
 
@@ -348,15 +355,15 @@ class CMakeProgram:
         }
         self.variables.update(bindings)
         self._depth += 1
-        for_parent = self._parent_values
+        for_parent, replaced_values = self._parent_values, self._replaced_values
         if routine.has_scope:
-            self._parent_values = {}
+            self._parent_values, self._replaced_values = {}, {}
         with self._leavable_block("return"):
             yield from self._run_block(routine.body)
         self._depth -= 1
         if routine.has_scope:
             self.variables = outer_variables | self._parent_values
-            self._parent_values = for_parent
+            self._parent_values, self._replaced_values = for_parent, replaced_values
         else:
             for name in bindings:
                 _restore(self.variables, name, outer_variables.get(name))
@@ -379,12 +386,13 @@ class CMakeProgram:
             self.unknown.append(command)
             return
         outer_variables, folder, for_parent = dict(self.variables), self._folder, self._parent_values
+        replaced_values = self._replaced_values
         self.variables["CMAKE_CURRENT_LIST_DIR"] = posixpath.join(
             SOURCE, relative_path if is_folder else posixpath.dirname(relative_path)
         )
         if is_folder:
             self._folder = "" if relative_path == "." else relative_path
-            self._parent_values = {}
+            self._parent_values, self._replaced_values = {}, {}
             self.variables["CMAKE_CURRENT_SOURCE_DIR"] = posixpath.join(SOURCE, relative_path)
             self.variables["CMAKE_CURRENT_BINARY_DIR"] = posixpath.join(BUILD, relative_path)
         self._depth += 1
@@ -393,7 +401,7 @@ class CMakeProgram:
         self._folder = folder
         if is_folder:
             self.variables = outer_variables | self._parent_values
-            self._parent_values = for_parent
+            self._parent_values, self._replaced_values = for_parent, replaced_values
         else:
             self.variables["CMAKE_CURRENT_LIST_DIR"] = outer_variables["CMAKE_CURRENT_LIST_DIR"]
 
@@ -444,8 +452,8 @@ class CMakeProgram:
         return self.variables.get(name, "")
 
     def _set(self, name: str, value: str) -> None:
-        is_certain = not self._unknown_conditions or self.variables.get(name, value) == value
-        self.variables[name] = value if is_certain and not is_open(value) else UNKNOWN
+        self._replaced_values.setdefault(name, self.variables.get(name))
+        self.variables[name] = UNKNOWN if is_open(value) else value
 
     def _change_list(self, words: list[str]) -> None:
         for target, value in evaluate_list_command(words[0], words[1:], self._get_variable).items():

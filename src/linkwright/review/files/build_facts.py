@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from pathlib import PurePosixPath
+from typing import TypeAlias
 
 from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES
@@ -150,11 +151,13 @@ class TargetParts:
         libraries: the names of packages and libraries that are linked to it, with their locations.
         sources: its sources relative to the package, with their locations.
         is_test: whether it is a test.
+        is_test_program: whether it is a test that is built as a program.
     """
 
     libraries: dict[str, Span] = field(default_factory=dict)
     sources: dict[str, Span] = field(default_factory=dict)
     is_test: bool = False
+    is_test_program: bool = False
 
 
 @dataclass
@@ -170,6 +173,8 @@ class BuildFacts:
         project: the name of the package; empty if it is not known.
         environment: the environment variables that the file reads.
         targets: the parts of targets, by target.
+        header_paths: the headers and folders of headers relative to the package that other packages find although
+            `files` does not contain them.
     """
 
     facts: list[Fact] = field(default_factory=list)
@@ -180,6 +185,7 @@ class BuildFacts:
     project: str = ""
     environment: EnvironmentVariables = field(default_factory=lambda: EnvironmentVariables(()))
     targets: dict[str, TargetParts] = field(default_factory=dict)
+    header_paths: frozenset[str] = frozenset()
 
     @property
     def is_complete(self) -> bool:
@@ -221,9 +227,11 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Report the differences between the facts of two versions of a build file."""
     conditions: dict[tuple[str, str], list[Fact]] = {}
     for kind in FactKind:
-        old_facts, new_facts = (
-            {fact.name: fact for fact in facts.facts if fact.kind is kind and _is_reported(pair, facts, fact)}
-            for facts in (old, new)
+        old_facts, new_facts = _index_facts(
+            *(
+                [fact for fact in facts.facts if fact.kind is kind and _is_reported(pair, facts, fact)]
+                for facts in (old, new)
+            )
         )
         for name, fact in new_facts.items():
             if name in old_facts:
@@ -235,15 +243,61 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         removed = [fact for name, fact in old_facts.items() if name not in new_facts]
         if kind in BUILT_KINDS:
             installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
-            added, removed = ([fact for fact in facts if fact.name not in installed] for facts in (added, removed))
+            added = [fact for fact in added if fact.name not in installed | _find_test_programs(old)]
+            removed = [fact for fact in removed if fact.name not in installed | _find_test_programs(new)]
         _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new))
         if kind is FactKind.STOP:
             _report_reworded_errors(pair, removed, added)
         _report_unpaired(pair, kind, removed, added)
     _report_conditions(pair, conditions)
+    _report_repeated_exports(pair, old, new)
     _compare_files(pair, old, new)
     compare_other_commands(pair, old.other_commands, new.other_commands)
     old.environment.compare(pair, new.environment)
+
+
+_FactIndex: TypeAlias = "dict[tuple[str, str | None], Fact]"
+"""The facts of a kind in a version, by name and, for some calls of find_package, condition."""
+
+
+def _index_facts(old: Sequence[Fact], new: Sequence[Fact]) -> tuple[_FactIndex, _FactIndex]:
+    """Return the facts of a kind in two versions. Facts that belong together have the same key.
+
+    The last fact of a name counts, except for packages: calls of find_package under different conditions are
+    different facts. If both versions have a package under conditions that the other lacks, these calls are one fact.
+    """
+    sides = old, new
+    if not any(fact.kind is FactKind.PACKAGE for fact in (*old, *new)):
+        return {(fact.name, None): fact for fact in old}, {(fact.name, None): fact for fact in new}
+    old_keys, new_keys = ({(fact.name, fact.condition) for fact in facts} for facts in sides)
+    changed = {name for name, _ in old_keys - new_keys} & {name for name, _ in new_keys - old_keys}
+    indexes: list[_FactIndex] = []
+    for facts in sides:
+        index: _FactIndex = {}
+        conditions: dict[str, dict[str, None]] = {}
+        for fact in facts:
+            key = fact.name, fact.condition
+            if fact.name in changed and key not in old_keys & new_keys:
+                conditions.setdefault(fact.name, {})[fact.condition] = None
+                index[fact.name, None] = replace(fact, condition=_join_conditions(list(conditions[fact.name])))
+            else:
+                index[key] = fact
+        indexes.append(index)
+    return indexes[0], indexes[1]
+
+
+def _join_conditions(conditions: Sequence[str]) -> str:
+    """Return the condition under which one of several conditions holds. An empty condition always holds."""
+    if "" in conditions:
+        return ""
+    if len(conditions) == 1:
+        return conditions[0]
+    return " OR ".join(f"({text})" if " AND " in text else text for text in conditions)
+
+
+def _find_test_programs(facts: BuildFacts) -> set[str]:
+    """Return the targets that are built as programs of tests."""
+    return {name for name, parts in facts.targets.items() if parts.is_test_program}
 
 
 def _compare_values(pair: FilePair, old: tuple[BuildFacts, Fact], new: tuple[BuildFacts, Fact]) -> None:
@@ -280,6 +334,22 @@ def _report_unpaired(pair: FilePair, kind: FactKind, removed: Sequence[Fact], ad
         pair.add(_format_facts(kind, removed, is_added=False), location, kind.reason)
 
 
+def _report_repeated_exports(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+    """Report the plugin descriptions that the new version exports more than once under the same condition."""
+    spans: dict[tuple[str, str, str], list[Span | None]] = {}
+    old_counts: dict[tuple[str, str, str], int] = {}
+    for fact in old.facts:
+        key = fact.name, fact.value, fact.condition
+        old_counts[key] = old_counts.get(key, 0) + (fact.kind is FactKind.PLUGIN_DESCRIPTION)
+    for fact in new.facts:
+        if fact.kind is FactKind.PLUGIN_DESCRIPTION:
+            spans.setdefault((fact.name, fact.value, fact.condition), []).append(fact.span)
+    for key, found in spans.items():
+        if len(found) > max(old_counts.get(key, 0), 1):
+            text = phrase("plugin description '{name}' is exported {count} times", name=key[0], count=len(found))
+            pair.add(text, pair.location(found[-1]))
+
+
 def _report_renamed(
     pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact], targets: Mapping[str, str]
 ) -> None:
@@ -297,6 +367,8 @@ def _report_renamed(
         new = next((fact for fact in added if fact.name == names.rename_derived(old.name)), None)
         new = new or next((fact for fact in added if names.has_same_edit(old.name, fact.name)), None)
         new = new or next((fact for fact in added if fact.name == targets.get(old.name)), None)
+        if kind is FactKind.TEST:
+            new = new or next((fact for fact in added if fact.value == old.name), None)
         if new is not None:
             removed.remove(old)
             added.remove(new)
@@ -361,10 +433,10 @@ def _format_facts(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> P
 
 def _format_fact(fact: Fact) -> str:
     """Return the name of a fact, with its value or condition if a reader needs it."""
-    if fact.kind is FactKind.SETTING or (fact.kind is FactKind.PACKAGE and fact.value not in ("", ANY_VERSION)):
-        return f"{fact.name} {fact.value}"
+    has_version = fact.kind is FactKind.PACKAGE and fact.value not in ("", ANY_VERSION)
+    text = f"{fact.name} {fact.value}" if has_version or fact.kind is FactKind.SETTING else fact.name
     is_unconditional = not fact.condition or fact.kind not in _CONDITIONAL_KINDS
-    return fact.name if is_unconditional else f"{fact.name} (if {fact.condition})"
+    return text if is_unconditional else f"{text} (if {fact.condition})"
 
 
 def _report_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequence[Fact]]) -> None:

@@ -23,7 +23,8 @@ from linkwright.review.files.build_facts import (
     compare_build_files,
 )
 from linkwright.review.files.cmake_branches import find_conditions, iterate_conditional_commands
-from linkwright.review.files.cmake_targets import compare_targets, read_targets
+from linkwright.review.files.cmake_headers import find_header_paths
+from linkwright.review.files.cmake_targets import builds_test, compare_targets, read_targets
 from linkwright.review.versions import Version
 
 CMAKE_FILE = "CMakeLists.txt"
@@ -51,6 +52,7 @@ _INSTALL_KEYWORDS = frozenset(
     {"EXPORT", "ARCHIVE", "LIBRARY", "RUNTIME", "OBJECTS", "INCLUDES", "DESTINATION", "COMPONENT", "OPTIONAL"}
 )
 _TEST_COMMAND = re.compile(r"(\w+_)?add_(\w*_)?(\w*tests?|gmock|gbenchmark|catch2|file_check)")
+_LAUNCH_SUFFIXES = (".launch", ".test", ".xml")
 _PACKAGE_KEYWORDS = frozenset(
     {
         *("INCLUDE_DIRS", "LIBRARIES", "CATKIN_DEPENDS", "DEPENDS", "CFG_EXTRAS", "EXPORTED_TARGETS", "DEPENDENCIES"),
@@ -104,6 +106,8 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     facts.facts += _read_skipped_targets(source, commands, program.variables)
     facts.facts += _read_build_failures(source, commands)
     facts.targets = read_targets(commands)
+    exported_folders = [fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER]
+    facts.header_paths = frozenset(find_header_paths(commands, exported_folders))
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     facts.environment = EnvironmentVariables(
         (match[1], source.span(match.start(), match.end())) for match in _ENVIRONMENT.finditer(text)
@@ -394,7 +398,8 @@ def _read_packages(commands: Sequence[Command]) -> Iterator[Fact]:
             for component in options[start:]:
                 if not component.text.isupper():  # a keyword, such as REQUIRED
                     name = component.text if package.text == "catkin" else f"{package.text} {component.text}"
-                    yield _make_fact(FactKind.PACKAGE, component, name=name)
+                    required = ANY_VERSION if package.text == "catkin" else ""
+                    yield _make_fact(FactKind.PACKAGE, component, required, name)
 
 
 def _read_tests(commands: Sequence[Command]) -> Iterator[Fact]:
@@ -402,11 +407,18 @@ def _read_tests(commands: Sequence[Command]) -> Iterator[Fact]:
         if _is_test(command):
             words = command.words
             index = words.index("NAME") + 1 if "NAME" in words[:-1] and command.name == "add_test" else 0
-            yield _make_fact(FactKind.TEST, command.arguments[index])
+            yield _make_fact(FactKind.TEST, command.arguments[index], _find_launch_file(command))
+
+
+def _find_launch_file(command: Command) -> str:
+    """Return the launch file of a test program, or an empty text if it has none."""
+    files = command.words[1:2] if builds_test(command.name) else []
+    return next((file for file in files if file.endswith(_LAUNCH_SUFFIXES) and not is_open(file)), "")
 
 
 def _is_test(command: Command) -> bool:
-    return bool(command.arguments) and _TEST_COMMAND.fullmatch(command.name) is not None
+    is_test = _TEST_COMMAND.fullmatch(command.name) is not None or builds_test(command.name)
+    return bool(command.arguments) and is_test
 
 
 def _read_settings(commands: Sequence[Command]) -> Iterator[Fact]:

@@ -18,14 +18,11 @@ _SOURCE_COMMANDS = frozenset(
         *("rosbuild_add_executable", "rosbuild_add_library", "cuda_add_executable", "cuda_add_library"),
     }
 )
-_TEST_COMMANDS = frozenset(
-    {
-        *("ament_add_gtest", "ament_add_gmock", "ament_add_gtest_executable", "ament_add_pytest_test"),
-        *("catkin_add_gtest", "catkin_add_gmock", "add_rostest_gtest", "add_rostest_gmock", "rosbuild_add_gtest"),
-    }
-)
-_TEST_SOURCE = re.compile(r".+\.(c|cc|cpp|cxx|cu|py|test|launch|xml)")
-"""A source among the arguments of a test, which also has a timeout and an environment."""
+_PYTEST_COMMAND = "ament_add_pytest_test"
+_TEST_PROGRAM_COMMAND = re.compile(r"(\w+_)?add_(\w*_)?(gtest|gmock|gbenchmark|google_benchmark|catch2)(_executable)?")
+"""A command that builds the program of a test, such as ``add_rostest_gtest``."""
+_TEST_SOURCE = re.compile(r".+\.(c|cc|cpp|cxx|cu|py)")
+"""A source among the arguments of a test, which also has a launch file, a timeout and an environment."""
 _LINK_COMMANDS = frozenset({"target_link_libraries", "ament_target_dependencies", "rosbuild_link_boost"})
 _VARIABLE = re.compile(r"\$\{(\w+?)_(LIBRARIES|LIBRARY|TARGETS|LIBS)\}", re.IGNORECASE)
 
@@ -37,31 +34,39 @@ def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
     """
     targets: dict[str, TargetParts] = {}
     for command in commands:
-        if command.name not in _SOURCE_COMMANDS | _TEST_COMMANDS | _LINK_COMMANDS or not command.arguments:
+        is_test_program = builds_test(command.name)
+        is_test = is_test_program or command.name == _PYTEST_COMMAND
+        is_read = is_test or command.name in _SOURCE_COMMANDS | _LINK_COMMANDS
+        if not is_read or not command.arguments:
             continue
         target, *arguments = command.arguments
         parts = targets.setdefault(target.text, TargetParts())
-        parts.is_test |= command.name in _TEST_COMMANDS
+        parts.is_test |= is_test
+        parts.is_test_program |= is_test_program
         for argument in arguments:
             if argument.text.isupper():
                 continue  # a keyword, such as PUBLIC
             if command.name in _LINK_COMMANDS:
                 parts.libraries.setdefault(_get_library_name(argument.text, command.name), _get_span(argument))
-            elif not is_open(argument.text) and (
-                command.name not in _TEST_COMMANDS or _TEST_SOURCE.fullmatch(argument.text)
-            ):
+            elif not is_open(argument.text) and (not is_test or _TEST_SOURCE.fullmatch(argument.text)):
                 parts.sources.setdefault(to_package_path(argument.text, command.folder), _get_span(argument))
     return targets
 
 
+def builds_test(command: str) -> bool:
+    """Return whether a command builds the program of a test."""
+    return _TEST_PROGRAM_COMMAND.fullmatch(command) is not None
+
+
 def _get_library_name(text: str, command: str) -> str:
-    """Return the name of a library, or of its package if it is a target of a package."""
+    """Return the name of a library, or of its package if it has the name of the package or is in a variable of it."""
     variable = _VARIABLE.fullmatch(text)
     if variable is not None:
         return variable[1]
     if command == "rosbuild_link_boost":
         return f"boost_{text}"
-    return text if text.startswith("$<") else text.partition("::")[0]
+    package, _, library = text.partition("::")
+    return package if library == package else text
 
 
 def _get_span(argument: Argument) -> Span:
@@ -117,7 +122,14 @@ class _TargetChange(NamedTuple):
 
 
 def _find_unpaired_names(items: Mapping[str, Span], others: Mapping[str, Span]) -> list[str]:
-    return [item for item in items if item not in others]
+    """Return the names that only one side has.
+
+    A library of a package such as ``a::b``, and the package ``a`` on the other side, are a pair.
+    """
+    replaced = {item for item in others if item not in items}
+    packages = {item.partition("::")[0] for item in replaced if "::" in item}
+    unpaired = [item for item in items if item not in others and item not in packages]
+    return [item for item in unpaired if "::" not in item or item.partition("::")[0] not in replaced]
 
 
 def _format_change(kind: str, targets: Sequence[str], items: Sequence[str], *, is_added: bool) -> Phrase:
