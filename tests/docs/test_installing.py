@@ -29,6 +29,7 @@ OTHER_COMMANDS = {
     "linkwright_core-0.1.0-py3-none-any.whl",
     "path/to/linkwright",
     "path/to/linkwright/core",
+    "roslibpy",
     "ty",
 }
 """The packages besides Linkwright in documented commands, and Linkwright itself outside a checkout."""
