@@ -333,12 +333,22 @@ def find_expression_difference(old: Statement, new: Statement) -> Iterator[Diffe
         [token for token in statement.tokens[start:] if token.text != ";"]
         for statement, start in zip((old, new), starts, strict=True)
     ]
-    if not all(tokens and all(map(_is_of_constant_expression, tokens)) for tokens in values):
+    if not all(_is_constant_expression(tokens) for tokens in values):
         return
     texts = join_tokens(values[0]), join_tokens(values[1])
     shown = texts if sum(map(len, texts)) <= 2 * _MAX_EXPRESSION_CHARACTERS else differing_excerpts(*texts)
     name = _find_name_before(new.tokens, starts[1] - 2, match_brackets(new.tokens))
     yield Difference(f"{name} {shown[0]} -> {shown[1]}".strip(), *texts, values[1][0])
+
+
+def _is_constant_expression(tokens: Sequence[Token]) -> bool:
+    """Return whether tokens are one expression, not several with commas between them, as in an enumeration."""
+    depth = 0
+    for token in tokens:
+        depth += (token.text in "([{") - (token.text in ")]}")
+        if not _is_of_constant_expression(token) or (token.text == "," and depth == 0):
+            return False
+    return bool(tokens)
 
 
 def _is_of_constant_expression(token: Token) -> bool:
