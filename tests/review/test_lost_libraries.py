@@ -1,4 +1,4 @@
-"""Worlds and plugin descriptions that still load a library which is no longer built, in a review."""
+"""Worlds and plugin descriptions, in a review, that load a library that their package stopped building."""
 
 from __future__ import annotations
 

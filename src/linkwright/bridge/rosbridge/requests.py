@@ -44,7 +44,7 @@ class Request(dict[str, Any]):
         """Return a number that is not negative; 0 if there is none.
 
         Raises:
-            RequestError: it is no such number.
+            RequestError: it is not a number, or is negative or too large.
         """
         value = self.get(name)
         if value is None:

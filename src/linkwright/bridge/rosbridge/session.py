@@ -309,7 +309,7 @@ class Session:
         """Send the message that a call returns, or that it has failed."""
         try:
             message = await call()
-        except Exception as error:  # noqa: BLE001 - as above
+        except Exception as error:  # noqa: BLE001 - an error of a service or action is the client's answer
             text = _describe(error)
             self.send_status(StatusLevel.ERROR, f"{operation}: {text}", identity)
             message = {**failure, "values": text}

@@ -1,4 +1,4 @@
-"""Find worlds and descriptions that still load a library which is no longer built."""
+"""Find worlds and descriptions that load a library that their package stopped building."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _LOADED = re.compile(
 
 
 def find_lost_libraries(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the files that load a library which its package no longer builds, each with a change."""
+    """Yield the files that load a library that its package stopped building, each with a change."""
     folders = {
         folder
         for file in changed_files
