@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any
 
 from linkwright.bridge.foxglove.assets import Assets
@@ -15,6 +14,7 @@ from linkwright.bridge.foxglove.protocol import ENCODING, SUBPROTOCOLS, encode_t
 from linkwright.bridge.foxglove.services import Services
 from linkwright.bridge.foxglove.session import Session, SharedResources
 from linkwright.bridge.foxglove.topics import Channels
+from linkwright.bridge.graph_updates import GraphUpdates
 from linkwright.bridge.websockets.clients import Client
 from linkwright.bridge.websockets.server import ServerOptions, WebSocketServer, make_listen_error, open_listener
 from linkwright.diagnostics import phrase
@@ -24,8 +24,6 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handl
 
 _CAPABILITIES = ("clientPublish", "parameters", "parametersSubscribe", "services", "connectionGraph", "assets")
 _MATCH_ALL = [".*"]
-_UPDATE_DELAY_S = 0.1
-"""Seconds for which changes to the graph are collected before clients are notified."""
 
 
 class FoxgloveBridge(SingleNode):
@@ -63,21 +61,17 @@ class FoxgloveBridge(SingleNode):
         )
         self._capabilities = list(_CAPABILITIES)
         self._sessions: dict[Session, None] = {}
-        self._loop = asyncio.get_running_loop()
-        self._update_timer: asyncio.TimerHandle | None = None
         self._identity = str(time.time_ns())
         self._watch_graph(graph)
         server_options = ServerOptions(
             "Foxglove or Lichtblick", protocols=SUBPROTOCOLS, origins=origins, max_queue_bytes=max_queue_bytes
         )
         self._server = WebSocketServer(self._listener, server_options, self._add_client)
-        self._server_task = self._loop.create_task(self._serve())
+        self._server_task = asyncio.get_running_loop().create_task(self._serve())
 
     def close(self) -> None:
         """Close the connections and the server."""
-        self._graph.unwatch(self._on_graph_change)
-        if self._update_timer is not None:
-            self._update_timer.cancel()
+        self._updates.close()
         for session in list(self._sessions):
             session.close()
         self._resources.parameters.close()
@@ -88,9 +82,8 @@ class FoxgloveBridge(SingleNode):
     # --- the graph ---------------------------------------------------------------------------------------------
 
     def _watch_graph(self, graph: Graph) -> None:
-        self._graph = graph
         node = self._node
-        graph.watch(self._on_graph_change)
+        self._updates = GraphUpdates(graph, node, self._send_updates)
         node.create_subscription(
             String,
             "/robot_description",
@@ -106,16 +99,7 @@ class FoxgloveBridge(SingleNode):
         self._resources.channels.poll_changes()
         self._resources.services.poll_changes()
 
-    def _on_graph_change(self) -> None:
-        with suppress(RuntimeError):  # the event loop was closed
-            self._loop.call_soon_threadsafe(self._schedule_update)
-
-    def _schedule_update(self) -> None:
-        if self._update_timer is None and not self._node.handle.is_destroyed:
-            self._update_timer = self._loop.call_later(_UPDATE_DELAY_S, self._send_updates)
-
     def _send_updates(self) -> None:
-        self._update_timer = None
         channels, removed_channels = self._resources.channels.poll_changes()
         services, removed_services = self._resources.services.poll_changes()
         messages: list[dict[str, Any]] = []

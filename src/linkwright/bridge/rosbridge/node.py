@@ -6,11 +6,11 @@ import asyncio
 import errno
 import socket
 from collections.abc import Awaitable, Callable, Mapping
-from contextlib import suppress
 from dataclasses import replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
+from linkwright.bridge.graph_updates import GraphUpdates
 from linkwright.bridge.rosbridge.encodings import MessageEncoder
 from linkwright.bridge.rosbridge.globs import Globs
 from linkwright.bridge.rosbridge.offers import Offers
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     import ssl
 
 _LOOPBACK = "127.0.0.1"
-_UPDATE_DELAY_S = 0.1
-"""Seconds for which changes of the graph are collected before subscriptions are fitted to them."""
 _SIZE_FACTOR = 4
 """A message of this many times the allowed size ends the connection; smaller ones are answered with a status."""
 _MAX_QUEUE_BYTES = 20_000_000
@@ -68,11 +66,8 @@ class RosbridgeWebsocket(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, _read_arguments(options), self.DEFAULT_NAME)
-        self._graph = graph
-        self._loop = asyncio.get_running_loop()
         self._sessions: dict[Session, Any] = {}
         self._server: WebSocketServer | None = None
-        self._update_timer: asyncio.TimerHandle | None = None
         self._closing: Awaitable[None] | None = None
         with handle_start_errors(self._node):
             self._resources = self._create_resources()
@@ -87,9 +82,9 @@ class RosbridgeWebsocket(SingleNode):
             "rosbridge_msgs/msg/ConnectedClients", "connected_clients", LATCHED_QOS
         )
         self._publish_clients()
-        graph.watch(self._on_graph_change)
+        self._updates = GraphUpdates(graph, self._node, self._update)
         graph.publishers()  # starts the discovery of other processes
-        self._server_task = self._loop.create_task(self._serve())
+        self._server_task = asyncio.get_running_loop().create_task(self._serve())
 
     @property
     def address(self) -> str:
@@ -98,9 +93,7 @@ class RosbridgeWebsocket(SingleNode):
 
     def close(self) -> None:
         """Close the connections and the server."""
-        self._graph.unwatch(self._on_graph_change)
-        if self._update_timer is not None:
-            self._update_timer.cancel()
+        self._updates.close()
         for session in list(self._sessions):
             session.close()
         self._sessions.clear()
@@ -224,16 +217,7 @@ class RosbridgeWebsocket(SingleNode):
 
     # --- the graph ---------------------------------------------------------------------------------------------
 
-    def _on_graph_change(self) -> None:
-        with suppress(RuntimeError):  # the event loop was closed
-            self._loop.call_soon_threadsafe(self._schedule_update)
-
-    def _schedule_update(self) -> None:
-        if self._update_timer is None and not self._node.handle.is_destroyed:
-            self._update_timer = self._loop.call_later(_UPDATE_DELAY_S, self._update)
-
     def _update(self) -> None:
-        self._update_timer = None
         self._resources.calls.drop_gone()
         for session in self._sessions:
             session.on_graph_changed()
