@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
-from linkwright.review.sources.names import NameKind
+from linkwright.review.sources.names import FoundName, NameKind
 
 _WORD = r"(?:\"(?P<{0}>[^\"\\]*)\"|(?:hardware_interface\s*::\s*)?HW_IF_(?P<{0}_constant>[A-Z_]+))"
 _OFFERED = re.compile(
@@ -17,30 +16,14 @@ _CLAIMED = re.compile(r"\bnames\s*\.\s*(?:push|emplace)_back\s*\(\s*\"(?P<name>[
 _CONTROLLER = re.compile(r"\bInterfaceConfiguration\b")
 
 
-class HardwareInterface(NamedTuple):
-    """An interface of ros2_control.
-
-    Attributes:
-        kind: whether hardware offers it, or a controller claims it.
-        name: the name with its component, such as ``gripper/position``.
-        start: the offset of the name.
-        end: the end of the name.
-    """
-
-    kind: NameKind
-    name: str
-    start: int
-    end: int
-
-
-def find_hardware_interfaces(text: str) -> Iterator[HardwareInterface]:
+def find_hardware_interfaces(text: str) -> Iterator[FoundName]:
     """Yield the interfaces with literal names in a C++ source without comments."""
     for match in _OFFERED.finditer(text):
         kind = NameKind.COMMAND_INTERFACE if match["kind"] == "Command" else NameKind.STATE_INTERFACE
         name = f"{_get_word(match, 'part')}/{_get_word(match, 'name')}"
-        yield HardwareInterface(kind, name, match.start("kind"), match.end())
+        yield FoundName(kind, name, match.start("kind"), match.end())
     for match in _CLAIMED.finditer(text) if _CONTROLLER.search(text) else ():
-        yield HardwareInterface(NameKind.CLAIMED_INTERFACE, match["name"], match.start("name"), match.end("name"))
+        yield FoundName(NameKind.CLAIMED_INTERFACE, match["name"], match.start("name"), match.end("name"))
 
 
 def _get_word(match: re.Match[str], group: str) -> str:

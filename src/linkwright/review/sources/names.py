@@ -111,6 +111,22 @@ class SourceName:
         return self.type == other.type
 
 
+class FoundName(NamedTuple):
+    """A name and its place in the text of a source.
+
+    Attributes:
+        kind: the kind of the name.
+        name: the name by which others use it, such as ``gripper/position`` of an interface of ros2_control.
+        start: the offset of the name.
+        end: the end of the name.
+    """
+
+    kind: NameKind
+    name: str
+    start: int
+    end: int
+
+
 @dataclass(frozen=True)
 class DefaultName:
     """A name that a source has by default, because a parameter gives it.

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
-from linkwright.review.sources.names import NameKind
+from linkwright.review.sources.names import FoundName, NameKind
 
 _CLASS = r"\s*(?:::)?(?P<name>\w+(?:\s*::\s*\w+)*(?:\s*<[\w\s:,<>]*>)?)\s*"
 _TEXT = r'\s*(?:[^(),;"]*,)?\s*"(?P<text>[^"\\]+)"'
@@ -27,23 +26,7 @@ _ALIAS = re.compile(r'"(?P<alias>[^"\\]+)"')
 _DEFINITION = re.compile(r"^[ \t]*#[ \t]*define\b(?:[^\n\\]|\\\r?\n|\\.)*", re.MULTILINE)
 
 
-class Registration(NamedTuple):
-    """A registered class or node of behavior trees.
-
-    Attributes:
-        kind: the kind of the name.
-        name: the name by which programs load it.
-        start: the offset of the name.
-        end: the end of the name.
-    """
-
-    kind: NameKind
-    name: str
-    start: int
-    end: int
-
-
-def find_registrations(text: str) -> Iterator[Registration]:
+def find_registrations(text: str) -> Iterator[FoundName]:
     """Yield the classes and nodes of behavior trees that a source registers.
 
     A class of Gazebo with other names only has these, because worlds name them.
@@ -58,18 +41,18 @@ def find_registrations(text: str) -> Iterator[Registration]:
         for match in pattern.finditer(text):
             groups = match.groupdict()
             if groups.get("text"):
-                found.append(Registration(kind, match["text"], match.start("text"), match.end("text")))
+                found.append(FoundName(kind, match["text"], match.start("text"), match.end("text")))
                 continue
             name = "".join(match["name"].split())
             if groups.get("aliases"):
                 aliased.add(name)
                 start = match.start("aliases")
                 found += (
-                    Registration(kind, alias["alias"], start + alias.start("alias"), start + alias.end("alias"))
+                    FoundName(kind, alias["alias"], start + alias.start("alias"), start + alias.end("alias"))
                     for alias in _ALIAS.finditer(match["aliases"])
                 )
                 continue
-            found.append(Registration(kind, name, match.start("name"), match.end("name")))
+            found.append(FoundName(kind, name, match.start("name"), match.end("name")))
     for item in found:
         if item.name not in aliased or item.kind is not NameKind.SIMULATION_PLUGIN:
             yield item
