@@ -42,9 +42,12 @@ def _find_displays(version: Version, topic: str) -> Iterator[tuple[str, int]]:
     """Yield the RViz configurations that show a topic, with the line; none if the topic has other users."""
     name = re.escape(topic.strip("/"))
     display = re.compile(rf"^[ \t]*(?:Value|[\w ]*Topic):[ \t]*/?{name}[ \t]*$", re.MULTILINE)
-    texts = {path: version.text(path) for path in version.paths((_RVIZ_SUFFIX,))}
-    found = [(path, text.count("\n", 0, match.start()) + 1) for path, text in texts.items()
-             if (match := display.search(text)) is not None]  # fmt: skip
+    found = []
+    for path in version.paths((_RVIZ_SUFFIX,)):
+        text = version.text(path)
+        match = display.search(text)
+        if match is not None:
+            found.append((path, text.count("\n", 0, match.start()) + 1))
     use = re.compile(rf"[\"'>]/?{name}[\"'<]|[:=][ \t]*/?{name}[ \t]*$", re.MULTILINE)
     if found and not any(use.search(version.text(path)) for path in version.paths(_USING_SUFFIXES)):
         yield from found
