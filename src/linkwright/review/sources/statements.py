@@ -495,7 +495,7 @@ def _find_name_before(tokens: Sequence[Token], index: int, brackets: dict[int, i
             index = brackets[index] - 1
             continue
         if token.text == ">" and not parts:
-            index = _find_template_start(tokens, index)
+            index = find_template_start(tokens, index)
             continue
         if token.kind is TokenKind.OPERATOR or token.text in _KEYWORDS:
             break
@@ -511,7 +511,7 @@ def _find_name_before(tokens: Sequence[Token], index: int, brackets: dict[int, i
     return name if len(name) <= _MAX_EXPRESSION_CHARACTERS else ""
 
 
-def _find_template_start(tokens: Sequence[Token], index: int) -> int:
+def find_template_start(tokens: Sequence[Token], index: int) -> int:
     """Return the index before template arguments that end at an index, or -1."""
     depth = 0
     for start in range(index, max(index - _MAX_TEMPLATE_TOKENS, -1), -1):
