@@ -258,3 +258,12 @@ def test_statements_with_other_functions_are_not_compared(review_lines):
     text = "def f():\n    near = read('near')\n    use(near)\n"
     changed = "def f():\n    far = make('far')\n    use(far)\n"
     assert review_lines("rover/save.py", text, text, changed) == ["code changed in 'f()'"]
+
+
+@pytest.mark.parametrize(("new", "is_told"), [("0x0b", False), ("0x0c", True)])
+def test_the_notation_of_a_number_is_no_value_in_a_statement_of_another_shape(review_lines, new, is_told):
+    text = "int Rover::read() {{\n  return parse(buffer, {}{});\n}}\n"
+    lines = review_lines(
+        "rover/src/a.cpp", text.format("0x0B", ""), text.format("0x0B", ""), text.format(new, " + first")
+    )
+    assert any("->" in line for line in lines) is is_told

@@ -11,6 +11,7 @@ from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.cpp_statements import read_cpp_statements
 from linkwright.review.sources.names import CPP_SUFFIXES
+from linkwright.review.sources.operator_changes import find_operator_change
 from linkwright.review.sources.python_statements import read_python_statements
 from linkwright.review.sources.reading import try_read_source
 from linkwright.review.sources.statements import (
@@ -19,6 +20,7 @@ from linkwright.review.sources.statements import (
     Statement,
     find_expression_difference,
     find_literal_differences,
+    normalize_number,
 )
 from linkwright.review.sources.tokens import TokenKind
 
@@ -137,8 +139,8 @@ def _pair_statements(
 
 
 def _find_value_change(old: Statement, new: Statement) -> Iterator[Difference]:
-    """Yield the assigned expression, or else the number, that differs between two statements of other shapes."""
-    differences = list(find_expression_difference(old, new))
+    """Yield the assigned expression, the operator, or else the number that differs between two statements."""
+    differences = [*find_expression_difference(old, new)] or [*find_operator_change(old, new)]
     yield from differences or _find_number_change(old, new)
 
 
@@ -152,7 +154,7 @@ def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
         for statement in (old, new)
     ]
     texts = [[token.text for token in tokens] for tokens in numbers]
-    pairs = {(before, after) for before, after in zip(*texts, strict=False) if before != after}
+    pairs = {(before, after) for before, after in zip(*texts, strict=False) if not _is_same_number(before, after)}
     if len(texts[0]) != len(texts[1]) or len(pairs) != 1:
         return
     ((before, after),) = pairs
@@ -162,6 +164,11 @@ def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
     if SequenceMatcher(None, old_words, new_words, autojunk=False).ratio() >= _MIN_SIMILARITY:
         token = next(token for token in numbers[1] if token.text == after)
         yield Difference(f"{before} -> {after}", before, after, token)
+
+
+def _is_same_number(old: str, new: str) -> bool:
+    """Return whether two numbers have the same value and kind, such as ``0x0B`` and ``0x0b``."""
+    return normalize_number(old, is_divided=True) == normalize_number(new, is_divided=True)
 
 
 def _find_changed_literals(old: Statement, new: Statement) -> list[tuple[Literal, Literal]]:

@@ -318,10 +318,10 @@ def find_literal_differences(old: Statement, new: Statement) -> Iterator[Differe
             and new_literal.last > new_literal.first
             and len(group) == 1
         ):
-            label = _add_context(new, start, end, "[...]", brackets)
+            label = add_context(new, start, end, "[...]", brackets)
             yield Difference(change_text(label, *map(_format_list, texts)), *texts, token)
             continue
-        yield Difference(_add_context(new, start, end, expression, brackets), *texts, token)
+        yield Difference(add_context(new, start, end, expression, brackets), *texts, token)
 
 
 def find_expression_difference(old: Statement, new: Statement) -> Iterator[Difference]:
@@ -378,7 +378,7 @@ def format_literal(statement: Statement, literal: Literal) -> str:
     if after + 1 < len(tokens) and tokens[after].text == "in":
         _, end = _find_expression(tokens, Literal("", after + 1, after + 1), brackets)
         return statement.get_text(start, end)
-    return _add_context(statement, start, end, statement.get_text(start, end), brackets)
+    return add_context(statement, start, end, statement.get_text(start, end), brackets)
 
 
 def _format_list(text: str) -> str:
@@ -416,7 +416,7 @@ def _ends_expression(token: Token) -> bool:
     return is_keyword or (token.kind is TokenKind.OPERATOR and token.text in (*_DELIMITERS, "&&", "||"))
 
 
-def _add_context(new: Statement, start: int, end: int, expression: str, brackets: dict[int, int]) -> str:
+def add_context(new: Statement, start: int, end: int, expression: str, brackets: dict[int, int]) -> str:
     """Return a changed expression with the assigned name or the called function."""
     tokens = new.tokens
     before = tokens[start - 1] if start else None
