@@ -81,3 +81,17 @@ def test_a_client_with_the_type_of_another_package_is_named(repository, compare)
     repository.write({"lamp/a.py": service.format(package="new_msgs")})
     line = "service client 'tags' still has the type old_msgs/Tags; 'lamp/a.py' now uses new_msgs/Tags"
     assert line in breaking(compare(repository))
+
+
+def test_a_client_whose_type_has_an_unknown_package_is_not_named(repository, compare):
+    service = "import rospy\nfrom {package}.srv import Tags\ns = rospy.Service('tags', Tags, print)\n"
+    client = "import rospy\nfrom helpers import Tags\nc = rospy.ServiceProxy('tags', Tags)\n"
+    repository.commit(
+        {
+            "lamp/package.xml": MANIFEST.format(name="lamp"),
+            "lamp/a.py": service.format(package="old_msgs"),
+            "lamp/b.py": client,
+        }
+    )
+    repository.write({"lamp/a.py": service.format(package="new_msgs")})
+    assert all("still has the type" not in line for line in breaking(compare(repository)))

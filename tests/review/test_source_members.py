@@ -298,3 +298,10 @@ def test_header_that_a_manifest_of_rosbuild_exports_is_an_interface(repository, 
     repository.commit({**files, "arm/include/arm/arm.h": ALIASES})
     repository.write({"arm/include/arm/arm.h": ALIASES.replace("  void move(Speed speed);\n", "")})
     assert breaking(compare(repository)) == ["functions removed: 'Arm::move' (Speed)"]
+
+
+def test_a_node_whose_base_class_gets_its_name_in_braces_is_compared(repository, compare):
+    text = 'Arm::Arm(const rclcpp::NodeOptions & options) : rclcpp::Node{"arm", options} {}\n'
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": text})
+    repository.write({"arm/src/arm.cpp": text.replace('"arm"', '"arms"')})
+    assert breaking(compare(repository)) == ["node 'arm' renamed to 'arms'"]

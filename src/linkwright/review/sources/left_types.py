@@ -31,7 +31,11 @@ def find_left_types(versions: Versions, changed_files: Sequence[ChangedFile]) ->
             if not any(sources.find(old.kind, old, file.new_path)):
                 kind = get_counterpart(old.kind)
                 users = sources.find(kind, old, file.new_path) if kind is not None else ()
-                yield from ((path, _make_change(path, item, new, file.new_path)) for path, item in users)
+                yield from (
+                    (path, _make_change(path, item, new, file.new_path))
+                    for path, item in users
+                    if item.type != new.type or item.full_type  # types of another package differ if both are known
+                )
 
 
 def _find_changed_types(versions: Versions, old_path: str, new_path: str) -> Iterator[tuple[SourceName, SourceName]]:

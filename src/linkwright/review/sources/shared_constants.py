@@ -12,6 +12,7 @@ from linkwright.diagnostics import SourceText
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages import enclosing_package
 from linkwright.packages.readers.python_values import PythonFile
+from linkwright.review.sources.cpp_values import read_initial_values
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -124,7 +125,7 @@ def _read_python_constants(path: str, modified_ns: int) -> Mapping[str, ast.expr
 
 
 def find_constant_users(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[ChangedFile]:
-    """Yield the unchanged sources that use a constant whose value changed.
+    """Yield the unchanged sources that use a constant or member whose value changed.
 
     Only sources of the same package are searched.
     """
@@ -153,9 +154,10 @@ def find_constant_users(versions: Versions, changed_files: Sequence[ChangedFile]
 
 
 def _read_constants(version: Version, path: str) -> dict[str, str]:
-    """Return the text constants of a header or a Python module."""
+    """Return the text constants of a header or a Python module, and the initial values of the members of a header."""
     file = version.file(path)
     if not path.endswith(PYTHON_SUFFIX):
-        return read_header_constants([version.text(path)])
+        text = version.text(path)
+        return read_initial_values(text) | read_header_constants([text])
     values = _read_python_constants(str(file), file.stat().st_mtime_ns) if file.is_file() else {}
     return {name: str(value.value) for name, value in values.items() if isinstance(value, ast.Constant)}
