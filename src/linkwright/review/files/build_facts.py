@@ -12,6 +12,7 @@ from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_commands import compare_other_commands
+from linkwright.review.files.cmake_branches import is_test_condition
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
@@ -331,7 +332,8 @@ def _report_unpaired(pair: FilePair, kind: FactKind, removed: Sequence[Fact], ad
         pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
     if removed:
         location = pair.location(removed[0].span, is_old=True)
-        pair.add(_format_facts(kind, removed, is_added=False), location, kind.reason)
+        reason = None if all(is_test_condition(fact.condition) for fact in removed) else kind.reason
+        pair.add(_format_facts(kind, removed, is_added=False), location, reason)
 
 
 def _report_repeated_exports(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
@@ -373,7 +375,7 @@ def _report_renamed(
             removed.remove(old)
             added.remove(new)
             text = phrase("{kind}: '{old}' renamed to '{new}'", kind=kind.title, old=old.name, new=new.name)
-            pair.add(text, pair.location(new.span), kind.reason)
+            pair.add(text, pair.location(new.span), None if is_test_condition(old.condition) else kind.reason)
 
 
 def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
@@ -26,6 +27,7 @@ from linkwright.review.sources.details import (
 from linkwright.review.sources.enumerators import compare_enumerations
 from linkwright.review.sources.name_patterns import extract_pattern
 from linkwright.review.sources.names import (
+    HEADER_SUFFIXES,
     PYTHON_SUFFIX,
     DefaultName,
     NameKind,
@@ -59,6 +61,7 @@ from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.used_packages import compare_usage
 from linkwright.review.versions import Versions
 
+_HEADER_FOLDER = "include"
 _MAX_FUNCTION_CHANGES = 3
 """The maximum number of functions with changed arguments in a file that have lines of their own."""
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
@@ -102,7 +105,8 @@ class _SourcePair:
     def find_changes(self) -> Iterator[Change]:
         """Yield the differences."""
         old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
-        changes = [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
+        changes = list(self._find_added_header())
+        changes += [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
         changes += self._compare_rates(old_names, new_names)
         for change in compare_conditions(old_names, new_names):
             path = (self.file.old_path if change.is_old else self.file.new_path) or self.file.path
@@ -348,10 +352,11 @@ class _SourcePair:
 
         That is, whether it is a module of a package or an installed header.
         """
-        package = self.old.find_package(path)
+        side = self.new if self.file.old_path is None else self.old
+        package = side.find_package(path)
         if path.endswith(PYTHON_SUFFIX):
-            return package is not None and (self.old.version.file(path).parent / "__init__.py").is_file()
-        return package is not None and is_exported_header(self.old.version, package, path)
+            return package is not None and (side.version.file(path).parent / "__init__.py").is_file()
+        return package is not None and is_exported_header(side.version, package, path)
 
     def _report_unpaired(
         self, kind: NameKind, removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames
@@ -545,6 +550,14 @@ class _SourcePair:
             if name in old_names.attributes:
                 text = phrase("calls its method '{name}', which is no longer defined", name=name)
                 yield self._make_change(text, span, self.new, phrase("the call fails"))
+
+    def _find_added_header(self) -> Iterator[Change]:
+        """Yield a line with the text by which other packages include an added header."""
+        path = PurePosixPath(self.file.path)
+        if self.file.old_path is None and path.suffix in HEADER_SUFFIXES and self._is_interface(self.file.path):
+            folder = next((folder for folder in path.parents if folder.name == _HEADER_FOLDER), path.parent)
+            text = phrase("header added: other packages include '{path}'", path=path.relative_to(folder).as_posix())
+            yield Change(text, location=Location(self.file.path, 1, 1))
 
     def _compare_packages(self, *, are_headers_told: bool) -> Iterator[Change]:
         """Yield the packages, or else the headers, that the source is the first or was the last to use."""
