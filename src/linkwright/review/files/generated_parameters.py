@@ -16,8 +16,6 @@ from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.files.parameter_names import find_node_name
 from linkwright.review.files.yaml_values import YamlValue, collect_values, read_yaml_values
-from linkwright.review.sources.details import make_required_reason
-from linkwright.review.sources.names import NO, YES, NameKind
 from linkwright.review.versions import Version
 
 _TYPES = re.compile(r"(?:bool|int|double|string|none)(?:_array)?(?:_fixed_\d+)?")
@@ -91,12 +89,12 @@ def compare_generated_parameters(pair: FilePair, old_root: yaml.Node, new_root: 
     if added:
         first = next(iter(added.values()))
         required = [name for name, parameter in added.items() if parameter.is_required]
-        reason = make_required_reason(NameKind.PARAMETER, joined_first(required, MAX_NAMES)) if required else None
-        text = phrase("{kind} added: {names}", kind=NameKind.PARAMETER.plural, names=_format_names(added))
+        reason = _make_required_reason(joined_first(required, MAX_NAMES)) if required else None
+        text = phrase("{kind} added: {names}", kind=phrase("parameters"), names=_format_names(added))
         pair.changes.append(_make_change(text, reason, Location(pair.new_path, first.line, first.column)))
     if lost:
         first = next(iter(lost.values()))
-        text = phrase("{kind} removed: {names}", kind=NameKind.PARAMETER.plural, names=_format_names(lost))
+        text = phrase("{kind} removed: {names}", kind=phrase("parameters"), names=_format_names(lost))
         reason = phrase(
             "values that launch files and parameter files give to '{name}' have no effect",
             name=joined_first(lost, MAX_NAMES),
@@ -105,6 +103,10 @@ def compare_generated_parameters(pair: FilePair, old_root: yaml.Node, new_root: 
         if user is not None:
             reason = phrase("'{file}' still sets '{name}', which has no effect", file=user[0], name=user[1])
         pair.changes.append(_make_change(text, reason, Location(pair.old_path, first.line, first.column, is_old=True)))
+
+
+def _make_required_reason(names: Phrase | str) -> Phrase:
+    return phrase("the program fails where '{name}' is not set", name=names)
 
 
 def _make_change(text: Phrase, reason: Phrase | None, location: Location) -> Change:
@@ -121,7 +123,7 @@ def _compare_parameter(name: str, old: _Parameter, new: _Parameter) -> Iterator[
     def make_text(title: Phrase | str, before: str, after: str) -> Phrase:
         return phrase(
             "{kind} '{name}': {property} {old} -> {new}",
-            kind=NameKind.PARAMETER.title,
+            kind=phrase("parameter"),
             name=name,
             property=title,
             old=before or "-",
@@ -133,20 +135,20 @@ def _compare_parameter(name: str, old: _Parameter, new: _Parameter) -> Iterator[
     if old.default != new.default:
         text = phrase(
             "{kind} '{name}': default {old} -> {new}",
-            kind=NameKind.PARAMETER.title,
+            kind=phrase("parameter"),
             name=name,
             old=old.default or "-",
             new=new.default or "-",
         )
         is_lost = new.is_required and not old.is_required
-        yield text, make_required_reason(NameKind.PARAMETER, name) if is_lost else None
+        yield text, _make_required_reason(name) if is_lost else None
     for rule in dict.fromkeys((*old.rules, *new.rules)):
         before, after = old.rules.get(rule), new.rules.get(rule)
         if before != after:
             reason = phrase("values that were allowed are rejected") if _is_stricter(rule, old, new) else None
             yield make_text(rule, _format_rule(before), _format_rule(after)), reason
     if old.is_read_only != new.is_read_only:
-        states = [YES if item.is_read_only else NO for item in (old, new)]
+        states = ["yes" if item.is_read_only else "no" for item in (old, new)]
         reason = phrase("programs that set the parameter while the node runs get an error")
         yield make_text(phrase("read-only"), *states), reason if new.is_read_only else None
     for key, title in zip(_TEXT_PROPERTIES, (phrase("description"), phrase("constraints")), strict=True):
