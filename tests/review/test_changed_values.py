@@ -267,3 +267,9 @@ def test_the_notation_of_a_number_is_no_value_in_a_statement_of_another_shape(re
         "rover/src/a.cpp", text.format("0x0B", ""), text.format("0x0B", ""), text.format(new, " + first")
     )
     assert any("->" in line for line in lines) is is_told
+
+
+def test_an_index_is_not_the_value_that_replaces_a_number(review_lines):
+    text = "void Rover::read() {\n  covariance[14] = 1000000.0;\n}\n"
+    lines = review_lines("rover/src/a.cpp", text, "1000000.0", "covariance_[2]")
+    assert all("-> 2" not in line for line in lines)

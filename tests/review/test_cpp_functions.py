@@ -101,3 +101,18 @@ def test_many_functions_with_other_arguments_are_one_line(repository, compare):
     assert breaking(compare(repository)) == [
         "functions with other arguments: Gripper::open, Gripper::close, Gripper::move, Gripper::hold"
     ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("int rate() const {", "int rate() {", ["function 'Driver::rate': const yes -> no"]),
+        ("int rate() const {", "int rate();\n  int rate() const {", []),
+        ("void stop();", "void stop() const;", []),
+    ],
+)
+def test_a_function_that_constant_objects_no_longer_have_is_breaking(repository, compare, old, new, expected):
+    repository.commit(FILES)
+    assert old in HEADER
+    repository.write({"a/include/arm/driver.hpp": HEADER.replace(old, new)})
+    assert breaking(compare(repository)) == expected

@@ -266,6 +266,14 @@ def test_namespaces_of_an_installed_header(repository, compare, old, new, expect
     assert found == ([expected] if expected else [])
 
 
+def test_a_namespace_that_another_header_of_the_package_opens_is_not_lost(repository, compare):
+    path = "arm/include/arm/arm.hpp"
+    other = {"arm/include/arm/tool.hpp": "#pragma once\nnamespace arm {\nint size();\n}\n"}
+    repository.commit({**HEADER_PACKAGE, path: NAMESPACES, **other})
+    repository.write({path: NAMESPACES.replace("namespace arm", "namespace tool")})
+    assert not [sentence for sentence in breaking(compare(repository)) if "namespace" in sentence]
+
+
 ALIASES = """#pragma once
 class Arm {
 public:

@@ -12,7 +12,7 @@ import yaml
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
-from linkwright.review.excerpts import differing_excerpts
+from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.files.parameter_names import find_node_name
 from linkwright.review.files.yaml_values import YamlValue, collect_values, read_yaml_values
@@ -156,7 +156,8 @@ def _compare_parameter(name: str, old: _Parameter, new: _Parameter) -> Iterator[
         if before_text != after_text:
             shown = (before_text, after_text)
             if before_text and after_text and len(before_text) + len(after_text) > _MAX_TEXT_CHARACTERS:
-                shown = differing_excerpts(before_text, after_text)
+                first, second = differing_excerpts(before_text, after_text)
+                shown = (shorten_middle(first, _MAX_TEXT_CHARACTERS), shorten_middle(second, _MAX_TEXT_CHARACTERS))
             yield make_text(title, *shown), None
 
 

@@ -22,7 +22,7 @@ from linkwright.review.sources.statements import (
     find_literal_differences,
     normalize_number,
 )
-from linkwright.review.sources.tokens import TokenKind
+from linkwright.review.sources.tokens import Token, TokenKind
 
 _DEFINITION = re.compile(r"\b([A-Z]\w+)(?=\s*(?:=(?!=)|[{\[,]))|define\s+(\w+)")
 _QUOTED = re.compile("\"[^\"]*\"|'[^']*'")
@@ -158,12 +158,23 @@ def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
     if len(texts[0]) != len(texts[1]) or len(pairs) != 1:
         return
     ((before, after),) = pairs
+    if not any(_are_in_same_place(old.tokens, new.tokens, *pair) for pair in pairs):
+        return
     old_words, new_words = (
         [token.text for token in statement.tokens if token.kind is not TokenKind.NUMBER] for statement in (old, new)
     )
     if SequenceMatcher(None, old_words, new_words, autojunk=False).ratio() >= _MIN_SIMILARITY:
         token = next(token for token in numbers[1] if token.text == after)
         yield Difference(f"{before} -> {after}", before, after, token)
+
+
+def _are_in_same_place(old: Sequence[Token], new: Sequence[Token], before: str, after: str) -> bool:
+    """Return whether two numbers stand before or behind the same token, so that one can replace the other."""
+    places = []
+    for tokens, text in ((old, before), (new, after)):
+        index = next(index for index, token in enumerate(tokens) if token.text == text)
+        places.append([tokens[at].text if 0 <= at < len(tokens) else "" for at in (index - 1, index + 1)])
+    return any(before == after for before, after in zip(*places, strict=True))
 
 
 def _is_same_number(old: str, new: str) -> bool:
@@ -196,6 +207,8 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
         before, arrow, after = line.partition(" -> ")
         if arrow and _has_word(before, old) and _has_word(after, new):
             return True
+        if all(re.search(rf"= {re.escape(text)}(?![\w.])", line) for text in (item.old, item.new)):
+            return True  # a removed and an added constant
     if item.new.endswith(("]", ")", "}")):
         texts = set(_QUOTED.findall(item.old)) ^ set(_QUOTED.findall(item.new))
         words = [text[1:-1].rpartition(":=")[2] for text in texts]  # without the old name of a remapping

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
@@ -25,7 +26,7 @@ from linkwright.review.sources.details import (
     format_rename,
 )
 from linkwright.review.sources.enumerators import compare_enumerations
-from linkwright.review.sources.name_patterns import extract_pattern
+from linkwright.review.sources.name_patterns import can_make, extract_pattern
 from linkwright.review.sources.names import (
     HEADER_SUFFIXES,
     PYTHON_SUFFIX,
@@ -34,7 +35,7 @@ from linkwright.review.sources.names import (
     SourceName,
     SourceNames,
 )
-from linkwright.review.sources.namespaces import compare_namespaces
+from linkwright.review.sources.namespaces import compare_namespaces, has_namespace
 from linkwright.review.sources.other_nodes import find_other_node_reason, has_only_in_other_nodes
 from linkwright.review.sources.package_imports import (
     drop_defined_imports,
@@ -436,6 +437,8 @@ class _SourcePair:
                 "{kind} {name} has a computed name now: {new}", kind=kind.title, name=format_name(item), new=other.name
             )
             reason = self._find_default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
+            if reason is None and not can_make(other.name, item.name):
+                reason = self._find_removal_reason([item], old_names)
             yield self._make_change(text, other.span, self.new, reason)
         for item, other in take_pairs(added, removed_expressions):
             text = phrase(
@@ -571,7 +574,7 @@ class _SourcePair:
         if None in (self.file.old_path, self.file.new_path) or not self._is_interface(self.file.old_path or ""):
             return
         for change in (
-            *compare_namespaces(old_names, new_names),
+            *compare_namespaces(old_names, new_names, partial(has_namespace, self.new.version, self.file.path)),
             *compare_protected(old_names, new_names),
             *compare_enumerations(old_names.enumerations, new_names.enumerations),
         ):

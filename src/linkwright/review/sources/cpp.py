@@ -138,8 +138,11 @@ class _Reader:
             self._read_rate(match)
         for match in _RECONFIGURATION.finditer(text):
             self._add(NameKind.RECONFIGURATION, match["name"], match.start("name"), match.end("name"))
-        for item in find_registrations(text):
-            self._add(item.kind, item.name, item.start, item.end)
+        registrations = list(find_registrations(text))
+        for item in registrations:
+            bases = sorted({other.base for other in registrations if other[:2] == item[:2] and other.base})
+            details = ((Detail.BASES, ", ".join(bases)),) if bases else ()
+            self._add(item.kind, item.name, item.start, item.end, details=details)
         self._read_classes()
         self._read_functions()
         self._names.conditional_lines += find_cpp_conditions(text)
@@ -192,6 +195,8 @@ class _Reader:
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
             if len(functions) == 1 and functions[0].result:
                 details = (*details, (Detail.RESULT, functions[0].result))
+            if any(function.is_const for function in functions):
+                details = (*details, (Detail.CONSTANT, YES))
             start = self._text.find(name.rpartition("::")[2], functions[0].start)
             self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
         for member in read_declared_members(self._text):

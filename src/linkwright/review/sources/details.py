@@ -13,7 +13,7 @@ from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceNam
 from linkwright.review.sources.qos import find_qos_reason, normalize_qos
 from linkwright.review.sources.signatures import parse_signature
 
-_KNOWN_IN_BOTH = (Detail.QOS, Detail.ARGUMENTS, Detail.RESULT)
+_KNOWN_IN_BOTH = (Detail.QOS, Detail.ARGUMENTS, Detail.RESULT, Detail.BASES)
 """The properties that are compared only if both versions tell them."""
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _QOS = re.compile(r"[\w:.]*(?:QoS|qos_profile|QOS)\w*\s*(?:[({].*)?", re.DOTALL)
@@ -80,9 +80,11 @@ def compare_details(
             continue
         if detail is Detail.QOS and normalize_qos(before or "") == normalize_qos(after or ""):
             continue
+        if detail is Detail.CONSTANT and after is not None:
+            continue  # calls that built still build
         if detail is Detail.RESULT and is_same_type(before or "", after or ""):
             continue
-        missing = NO if detail in (Detail.LATCH, Detail.REQUIRED) else "-"
+        missing = NO if detail in (Detail.LATCH, Detail.REQUIRED, Detail.CONSTANT) else "-"
         text = phrase(
             "{kind} '{name}': {property} {old} -> {new}",
             kind=new.kind.title,
@@ -181,6 +183,12 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
     if detail is Detail.RESULT:
         reason = phrase("code that uses the result as '{type}' does not build", type=old)
         return None if can_use_result(old, new) else reason
+    if detail is Detail.BASES:
+        lost = sorted(set(old.split(", ")) - set(new.split(", ")))
+        reason = phrase("programs that load the class as '{type}' do not find it", type=", ".join(lost))
+        return reason if lost else None
+    if detail is Detail.CONSTANT:
+        return phrase("code that calls '{name}' on constant objects does not build", name=name.name)
     if detail is Detail.VALUE_TYPE and name.kind is NameKind.PARAMETER and before and after:
         return phrase("values of the old type are rejected")
     if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:

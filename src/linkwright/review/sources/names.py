@@ -76,6 +76,8 @@ class Detail(Enum):
     REQUIRED = phrase("required")
     ARGUMENTS = phrase("arguments")
     RESULT = phrase("result")
+    CONSTANT = phrase("const")
+    BASES = phrase("base classes")
     CONDITION = phrase("condition")
 
     @property
@@ -119,12 +121,14 @@ class FoundName(NamedTuple):
         name: the name by which others use it, such as ``gripper/position`` of an interface of ros2_control.
         start: the offset of the name.
         end: the end of the name.
+        base: the base class as which programs load an exported class; empty if there is none.
     """
 
     kind: NameKind
     name: str
     start: int
     end: int
+    base: str = ""
 
 
 @dataclass(frozen=True)
