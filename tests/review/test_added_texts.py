@@ -193,7 +193,7 @@ def test_constant_that_a_line_names_is_no_other_code(review_lines):
     [
         ("kLow = 20.0f", "kLower = 18.0f", ["constants added: kLower = 18.0f; constants removed: kLow = 20.0f"]),
         ("kLow = 20.0f", "kLower = 20.0f", ["constants renamed: kLow -> kLower"]),
-        ("  int count = 4;\n", "", ["code changed in 'Battery'"]),
+        ("  int count = 4;\n", "", ["code changed in 'Battery' (removed: count)"]),
     ],
 )
 def test_constants_of_classes_are_told(repository, compare, old, new, expected):

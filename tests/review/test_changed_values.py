@@ -273,3 +273,10 @@ def test_an_index_is_not_the_value_that_replaces_a_number(review_lines):
     text = "void Rover::read() {\n  covariance[14] = 1000000.0;\n}\n"
     lines = review_lines("rover/src/a.cpp", text, "1000000.0", "covariance_[2]")
     assert all("-> 2" not in line for line in lines)
+
+
+@pytest.mark.parametrize(("old", "new", "is_told"), [("1.6581", "M_PI_2", True), ("1.5708", "M_PI_2", False)])
+def test_a_constant_of_mathematics_replaces_a_number(review_lines, old, new, is_told):
+    text = "void Rover::read() {\n  angle_ = a - NUMBER;\n}\n"
+    lines = review_lines("rover/src/a.cpp", text.replace("NUMBER", old), old, new)
+    assert (f"values in Rover::read: angle_ a - {old} -> a - {new}" in lines) is is_told

@@ -169,12 +169,12 @@ def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
 
 
 def _are_in_same_place(old: Sequence[Token], new: Sequence[Token], before: str, after: str) -> bool:
-    """Return whether two numbers stand before or behind the same token, so that one can replace the other."""
+    """Return whether two numbers follow the same token, so that one can replace the other."""
     places = []
     for tokens, text in ((old, before), (new, after)):
         index = next(index for index, token in enumerate(tokens) if token.text == text)
-        places.append([tokens[at].text if 0 <= at < len(tokens) else "" for at in (index - 1, index + 1)])
-    return any(before == after for before, after in zip(*places, strict=True))
+        places.append(tokens[index - 1].text if index else "")
+    return places[0] == places[1]
 
 
 def _is_same_number(old: str, new: str) -> bool:

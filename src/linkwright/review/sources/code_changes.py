@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change
+from linkwright.review.sources.class_members import format_changed_class
 from linkwright.review.sources.code import Code, Part
 from linkwright.review.sources.names import SourceNames
 from linkwright.review.sources.operator_changes import differ_by_operator
@@ -199,7 +200,13 @@ def _find_outside_change(old: Code, new: Code) -> CodeChange | None:
             if name in names and name and _get_texts(old.outside.get(name, ())) != _get_texts(new.outside.get(name, ()))
         ]
         if changed:
-            texts.append(text.with_arguments(names=_join_names(f"'{name}'" for name in changed)))
+            formatted = [
+                format_changed_class(name, *(_get_texts(side.outside.get(name, ())) for side in (old, new)))
+                if name in old.outside.keys() & new.outside.keys()
+                else f"'{name}'"
+                for name in changed
+            ]
+            texts.append(text.with_arguments(names=joined_first(formatted, MAX_NAMES)))
             other = old if code is new else new
             lines.append(
                 (

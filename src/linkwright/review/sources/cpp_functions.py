@@ -196,6 +196,8 @@ def _read_function(chunk: str, classes: list[str], start: int) -> Iterator[Decla
         is_name = match["name"] not in _KEYWORDS and not match["name"].isupper() and not match["name"].startswith("~")
         if end < 0 or not _QUALIFIERS.fullmatch(suffix) or not is_name or "=" in declaration[: match.start()]:
             continue
+        if declaration[: match.start()].rstrip().endswith("::"):
+            return  # the definition of a method that its class declares
         parameters = tuple(_parse_parameter_type(text) for text in _split_parameters(declaration[match.end() : end]))
         name = "::".join([*classes, "".join(match["name"].split())])
         is_override = re.search(r"\b(?:override|final)\b", suffix) is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -42,6 +43,12 @@ _MAX_EXPRESSION_CHARACTERS = 60
 """The maximum number of characters of the shown expression around a literal."""
 
 
+_MATHEMATICAL = {"M_PI": math.pi, "M_PI_2": math.pi / 2, "M_PI_4": math.pi / 4, "M_E": math.e}
+"""The values of constants of mathematics in C and C++."""
+_ROUNDING = 1e-3
+"""The relative difference of a rounded constant of mathematics."""
+
+
 class Literal(NamedTuple):
     """A literal in a statement.
 
@@ -66,8 +73,12 @@ class Literal(NamedTuple):
     def differs_from(self, other: Literal) -> bool:
         """Return whether two literals have different values of the same kind.
 
-        A constant may have any value.
+        A constant may have any value, except for those of mathematics.
         """
+        numbers = [_MATHEMATICAL.get(item.value) or _parse_number(item.value) for item in (self, other)]
+        if self.constant != other.constant and None not in numbers:
+            first, second = (number or 0.0 for number in numbers)
+            return abs(first - second) > _ROUNDING * max(abs(first), abs(second))
         return self.value != other.value and self.constant == other.constant
 
 
@@ -108,6 +119,13 @@ class Statement(NamedTuple):
     def get_text(self, first: int, last: int) -> str:
         """Return the text of the tokens from a first to a last index, both included."""
         return join_tokens(self.tokens[first : last + 1])
+
+
+def _parse_number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
 
 
 def parse_statement(tokens: Sequence[Token]) -> Statement:
