@@ -377,3 +377,13 @@ def test_a_program_that_only_tests_install_is_not_breaking_when_it_is_gone(repos
     result = compare(repository)
     assert any("'check" in line for line in sentences(subject(result, "a/CMakeLists.txt")))
     assert breaking(result) == []
+
+
+@pytest.mark.parametrize("is_exported", [True, False])
+def test_a_folder_of_headers_that_exported_targets_bring_is_not_lost(repository, compare, is_exported):
+    export = "ament_export_targets(export_arm)\n" if is_exported else "\n"
+    new = AMENT.replace("ament_export_include_directories(include)\n", export)
+    repository.commit({**MANIFEST, "a/CMakeLists.txt": AMENT})
+    repository.write({"a/CMakeLists.txt": new})
+    lost = [line for line in breaking(compare(repository)) if "include folders" in line]
+    assert lost == ([] if is_exported else ["exported include folders removed: 'include'"])

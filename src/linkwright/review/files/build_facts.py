@@ -249,7 +249,7 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new))
         if kind is FactKind.STOP:
             _report_reworded_errors(pair, removed, added)
-        _report_unpaired(pair, kind, removed, added)
+        _report_unpaired(pair, kind, removed, added, is_replaced=_exports_folders_otherwise(kind, new))
     _report_conditions(pair, conditions)
     _report_repeated_exports(pair, old, new)
     _compare_files(pair, old, new)
@@ -323,8 +323,15 @@ def _compare_values(pair: FilePair, old: tuple[BuildFacts, Fact], new: tuple[Bui
     pair.add(text, pair.location(new_fact.span), reason)
 
 
-def _report_unpaired(pair: FilePair, kind: FactKind, removed: Sequence[Fact], added: Sequence[Fact]) -> None:
-    """Report the facts of a kind that only one version has."""
+def _exports_folders_otherwise(kind: FactKind, new: BuildFacts) -> bool:
+    """Return whether exported targets bring folders of headers with them."""
+    return kind is FactKind.EXPORTED_FOLDER and any(name == "ament_export_targets" for name, _ in new.other_commands)
+
+
+def _report_unpaired(
+    pair: FilePair, kind: FactKind, removed: Sequence[Fact], added: Sequence[Fact], *, is_replaced: bool
+) -> None:
+    """Report the facts of a kind that only one version has. Removed facts that others replace are not breaking."""
     if added:
         reason = None
         if kind is FactKind.STOP:
@@ -332,7 +339,8 @@ def _report_unpaired(pair: FilePair, kind: FactKind, removed: Sequence[Fact], ad
         pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
     if removed:
         location = pair.location(removed[0].span, is_old=True)
-        reason = None if all(is_test_condition(fact.condition) for fact in removed) else kind.reason
+        is_harmless = is_replaced or all(is_test_condition(fact.condition) for fact in removed)
+        reason = None if is_harmless else kind.reason
         pair.add(_format_facts(kind, removed, is_added=False), location, reason)
 
 

@@ -42,6 +42,7 @@ class NameKind(Enum):
     COMMAND_INTERFACE = (phrase("command interface"), phrase("command interfaces"))
     STATE_INTERFACE = (phrase("state interface"), phrase("state interfaces"))
     CLAIMED_INTERFACE = (phrase("claimed interface"), phrase("claimed interfaces"))
+    HARDWARE_PARAMETER = (phrase("parameter of the hardware"), phrase("parameters of the hardware"))
     OPTION = (phrase("command-line option"), phrase("command-line options"))
     PLUGIN = (phrase("exported class"), phrase("exported classes"))
     PLUGINLIB_CLASS = (phrase("class for pluginlib"), phrase("classes for pluginlib"))
