@@ -102,3 +102,11 @@ def test_a_parameter_file_with_types_is_no_description(repository, compare):
     repository.commit({**FILES, PATH: text})
     repository.write({PATH: text.replace("1.0", "2.0")})
     assert sentences(subject(compare(repository), PATH)) == ["arm.left.speed 1.0 -> 2.0"]
+
+
+def test_a_parameter_with_a_similar_name_is_renamed(repository, compare):
+    repository.commit(FILES)
+    repository.write({PATH: DESCRIPTION.replace("depth: {type: int", "depths: {type: int_array")})
+    (change,) = subject(compare(repository), PATH).changes
+    assert str(change.sentence) == "parameter 'depth' (3) renamed to 'depths' (3)"
+    assert str(change.reason) == "'arm/config/arm.yaml' still sets 'depth', which has no effect"

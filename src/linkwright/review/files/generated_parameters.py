@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
 import yaml
@@ -27,6 +28,8 @@ _LOWER = {"lower_bounds": False, "gt_eq": False, "gt": True}
 _UPPER = {"upper_bounds": False, "lt_eq": False, "lt": True}
 """The rules with a limit, and whether the limit itself is not allowed."""
 _MAX_TEXT_CHARACTERS = 160
+_MIN_SIMILARITY = 0.8
+"""The minimum ratio of equal characters of the names of a renamed parameter."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,14 @@ def compare_generated_parameters(pair: FilePair, old_root: yaml.Node, new_root: 
                 pair.changes.append(_make_change(text, reason, location))
     added = {name: parameter for name, parameter in new.items() if name not in old}
     lost = {name: parameter for name, parameter in old.items() if name not in new}
+    for old_name, new_name in list(_pair_similar(lost, added)):
+        parameter = added.pop(new_name)
+        names = [f"'{name}' ({item.default or item.type})" for name, item in (
+            (old_name, lost[old_name]), (new_name, parameter)
+        )]  # fmt: skip
+        text = phrase("{kind} {old} renamed to {new}", kind=phrase("parameter"), old=names[0], new=names[1])
+        reason = _make_removal_reason(pair, new_root, {old_name: lost.pop(old_name)})
+        pair.changes.append(_make_change(text, reason, Location(pair.new_path, parameter.line, parameter.column)))
     if added:
         first = next(iter(added.values()))
         required = [name for name, parameter in added.items() if parameter.is_required]
@@ -95,14 +106,33 @@ def compare_generated_parameters(pair: FilePair, old_root: yaml.Node, new_root: 
     if lost:
         first = next(iter(lost.values()))
         text = phrase("{kind} removed: {names}", kind=phrase("parameters"), names=_format_names(lost))
-        reason = phrase(
-            "values that launch files and parameter files give to '{name}' have no effect",
-            name=joined_first(lost, MAX_NAMES),
-        )
-        user = _find_user(pair.versions.new, pair.new_path, new_root, lost)
-        if user is not None:
-            reason = phrase("'{file}' still sets '{name}', which has no effect", file=user[0], name=user[1])
+        reason = _make_removal_reason(pair, new_root, lost)
         pair.changes.append(_make_change(text, reason, Location(pair.old_path, first.line, first.column, is_old=True)))
+
+
+def _make_removal_reason(pair: FilePair, root: yaml.Node, lost: Mapping[str, _Parameter]) -> Phrase:
+    """Return the reason why lost parameters are breaking: a file that sets one of them, or else any file."""
+    user = _find_user(pair.versions.new, pair.new_path, root, lost)
+    if user is not None:
+        return phrase("'{file}' still sets '{name}', which has no effect", file=user[0], name=user[1])
+    return phrase(
+        "values that launch files and parameter files give to '{name}' have no effect",
+        name=joined_first(lost, MAX_NAMES),
+    )
+
+
+def _pair_similar(lost: Mapping[str, _Parameter], added: Mapping[str, _Parameter]) -> Iterator[tuple[str, str]]:
+    """Yield the lost and added parameters whose names are spelled alike, if no other name is."""
+    similar = [
+        (old, new)
+        for old in lost
+        for new in added
+        if old.rpartition(".")[0] == new.rpartition(".")[0]
+        and SequenceMatcher(None, old, new, autojunk=False).ratio() >= _MIN_SIMILARITY
+    ]
+    for old, new in similar:
+        if sum(old == pair[0] or new == pair[1] for pair in similar) == 1:
+            yield old, new
 
 
 def _make_required_reason(names: Phrase | str) -> Phrase:
