@@ -313,3 +313,15 @@ def test_a_node_whose_base_class_gets_its_name_in_braces_is_compared(repository,
     repository.commit({**MANIFEST, "arm/src/arm.cpp": text})
     repository.write({"arm/src/arm.cpp": text.replace('"arm"', '"arms"')})
     assert breaking(compare(repository)) == ["node 'arm' renamed to 'arms'"]
+
+
+@pytest.mark.parametrize(
+    ("base", "expected"),
+    [("public rclcpp_lifecycle::LifecycleNode", ["node 'arm' renamed to 'arms'"]), ("public Device", [])],
+)
+def test_a_node_whose_own_base_class_gets_its_name_is_compared(repository, compare, base, expected):
+    header = f"#pragma once\nclass BaseNode : {base} {{\npublic:\n  BaseNode(const std::string & name);\n}};\n"
+    source = '#include "arm/base_node.hpp"\nArm::Arm() : arm::BaseNode("arm"), rate_(1) {}\n'
+    repository.commit({**MANIFEST, "arm/include/arm/base_node.hpp": header, "arm/src/arm.cpp": source})
+    repository.write({"arm/src/arm.cpp": source.replace('"arm"', '"arms"')})
+    assert breaking(compare(repository)) == expected

@@ -30,6 +30,7 @@ from linkwright.review.sources.cpp_functions import (
 )
 from linkwright.review.sources.cpp_handles import Handles, add_namespace
 from linkwright.review.sources.cpp_helpers import Helper, find_helper_uses, find_helpers
+from linkwright.review.sources.cpp_lifecycle import LifecycleCallbacks
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.cpp_options import find_options
 from linkwright.review.sources.cpp_qos import find_assigned_qos
@@ -67,6 +68,11 @@ _NODE = re.compile(
     r"\brclcpp(?:_lifecycle)?::(?:Lifecycle)?Node::make_shared\s*\(|"
     r"\bmake_shared<\s*rclcpp(?:_lifecycle)?::(?:Lifecycle)?Node\s*>\s*\("
 )
+_BASE_CALL = re.compile(r"(?<=[:,])\s*(?:\w+::)*(?P<base>\w+)\s*(?=[({]\s*\")")
+"""The construction of a base class with a text in the initializer list of a constructor."""
+_NODE_CLASS = re.compile(
+    r"\bclass\s+(?:[A-Z]\w*_\w+\s+)?(?P<name>\w+)\s*(?:final\s*)?:[^;{}]*\b(?:Lifecycle)?Node\b[^;{}]*\{"
+)
 _INIT = re.compile(r"\bros::init\s*\(")
 _FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
 _RECONFIGURATION = re.compile(r"\bdynamic_reconfigure\s*::\s*Server\s*<\s*(?:\w+\s*::\s*)*(?P<name>\w+)\s*>")
@@ -75,6 +81,7 @@ _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
 )
+_PERIOD = re.compile(r"\d|\bDuration\b|seconds\b")
 _NAMESPACE = re.compile(r"^[ \t]*(?:inline\s+)?namespace\s+(?P<name>[A-Za-z_]\w*(?:\s*::\s*\w+)*)\s*\{", re.MULTILINE)
 _ALIAS = re.compile(
     r"\btypedef\s+(?P<type>[^;{}]+[\s>*&])(?P<name>\w+)\s*;|\busing\s+(?P<using>\w+)\s*=\s*(?P<used>[^;{}]+);"
@@ -118,6 +125,10 @@ class _Reader:
             for match in pattern.finditer(text):
                 self._names.makes_node = True
                 self._add_argument(kind, match.end() - 1, index)
+        for match in _BASE_CALL.finditer(text):
+            if match["base"] in self._node_bases:
+                self._names.makes_node = True
+                self._add_argument(NameKind.NODE, match.end(), 0)
         for match in _FRAME.finditer(text):
             kind = NameKind.FRAME if match["child"] else NameKind.MESSAGE_FRAME
             self._add_frame(kind, match.start("value"), match.end("value"))
@@ -299,6 +310,9 @@ class _Reader:
             type_name = "" if is_output else self._find_literal_default(call, texts)
         else:
             details += self._find_qos(call, texts)
+        callback = self._lifecycle.find(offsets[0])
+        if kind in GRAPH_KINDS and callback:
+            details.append((Detail.CREATED_IN, callback))
         if kind is NameKind.PUBLISHER and call.function in ROS1_CALLS and list(texts[-1:]) == ["true"]:
             details.append((Detail.LATCH, YES))
         if not type_name:
@@ -377,6 +391,15 @@ class _Reader:
         return [blank_comments(text) for text in read_included_headers(Path(self._source.name))]
 
     @cached_property
+    def _node_bases(self) -> Collection[str]:
+        """The classes of included headers that derive from a node, to which derived classes give its name."""
+        return {match["name"] for text in self._headers for match in _NODE_CLASS.finditer(text)}
+
+    @cached_property
+    def _lifecycle(self) -> LifecycleCallbacks:
+        return LifecycleCallbacks(self._text)
+
+    @cached_property
     def _remappings(self) -> Remappings:
         """The remappings that the source passes to its node."""
         return read_remappings(self._text)
@@ -441,6 +464,8 @@ class _Reader:
         is_timer = match["name"] == "create_timer"
         texts = [" ".join(self._text[slice(*argument)].split()) for argument in arguments]
         index = 1 if is_timer and len(texts) > 1 and not re.search(r"\d", texts[0]) else 0
+        if is_timer:  # behind the node and its clock in the functions of rclcpp
+            index = next((place for place, text in enumerate(texts[:3]) if _PERIOD.search(text)), index)
         if index < len(texts):
             name = match["name"].split()[0]
             rate = f"{name}({texts[index]})", self._make_span(*arguments[index])

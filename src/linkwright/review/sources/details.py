@@ -13,7 +13,7 @@ from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceNam
 from linkwright.review.sources.qos import find_qos_reason, normalize_qos
 from linkwright.review.sources.signatures import parse_signature
 
-_KNOWN_IN_BOTH = (Detail.QOS, Detail.ARGUMENTS, Detail.RESULT, Detail.BASES)
+_KNOWN_IN_BOTH = (Detail.QOS, Detail.ARGUMENTS, Detail.RESULT, Detail.BASES, Detail.CREATED_IN)
 """The properties that are compared only if both versions tell them."""
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _QOS = re.compile(r"[\w:.]*(?:QoS|qos_profile|QOS)\w*\s*(?:[({].*)?", re.DOTALL)

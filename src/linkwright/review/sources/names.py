@@ -79,6 +79,7 @@ class Detail(Enum):
     RESULT = phrase("result")
     CONSTANT = phrase("const")
     BASES = phrase("base classes")
+    CREATED_IN = phrase("created in")
     CONDITION = phrase("condition")
 
     @property
