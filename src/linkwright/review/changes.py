@@ -43,6 +43,7 @@ class SubjectKind(Enum):
     MESH = "mesh"
     SCENARIO = "scenario"
     SEMANTICS = "semantic description"
+    BEHAVIOR_TREE = "behavior tree"
     PART = "part of descriptions"
     PLUGINS = "plugin description"
     SOURCE = "node source"

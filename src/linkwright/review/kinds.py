@@ -12,6 +12,7 @@ from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import SubjectKind
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.behavior_trees import compare_behavior_trees, tree_contents
 from linkwright.review.files.build_contents import build_contents
 from linkwright.review.files.build_facts import BuildFacts
 from linkwright.review.files.cmake_files import CMAKE_FILE, compare_cmake_files, read_cmake_facts
@@ -256,6 +257,19 @@ LAUNCH_HELPER = KindRule(
     phrase("launch files that import the module do not find it"),
 )
 """The rule for Python modules that make actions for launch files."""
+
+
+BEHAVIOR_TREE = KindRule(
+    SubjectKind.BEHAVIOR_TREE,
+    compare_behavior_trees,
+    (".xml",),
+    phrase("behavior tree added"),
+    phrase("behavior tree removed"),
+    phrase("programs and parameter files that name the file do not find it"),
+    contents=tree_contents,
+    shows_removed=True,
+)
+"""The rule for XML files that contain behavior trees."""
 
 
 MAP = KindRule(

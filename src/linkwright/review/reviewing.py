@@ -28,6 +28,7 @@ from linkwright.review.changes import (
 from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
+from linkwright.review.files.behavior_tree_files import is_tree_file
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
@@ -37,6 +38,7 @@ from linkwright.review.files.templates import is_template
 from linkwright.review.findings import Findings, compare_findings, find_findings, find_findings_singly
 from linkwright.review.folders import review_without_folder
 from linkwright.review.kinds import (
+    BEHAVIOR_TREE,
     LAUNCH_FILE,
     LAUNCH_HELPER,
     MAP,
@@ -318,6 +320,8 @@ class _Reviewer:
             return MAP if any(is_map(version.file(path)) for version, path in sides if path) else rule
         if rule is None and any(is_launch_xml(version.file(name)) for version, name in sides if name):
             return LAUNCH_FILE
+        if rule is None and any(is_tree_file(version.file(name)) for version, name in sides if name):
+            return BEHAVIOR_TREE
         if rule is None and may_help_launch_files(path):
             is_helper = any(imports_actions(version.file(path)) for version, path in sides if path)
             return LAUNCH_HELPER if is_helper else None
