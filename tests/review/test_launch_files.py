@@ -260,7 +260,12 @@ PACKAGE = {
 @pytest.mark.parametrize(
     ("old", "new", "expected", "is_breaking"),
     [
-        ("    ld.add_action(Mixin.arg_frame())\n", "", "argument 'frame' removed: default base", True),
+        (
+            "    ld.add_action(Mixin.arg_frame())\n",
+            "",
+            "argument 'frame' removed: default base; the file did not use it",
+            False,
+        ),
         ("rate=10", "rate=20", "node 'arm/driver': parameter rate 10 -> 20", False),
         ('IfCondition("a")', 'IfCondition("b")', "node 'arm/driver': condition if a -> if b", False),
         ('"left"', '"right"', "action 'node_camera': arguments [left] -> [right]", False),
@@ -305,7 +310,7 @@ def generate_launch_description():
     ("old", "new", "expected"),
     [
         ('"tty0"', '"tty1"', "argument 'port': default tty0 -> tty1"),
-        (', {"name": "port", "default": "tty0"}', "", "argument 'port' removed: default tty0"),
+        (', {"name": "port", "default": "tty0"}', "", "argument 'port' removed: default tty0; the file did not use it"),
         ('["left", "right"]', '["left", "rear"]', "node 'arm/driver': namespace right -> rear"),
         ('["left", "right"]', '["left"]', "node 'arm/driver' removed: namespace right"),
     ],

@@ -41,7 +41,7 @@ from linkwright.review.launches.titles import (
 )
 from linkwright.review.launches.transforms import find_other_publisher
 from linkwright.review.launches.undefined import report_undefined_names
-from linkwright.review.launches.unused_arguments import report_unused_arguments
+from linkwright.review.launches.unused_arguments import report_unused_arguments, uses_argument
 from linkwright.review.sources.names import PYTHON_SUFFIX
 
 _MAX_STATEMENT_CHARACTERS = 120
@@ -184,6 +184,9 @@ def _report_unpaired_entries(
                 location,
             )
             continue
+        if _is_unused_argument(pair, entry, old_included.outline):
+            pair.add(phrase("{change}; the file did not use it", change=text), location)
+            continue
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         pair.add(
             text,
@@ -191,6 +194,15 @@ def _report_unpaired_entries(
             find_removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes),
         )
     _report_moved(pair, moved)
+
+
+def _is_unused_argument(pair: FilePair, entry: Entry, old: LaunchOutline) -> bool:
+    """Return whether a removed action declares an argument of ROS 2 that the old file did not use.
+
+    Included files get a value that a caller passes with or without a declaration. ROS 1 refuses undeclared arguments.
+    """
+    is_argument = entry.kind == "argument" and "value" not in entry.settings
+    return is_argument and not old.is_ros1 and not uses_argument(pair.old_file, entry.name, old.entries)
 
 
 def _report_changed_move(pair: FilePair, entry: Entry, file: str, changed: Entry, lost: Sequence[str]) -> None:
