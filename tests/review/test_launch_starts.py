@@ -184,3 +184,38 @@ SPAWNS = f'<launch><node pkg="rviz2" exec="rviz2"/>{SPAWN}</launch>'
 )
 def test_robot_that_is_no_longer_spawned_is_breaking(review_changes, new, is_breaking):
     assert bool(review_changes("arm.launch.xml", SPAWNS, SPAWN, new)[1]) is is_breaking
+
+
+LOOP = """import os
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    ld = LaunchDescription()
+    for i in range(int(os.environ["ROBOTS"])):
+        ld.add_action(Node(package="ros_gz_sim", executable="create", arguments=["-name", "robot" + str(i)]))
+        ld.add_action(Node(package="arm", executable="driver", namespace="robot" + str(i)))
+    return ld
+"""
+TWICE = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="ros_gz_sim", executable="create", arguments=["-name", "robot1"]),
+        Node(package="ros_gz_sim", executable="create", arguments=["-name", "robot2"]),
+        Node(package="arm", executable="driver", namespace="robot1"),
+        Node(package="arm", executable="driver", namespace="robot2"),
+    ])
+"""
+
+
+def test_loop_of_unknown_length_may_start_all_old_nodes(repository, compare):
+    repository.commit({"arm/launch/arm.launch.py": TWICE})
+    repository.write({"arm/launch/arm.launch.py": LOOP})
+    result = compare(repository)
+    found = sentences(subject(result, "arm/launch/arm.launch.py"))
+    assert any(sentence.startswith("node 'arm/driver' removed") for sentence in found)
+    assert not any("removed" in sentence for sentence in breaking(result))

@@ -119,6 +119,8 @@ def find_removal_reason(
         return phrase("its nodes no longer start") if stops_nodes else None
     if any(_starts_same_node(entry, other, old, new) for other in new.entries):
         return None
+    if any(other.name == entry.name and _has_computed_names(other) for other in new.entries):
+        return None  # an action of a loop, which may start this node, too
     if entry.name.startswith(_JOINT_STATE_PREFIX) and any(
         other.name.startswith(_JOINT_STATE_PREFIX) for other in new.entries
     ):
@@ -148,9 +150,17 @@ def _spawns_as_many(old: LaunchOutline, new: LaunchOutline) -> bool:
     A new include that may create them is also enough.
     """
     counts = [sum(map(_is_spawner, outline.entries)) for outline in (old, new)]
+    if any(_is_spawner(entry) and _has_computed_names(entry) for entry in new.entries):
+        return True  # a loop may create any number
     known = {entry.name for entry in old.entries}
     may_include = any(_SPAWN_FILE_NAME.search(entry.name) and entry.name not in known for entry in new.entries)
     return counts[1] >= counts[0] or may_include
+
+
+def _has_computed_names(entry: Entry) -> bool:
+    """Return whether the names of a node are computed, such as from the variable of a loop."""
+    names = (entry.settings.get(setting, "") for setting in ("name", NAMESPACE, "arguments"))
+    return entry.kind == "node" and any(_EXPRESSION in name for name in names)
 
 
 def _publishes_joint_states(outline: LaunchOutline) -> bool:
