@@ -43,7 +43,7 @@ from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files,
 from linkwright.review.files.templates import TEMPLATE_SUFFIXES
 from linkwright.review.files.worlds import compare_worlds, is_model, world_contents
 from linkwright.review.launches.contents import launch_contents
-from linkwright.review.launches.files import compare_launch_files
+from linkwright.review.launches.files import compare_launch_files, compare_launch_tests
 from linkwright.review.robots.descriptions import compare_descriptions
 from linkwright.review.robots.semantics import SUFFIX, compare_expanded_semantics
 from linkwright.review.versions import TEST_FOLDERS, Version
@@ -286,6 +286,18 @@ MAP = KindRule(
 
 LAUNCH_FILE = next(rule for rule in _RULES if rule.kind is SubjectKind.LAUNCH_FILE)
 """The rule for launch files, including XML files that other launch files include."""
+
+
+LAUNCH_TEST = KindRule(
+    SubjectKind.LAUNCH_FILE,
+    compare_launch_tests,
+    (".test",),
+    phrase("test added"),
+    phrase("test removed"),
+    contents=launch_contents,
+    shows_removed=True,
+)
+"""The rule for launch files that tests of ROS 1 run."""
 
 
 def may_help_launch_files(path: str) -> bool:

@@ -41,6 +41,7 @@ from linkwright.review.kinds import (
     BEHAVIOR_TREE,
     LAUNCH_FILE,
     LAUNCH_HELPER,
+    LAUNCH_TEST,
     MAP,
     PARAMETERS,
     SEMANTIC_XACRO,
@@ -319,7 +320,7 @@ class _Reviewer:
         if rule is not None and rule.kind is SubjectKind.PARAMETERS:
             return MAP if any(is_map(version.file(path)) for version, path in sides if path) else rule
         if rule is None and any(is_launch_xml(version.file(name)) for version, name in sides if name):
-            return LAUNCH_FILE
+            return LAUNCH_TEST if path.endswith(LAUNCH_TEST.suffixes) else LAUNCH_FILE
         if rule is None and any(is_tree_file(version.file(name)) for version, name in sides if name):
             return BEHAVIOR_TREE
         if rule is None and may_help_launch_files(path):

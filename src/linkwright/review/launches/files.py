@@ -6,6 +6,7 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from difflib import SequenceMatcher
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.breaking import name_reason
-from linkwright.review.changes import MAX_NAMES
+from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import find_addition_reason, find_removal_reason
@@ -104,6 +105,13 @@ def compare_launch_files(pair: FilePair) -> None:
         if pair.new_file.suffix == PYTHON_SUFFIX:
             compare_imports(pair)
         report_undefined_names(pair)
+
+
+def compare_launch_tests(pair: FilePair) -> None:
+    """Compare two versions of a test of ROS 1, whose names no other program uses."""
+    compare_launch_files(pair)
+    if not pair.is_lost:
+        pair.changes[:] = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
 
 
 def _report_undeclared(pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry]) -> None:
