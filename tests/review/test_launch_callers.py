@@ -220,9 +220,9 @@ def generate_launch_description():
         ("on_exit=[EmitEvent()]", "on_exit=[hand]",
          ["event handler OnProcessExit of arm/driver: on_exit [EmitEvent] -> [arm/hand]"], False),
         ('{"speed": speed}', '{"speed": 1}',
-         ["node 'arm/driver': parameter speed $(var speed 1) -> 1"], False),
+         ["node 'arm/driver': parameter speed $(var speed 1) -> 1 (the same by default)"], False),
         ('speed = LaunchConfiguration("speed", default="1")', "speed = 1",
-         ["node 'arm/driver': parameter speed $(var speed 1) -> 1"], False),
+         ["node 'arm/driver': parameter speed $(var speed 1) -> 1 (the same by default)"], False),
     ],
 )  # fmt: skip
 def test_only_what_is_used_is_compared(review_changes, old, new, expected, is_breaking):
@@ -237,7 +237,10 @@ def test_argument_that_is_used_without_being_declared_is_removed(review_changes)
     )
     new = text.replace('LaunchConfiguration("speed", default="1")', "1")
     found, found_breaking = review_changes("arm.launch.py", text, text, new)
-    assert found == ["node 'arm/driver': parameter rate $(var speed 1) -> 1", "argument 'speed' removed"]
+    assert found == [
+        "node 'arm/driver': parameter rate $(var speed 1) -> 1 (the same by default)",
+        "argument 'speed' removed",
+    ]
     assert found_breaking == found[1:]
 
 

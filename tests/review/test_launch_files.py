@@ -191,7 +191,7 @@ def test_launch_file_with_name_of_a_test_is_compared(review_changes):
          "parameter 'use_sim_time': value true -> false", False),
         ('"ROBOT" value="arm"', '"ROBOT" value="leg"', "environment variable 'ROBOT': value arm -> leg", False),
         ('<arg name="ur" default="$(arg ur)"/>', '<arg name="ur" default="ur10"/>',
-         "include of 'other.launch': ur $(arg ur) -> ur10", False),
+         "include of 'other.launch': ur $(arg ur) -> ur10 (before, ur5 by default)", False),
     ],
 )  # fmt: skip
 def test_actions_in_xml_are_compared(review_changes, old, new, expected, is_breaking):

@@ -68,7 +68,7 @@ def compare_launch_files(pair: FilePair) -> None:
         IncludedActions(pair.versions.old, pair.old_path, old),
         IncludedActions(pair.versions.new, pair.new_path, new),
     )
-    settings = SettingChanges(pair, old, new, renamed, included[1])
+    settings = SettingChanges(pair, old, new, renamed, included)
     choices = FileChoices(pair, old, new)
     settings.report_renamed()
     removed: list[Entry] = []
