@@ -49,7 +49,8 @@ from linkwright.review.kinds import (
     find_rule,
     may_help_launch_files,
 )
-from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
+from linkwright.review.launch_paths import is_launch_xml, is_launch_yaml
+from linkwright.review.launches.formats import join_format_changes
 from linkwright.review.launches.helpers import imports_actions
 from linkwright.review.launches.missing_programs import drop_told_findings
 from linkwright.review.notes import (

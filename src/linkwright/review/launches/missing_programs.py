@@ -18,7 +18,7 @@ from linkwright.review.changes import Change, Effect, Location, Subject
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.build_facts import BuildFacts, FactKind
 from linkwright.review.installed_paths import read_package_facts
-from linkwright.review.launches.formats import find_launch_files
+from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.launches.outlines import PROGRAM_KINDS, Entry
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions

@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.launches.formats import find_launch_files, is_launch_file
+from linkwright.review.launch_paths import find_launch_files, is_launch_file
 from linkwright.review.launches.included import IncludedActions
 from linkwright.review.launches.outlines import CONDITION, LaunchOutline, without_condition
 from linkwright.review.launches.reading import read_outline

@@ -14,8 +14,8 @@ from linkwright.packages.readers.python2 import as_python3
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.default_names import find_script
-from linkwright.review.launches.formats import is_launch_file
 from linkwright.review.launches.outlines import PROGRAM_KINDS, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.list_changes import list_items

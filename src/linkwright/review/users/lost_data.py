@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.launches.formats import find_launch_files
+from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.users.installed_readers import without_comments
 from linkwright.review.users.references import find_share_paths
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions

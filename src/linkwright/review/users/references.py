@@ -9,7 +9,7 @@ from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.readers.launch_files import read_launch_file
 from linkwright.review.changes import Change, Effect, Location
-from linkwright.review.launches.formats import find_launch_files
+from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.launches.missing_programs import find_packages
 from linkwright.review.launches.script_options import find_refused_options
 from linkwright.review.users.installed_readers import find_named_paths
