@@ -102,3 +102,19 @@ def test_node_that_a_test_no_longer_starts_is_not_breaking(repository, compare):
     result = compare(repository)
     assert sentences(subject(result, "arm/test/arm.test")) == ["node 'arm/driver' removed: name driver"]
     assert breaking(result) == []
+
+
+HELPER = """from launch_ros.actions import Node
+
+
+def make():
+    return Node(package="a", executable="b")
+"""
+
+
+@pytest.mark.parametrize(("text", "kind"), [(PYTHON, "launch file"), (HELPER, "functions for launch files")])
+def test_python_file_with_a_launch_description_is_a_launch_file_whatever_its_name(repository, compare, text, kind):
+    repository.commit({**FILES, "arm/launch/simulation.py": text})
+    repository.write({"arm/launch/simulation.py": None})
+    (sentence,) = sentences(subject(compare(repository), "arm/launch/simulation.py"))
+    assert sentence == f"{kind} removed"

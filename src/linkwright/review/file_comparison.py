@@ -18,7 +18,7 @@ from linkwright.review.users.unused_test_files import is_test_file, is_unused_te
 from linkwright.review.versions import Version, Versions
 
 _TESTED_KINDS = (SubjectKind.PARAMETERS, SubjectKind.LAUNCH_FILE)
-"""The kinds of files whose changes break nobody if only tests use the files."""
+"""The kinds of files whose changes are not breaking if only tests use the files."""
 
 
 def compare_file(

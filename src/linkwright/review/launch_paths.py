@@ -46,11 +46,11 @@ def is_launch_yaml(file: Path) -> bool:
 @lru_cache(maxsize=8)
 def find_launch_files(version: Version) -> tuple[str, ...]:
     """Return the paths of all launch files of a version: by their names, or by their contents."""
-    return tuple(path for path in version.paths(_SUFFIXES) if is_launch_file(path) or _contains_actions(version, path))
+    return tuple(path for path in version.paths(_SUFFIXES) if is_launch_file(path) or contains_actions(version, path))
 
 
-def _contains_actions(version: Version, path: str) -> bool:
-    """Return whether a file is a launch file by its contents, which may have any name."""
+def contains_actions(version: Version, path: str) -> bool:
+    """Return whether a file in Python, XML or YAML is a launch file by its contents, whatever its name."""
     file = version.file(path)
     try:
         if file.stat().st_size > _MAX_BYTES:

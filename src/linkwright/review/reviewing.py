@@ -49,7 +49,7 @@ from linkwright.review.kinds import (
     find_rule,
     may_help_launch_files,
 )
-from linkwright.review.launch_paths import is_launch_xml, is_launch_yaml
+from linkwright.review.launch_paths import contains_actions, is_launch_xml, is_launch_yaml
 from linkwright.review.launches.formats import join_format_changes
 from linkwright.review.launches.helpers import imports_actions
 from linkwright.review.launches.missing_programs import drop_told_findings
@@ -325,6 +325,8 @@ class _Reviewer:
         if rule is None and any(is_tree_file(version.file(name)) for version, name in sides if name):
             return BEHAVIOR_TREE
         if rule is None and may_help_launch_files(path):
+            if any(contains_actions(version, name) for version, name in sides if name):
+                return LAUNCH_FILE
             is_helper = any(imports_actions(version.file(path)) for version, path in sides if path)
             return LAUNCH_HELPER if is_helper else None
         return rule

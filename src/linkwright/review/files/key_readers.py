@@ -21,7 +21,7 @@ _COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
 _NAME_PARAMETER = re.compile(r"(^|[._])names?$")
 """The keys of lists of names. Other lists, such as modes, contain words that many programs use."""
 _PLACEHOLDER = re.compile(r"[A-Z][A-Z0-9_]*|<\w+>|\$\{?\w+\}?")
-"""A value that stands for another one."""
+"""A value that another one can replace."""
 _NAME = re.compile(r"[A-Za-z_][\w/.-]{3,}")
 
 
