@@ -98,6 +98,14 @@ def test_node_that_moves_to_another_parent_is_one_change(compare_tree):
     assert order == "tree 'Recover': order in Sequence: Spin, Wait 'pause' -> Wait 'pause', Spin"
 
 
+def test_equal_nodes_in_another_order_are_told_apart_by_the_nodes_in_them(compare_tree):
+    spin, wait = (f"<Inverter>{node}</Inverter>" for node in (SPIN, WAIT))
+    old = TREE.replace(SPIN, spin).replace(WAIT, wait)
+    found, _ = compare_tree(old.replace(spin + wait, wait + spin), old)
+    orders = [["Inverter of Spin", "Inverter of Wait 'pause'"], ["Inverter of Wait 'pause'", "Inverter of Spin"]]
+    assert found == [f"tree 'Recover': order in Sequence: {' -> '.join(map(', '.join, orders))}"]
+
+
 def test_tree_that_a_subtree_still_runs_is_breaking_when_it_is_gone(compare_tree):
     _, lost = compare_tree(TREE.replace(RECOVERY, ""))
     assert lost == ["runs the tree 'Recover', which no longer exists"]

@@ -120,7 +120,8 @@ _SETTING_TITLES = ("main_tree_to_execute", "BTCPP_format")
 def _read_nodes(parent_element: Element, parent: TreeNode | None) -> Iterator[TreeNode]:
     for element in parent_element.elements():
         name = element.attributes.get("ID", "")
-        values = {key: value for key, value in element.attributes.items() if key not in _IGNORED_ATTRIBUTES}
+        attributes = element.attributes.items()
+        values = {key: " ".join(value.split()) for key, value in attributes if key not in _IGNORED_ATTRIBUTES}
         if element.tag in _SUBTREE_TAGS:
             node = TreeNode(f"{element.tag} '{name}'", values, element, parent, name)
         else:

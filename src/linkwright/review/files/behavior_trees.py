@@ -214,9 +214,19 @@ def _report_matches(pair: FilePair, tree: Phrase, old: Tree, new: Tree, matches:
         if old_order != new_order:
             text = phrase(
                 "{tree}: order in {parent}: {old} -> {new}", tree=tree, parent=_format_parent(parent),
-                old=joined(node.title for node in old_order), new=joined(node.title for node in new_order),
+                old=joined(_list_distinct_titles(old_order, new)), new=joined(_list_distinct_titles(new_order, new)),
             )  # fmt: skip
             pair.add(text, pair.location(new_order[0].element.span()))
+
+
+def _list_distinct_titles(nodes: Sequence[TreeNode], tree: Tree) -> list[str]:
+    """Return the titles of nodes, with the first node in each of those that have the same title."""
+    titles = [node.title for node in nodes]
+    inner = {node: next((child for child in tree.nodes if child.parent is node), None) for node in nodes}
+    return [
+        f"{title} of {child.title}" if titles.count(title) > 1 and (child := inner[node]) is not None else title
+        for node, title in zip(nodes, titles, strict=True)
+    ]
 
 
 def _find_topmost(nodes: Sequence[TreeNode], matched: Collection[TreeNode]) -> list[TreeNode]:
@@ -278,9 +288,7 @@ def _list_value_changes(old: Mapping[str, str], new: Mapping[str, str]) -> Itera
 
 def _are_equal(old: str, new: str) -> bool:
     """Return whether two values are equal as texts or as numbers."""
-    if " ".join(old.split()) == " ".join(new.split()):
-        return True
     try:
-        return float(old) == float(new)
+        return old == new or float(old) == float(new)
     except ValueError:
         return False

@@ -13,9 +13,14 @@ _Key = Callable[[TreeNode], Hashable]
 def match_nodes(old: Sequence[TreeNode], new: Sequence[TreeNode]) -> dict[TreeNode, TreeNode]:
     """Return the nodes of the old tree that are also in the new one, each with its counterpart.
 
-    Equal nodes in the same order are matched first, then those that moved, then those with other attributes.
+    Nodes whose contents are equal and unique are matched first, then equal nodes in the same order, then those that
+    moved, then those with other attributes.
     """
+    signatures = {**_sign_nodes(old), **_sign_nodes(new)}
     matches: dict[TreeNode, TreeNode] = {}
+    _match_moved(old, new, signatures.__getitem__, matches)
+    matched = frozenset(matches.values())
+    old, new = [node for node in old if node not in matches], [node for node in new if node not in matched]
     matcher = SequenceMatcher(None, [_get_content(node) for node in old], [_get_content(node) for node in new], False)
     for operation, *ranges in matcher.get_opcodes():
         old_nodes, new_nodes = old[ranges[0] : ranges[1]], new[ranges[2] : ranges[3]]
@@ -26,6 +31,17 @@ def match_nodes(old: Sequence[TreeNode], new: Sequence[TreeNode]) -> dict[TreeNo
     for get_key in (_get_content, _get_name, _get_type):
         _match_moved(old, new, get_key, matches)
     return matches
+
+
+def _sign_nodes(nodes: Sequence[TreeNode]) -> dict[TreeNode, Hashable]:
+    """Return the type, the attributes and all inner nodes of each node in comparable form."""
+    children: dict[TreeNode, list[Hashable]] = {node: [] for node in nodes}
+    signatures: dict[TreeNode, Hashable] = {}
+    for node in reversed(nodes):  # inner nodes first
+        signatures[node] = hash((_get_content(node), tuple(reversed(children[node]))))
+        if node.parent is not None:
+            children[node.parent].append(signatures[node])
+    return signatures
 
 
 def _get_content(node: TreeNode) -> Hashable:
