@@ -68,7 +68,7 @@ def _compare_code(
     change = find_code_change(before, after, reported, has_moved, new.get_names(new_path), renamed)
     if change is not None:
         location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
-        yield Change(change.text, location=location)
+        yield Change(change.text, location=location, is_code=True)
 
 
 def _find_added_code(
@@ -84,7 +84,7 @@ def _find_added_code(
 
     change = find_added_code(code, reported, has_moved, new.get_names(path))
     if change is not None:
-        yield Change(change.text, location=Location(path, change.line, 1, change.is_old))
+        yield Change(change.text, location=Location(path, change.line, 1, change.is_old), is_code=True)
 
 
 def _compare_keys(
