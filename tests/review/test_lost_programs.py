@@ -27,3 +27,16 @@ def test_a_started_program_that_is_no_longer_executable_is_breaking(repository, 
     result = compare(repository, "HEAD~1..HEAD")
     assert breaking(result) == found
     assert ("executable now" if is_executable else "no longer executable") in as_text(result)
+
+
+@pytest.mark.parametrize(
+    ("content", "found"), [("rate: 1\n", []), ("#!/usr/bin/env drive\nrate: 1\n", ["no longer executable"])]
+)
+def test_a_data_file_is_not_a_program(repository, compare, content, found):
+    path = "arm/config/drive.yaml"
+    launch = LAUNCH.replace("drive.py", path)
+    repository.commit({path: content, "arm/launch/arm.launch.xml": launch})
+    for mode in ("+x", "-x"):
+        repository.git("update-index", f"--chmod={mode}", path)
+        repository.git("commit", "-q", "--allow-empty", "-m", "The mode")
+    assert breaking(compare(repository, "HEAD~1..HEAD")) == found

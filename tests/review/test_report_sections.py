@@ -200,3 +200,11 @@ def test_many_breaking_changes_are_folded():
     start, rest = comment.split("<details><summary>4 more breaking changes</summary>")
     assert start.count("- **") == 16
     assert rest.count("- **") == 4
+
+
+def test_lines_below_a_fold_are_not_part_of_it():
+    """Markdown ends a block of HTML only at an empty line."""
+    changes = [Change(phrase("value {number}", number=number)) for number in range(20)]
+    subjects = [make_subject(path, changes) for path in ("a.yaml", "b.yaml")]
+    comment = as_markdown(Review("main", "topic", subjects))
+    assert "</details>\n\n- the same in one more file: b.yaml" in comment

@@ -235,7 +235,7 @@ def test_missing_file_of_partial_clone_is_a_problem_of_that_file_only(package, c
     (package.root / "arm_description/meshes/a.stl").write_bytes(b"")
     result = compare(package, "HEAD~1..HEAD")
     assert mass_sentences(result) == ["link 'upper': inertial mass 2 -> 3 kg"]
-    assert "git cannot check out one file of 'HEAD~1', such as 'arm_description/meshes/a.stl'" in map(str, result.notes)
+    assert "git cannot check out one file of both versions: 'arm_description/meshes/a.stl'" in map(str, result.notes)
 
 
 def test_a_file_that_git_cannot_check_out_is_not_a_new_finding(package, compare):

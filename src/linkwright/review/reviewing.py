@@ -11,7 +11,7 @@ from multiprocessing import get_context
 from pathlib import PurePosixPath
 from typing import Any, TypeVar
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.affected import TextFiles, may_be_read
 from linkwright.lint.targets import Targets, find_included_robots, find_targets, is_plain_robot
@@ -52,6 +52,7 @@ from linkwright.review.launches.missing_programs import drop_told_findings
 from linkwright.review.notes import (
     group_equal_problems,
     is_unreadable_as_before,
+    make_checkout_notes,
     make_missing_notes,
     make_unreadable_notes,
 )
@@ -398,25 +399,7 @@ class _Reviewer:
                     yield phrase("submodule '{path}' added; its files are not compared", path=file.path)
                 elif not self._is_removed_submodule(file):
                     yield phrase("submodule '{path}' changed; its files are not compared", path=file.path)
-        for version in (self._versions.old, self._versions.new):
-            if version.commit is None:
-                continue
-            links = version.commit.removed_links
-            if links:
-                yield counted(
-                    "symbolic link '{path}' points outside the repository and is ignored",
-                    "{count} symbolic links, such as '{path}', point outside the repository and are ignored",
-                    len(links),
-                    path=links[0],
-                )
-            if version.commit.missing_files:
-                yield counted(
-                    "git cannot check out one file of '{version}', such as '{path}'",
-                    "git cannot check out {count} files of '{version}', such as '{path}'",
-                    len(version.commit.missing_files),
-                    version=version.name,
-                    path=version.commit.missing_files[0],
-                )
+        yield from make_checkout_notes([self._versions.old, self._versions.new])
 
 
 def _is_only_moved(subject: Subject) -> bool:

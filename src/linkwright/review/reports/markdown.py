@@ -83,7 +83,7 @@ def _format_parts(review: Review) -> Iterator[str]:
     if breaking:
         title = _escape(phrase("Breaking changes"))
         lines = [_format_breaking_change(paths, change) for paths, change in breaking]
-        yield "\n".join([f"#### {title}", "", *_fold(lines, _MAX_OPEN_BREAKING, _count_more_breaking_changes)])
+        yield "\n".join([f"#### {title}", "", *_fold(lines, _MAX_OPEN_BREAKING, _count_more_breaking_changes)]).rstrip()
     if review.new_findings:
         lines = list(map(_format_finding, group_findings(review.new_findings)))
         yield "\n".join(
@@ -154,7 +154,7 @@ def _fold(lines: Sequence[str], limit: int, format_title: Callable[[int], Phrase
     hidden = lines[limit:]
     if len(hidden) <= 1:
         return list(lines)
-    return [*lines[:limit], "", _format_details(_escape(format_title(len(hidden))), hidden)]
+    return [*lines[:limit], "", _format_details(_escape(format_title(len(hidden))), hidden), ""]
 
 
 def _count_more_changes(count: int) -> Phrase:

@@ -16,12 +16,15 @@ _USER_SUFFIXES = (*LAUNCH_SUFFIXES, "CMakeLists.txt")
 """The ends of the names of files that install or start programs."""
 
 
+_PROGRAM_SUFFIXES = ("", ".py", ".sh", ".bash", ".pl", ".rb")
+
+
 def find_lost_programs(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the programs that are no longer executable, each with a change.
 
     Only a program that a build file or launch file of the repository names counts.
     """
-    lost = [file for file in changed_files if file.is_executable is False]
+    lost = [file for file in changed_files if file.is_executable is False and _is_program(versions, file.path)]
     users = [(path, versions.new.text(path)) for path in (versions.new.paths(_USER_SUFFIXES) if lost else ())]
     for file in lost:
         name = re.compile(rf"(?<![\w.-]){re.escape(PurePosixPath(file.path).name)}(?![\w.-])")
@@ -29,3 +32,8 @@ def find_lost_programs(versions: Versions, changed_files: Sequence[ChangedFile])
         if user is not None:
             reason = phrase("'{path}' installs or starts it, and it may not start without this permission", path=user)
             yield file.path, Change(phrase("no longer executable"), Effect.BREAKING, reason, Location(file.path, 1, 1))
+
+
+def _is_program(versions: Versions, path: str) -> bool:
+    """Return whether a file can be a program. Data files are often executable by mistake."""
+    return PurePosixPath(path).suffix in _PROGRAM_SUFFIXES or versions.new.text(path).startswith("#!")
