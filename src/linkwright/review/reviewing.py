@@ -63,6 +63,7 @@ from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import match_moved_files, remove_consequences
 from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.comparing import source_subjects
+from linkwright.review.sources.reading import forget_source_names
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.users.left_robot_names import find_left_robot_names
 from linkwright.review.users.lost_files import find_lost_files
@@ -108,6 +109,7 @@ def review(
     Raises:
         LinkwrightError: REV103, there is no such package.
     """
+    forget_source_names()
     versions = match_moved_files(versions)
     drawings = Drawings(images=with_images or with_scenes, scenes=with_scenes)
     result = _Reviewer(versions, _find_package_folders(versions, packages), drawings).run(workers)
