@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from linkwright.review.sources.cpp_conditions import is_guard
 from linkwright.review.sources.statements import Statement, parse_statement
@@ -40,12 +41,12 @@ class _Block:
     pending: list[Token] = field(default_factory=list)
 
 
-def read_cpp_statements(text: str) -> dict[str, list[Statement]]:
+@lru_cache(maxsize=8)
+def read_cpp_statements(text: str) -> Mapping[str, Sequence[Statement]]:
     """Return the statements of a source by function or class.
 
-    Other statements have an empty name.
-
-    Statements that print, log or throw are left out.
+    Other statements have an empty name. Statements that print, log or throw are left out. The result is kept, because
+    several comparisons in a row read the same two sources.
     """
     reader = _Reader()
     _read_source(text, reader)
