@@ -94,3 +94,14 @@ def test_package_that_moves_to_another_folder_is_one_change_and_breaks_nothing(r
     result = compare(repository, "HEAD~1..HEAD")
     assert [sentences(found) for found in result.subjects] == [["package 'arm_tools' moved from arm_tools/"]]
     assert breaking(result) == []
+
+
+def test_package_with_another_manifest_in_another_folder_is_moved(repository, compare):
+    """Git does not pair manifests with few equal lines."""
+    repository.commit(FILES)
+    manifest = "<package format='3'><name>arm_tools</name><build_type>ament_cmake</build_type></package>\n"
+    files = {**rename_package_files("tools/arm_tools", "arm_tools"), "tools/arm_tools/package.xml": manifest}
+    repository.commit(files)
+    result = compare(repository, "HEAD~1..HEAD")
+    assert "package 'arm_tools' moved from arm_tools/" in sentences(subject(result, "tools/arm_tools/package.xml"))
+    assert [subject.path for subject in result.subjects] == ["tools/arm_tools/package.xml"]
