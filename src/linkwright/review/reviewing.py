@@ -17,6 +17,7 @@ from linkwright.lint.affected import TextFiles, may_be_read
 from linkwright.lint.targets import Targets, find_included_robots, find_targets, is_plain_robot
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
+from linkwright.review.build_types import is_unused_cmake_file
 from linkwright.review.changes import (
     Change,
     Effect,
@@ -341,11 +342,14 @@ class _Reviewer:
     def _belongs_to_robot(self, rule: KindRule, file: ChangedFile) -> bool:
         """Return whether a file belongs to a robot.
 
-        Hidden files, and YAML files outside all packages, are settings of tools.
+        Hidden files, and YAML files outside all packages, are settings of tools. Build files of CMake in packages that
+        are built without it have no effect.
         """
         if any(part.startswith(".") for part in PurePosixPath(file.path).parts):
             return False
         sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
+        if all(is_unused_cmake_file(version, path) for version, path in sides if path):
+            return False
         return rule.kind is not SubjectKind.PARAMETERS or any(
             version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST)) is not None for version, path in sides if path
         )

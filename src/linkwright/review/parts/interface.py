@@ -11,6 +11,7 @@ from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.outline import MacroOutline, Outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.renamed_names import find_renamed_names
+from linkwright.review.parts.unused_arguments import is_unused_argument
 from linkwright.xacro.macros import Parameter
 from linkwright.xmltree import Element
 
@@ -170,11 +171,13 @@ def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
         elif name in old_names:
             old_name = old_names[name]
             text = phrase("argument '{old}' renamed to '{name}'", old=old_name, name=name)
-            pair.add(text, removed.pop(old_name), element, _make_unused_value_reason(old_name))
+            pair.add(text, removed.pop(old_name), element, _find_lost_value_reason(pair, graphs.old, old_name))
         elif name in added:
             _report_added_argument(pair, name, element)
     for name, element in removed.items():
-        pair.add(phrase("argument '{name}' removed", name=name), element, None, _make_unused_value_reason(name))
+        reason = _find_lost_value_reason(pair, graphs.old, name)
+        text = phrase("argument '{name}' removed", name=name)
+        pair.add(text if reason else phrase("unused argument '{name}' removed", name=name), element, None, reason)
 
 
 def _report_added_argument(pair: PartPair, name: str, element: Element) -> None:
@@ -186,7 +189,10 @@ def _report_added_argument(pair: PartPair, name: str, element: Element) -> None:
     pair.add(phrase("argument '{name}' added, with the default '{value}'", name=name, value=default), None, element)
 
 
-def _make_unused_value_reason(name: str) -> Phrase:
+def _find_lost_value_reason(pair: PartPair, graph: IncludeGraph, name: str) -> Phrase | None:
+    """Return why removing an argument is breaking, or None if its values had no effect."""
+    if is_unused_argument(graph, pair.old_path, name):
+        return None
     return phrase("a value that a caller passes for '{name}' has no effect", name=name)
 
 
