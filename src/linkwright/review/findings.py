@@ -49,8 +49,7 @@ def find_findings(version: Version, targets: Targets) -> Findings:
         files.update(path for file in (checked.path, *included) if (path := version.relative(file)) is not None)
 
     diagnostics, _ = version.checker().check(targets, [version.root], add_files)
-    shares = {name: share for name, share in version.shares.items() if not share.is_relative_to(version.root)}
-    findings = [finding_with_package_uris(finding, shares) for finding in diagnostics]
+    findings = [finding_with_package_uris(finding, version.installed_shares) for finding in diagnostics]
     return Findings(findings, frozenset(files), frozenset(errors))
 
 
