@@ -35,7 +35,6 @@ def finding_with_package_uris(finding: Diagnostic, shares: Mapping[str, Path]) -
         finding: the finding to change.
         shares: the share folders outside the version, such as those that show installed files, by package.
     """
-
     return _change_finding(finding, _make_uri_writer(shares))
 
 
