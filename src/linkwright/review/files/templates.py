@@ -101,7 +101,7 @@ def _replace_calls(text: str, macro_names: Collection[str]) -> str:
 
 
 def _replace_call(match: re.Match[str], macro_names: Collection[str]) -> str:
-    """Return an expression that stands alone between tags as an element, if it calls a macro.
+    """Return an expression alone between tags as an element, if it calls a macro.
 
     The only content of an element is its value.
     """
