@@ -257,3 +257,14 @@ def test_python2_and_byte_order_marks_are_read(repository, compare, start):
     repository.commit({"arm/driver.py": start + PYTHON})
     repository.write({"arm/driver.py": start + PYTHON.replace('"stair_mode"', '"mode"')})
     assert breaking(compare(repository)) == ["service 'stair_mode' (SetBool) renamed to 'mode' (SetBool)"]
+
+
+def test_a_source_that_neither_version_can_parse_is_told(repository, compare):
+    text = "def run(:\n    return 1\n"
+    repository.commit({"arm/driver.py": text})
+    repository.write({"arm/driver.py": text.replace("1", "2")})
+    (found,) = compare(repository).subjects
+    assert [str(problem.text) for problem in found.problems] == [
+        "neither version can be read: line 1 has a syntax error"
+    ]
+    assert found.changes == []

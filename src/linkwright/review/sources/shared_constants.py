@@ -83,12 +83,15 @@ def find_own_module(path: Path, module: str, level: int) -> Path | None:
         level: the number of dots before the name.
     """
     parts = module.split(".") if module else []
-    folder = path.parents[level - 1] if 0 < level <= len(path.parents) else path.parent
-    bases = [folder.joinpath(*parts)]
-    if not level and parts and parts[0] == folder.name:
-        bases.append(folder.parent.joinpath(*parts))
+    beside = path.parents[level - 1] if 0 < level <= len(path.parents) else path.parent
+    bases = [beside.joinpath(*parts)]
     package = enclosing_package(path.parent)
-    base = (path.parent if package is None else package[1]).resolve()
+    root = path.parent if package is None else package[1]
+    base = root.resolve()
+    if not level and parts:
+        bases += [parent.parent.joinpath(*parts) for parent in path.parents if parent.name == parts[0]]
+        folders = [root / part for part in ("", "src") if (root / part / parts[0] / "__init__.py").is_file()]
+        bases += [folder.joinpath(*parts) for folder in folders]
     files = (base_path.with_name(f"{base_path.name}{PYTHON_SUFFIX}").resolve() for base_path in bases if parts)
     return next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
 
