@@ -9,6 +9,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
+from linkwright.review.sources.argument_changes import find_argument_difference
 from linkwright.review.sources.cpp_statements import read_cpp_statements
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.python_statements import read_python_statements
@@ -67,7 +68,9 @@ def find_value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) 
             item
             for pair in _pair_statements(old.get(name, []), statements, masks)
             for item in (
-                find_literal_differences(*pair) if _have_same_shape(*pair, masks) else _find_value_change(*pair)
+                find_literal_differences(*pair)
+                if _have_same_shape(*pair, masks)
+                else _find_value_change(*pair, is_cpp=is_cpp)
             )
             if not _is_reported(item, reported) and not _is_renamed(item, old_source.text, new_source.text)
         ]
@@ -104,7 +107,8 @@ def _pair_statements(
     """Yield pairs of statements of a function that differ only in literals and renamed variables, or are similar.
 
     Between equal statements, the statements of the same shape are paired if both versions have the
-    same number. So are the remaining statements.
+    same number. So are the remaining statements. If only the number of all statements is equal, the others are paired
+    by their order.
     """
     if len(old) * len(new) > _MAX_COMPARED_PAIRS:
         return
@@ -126,6 +130,13 @@ def _pair_statements(
         )
         if len(unpaired[0]) == len(unpaired[1]):
             yield from zip(*unpaired, strict=True)
+        elif len(before) != len(after):
+            yield from _pair_by_argument(unpaired[0], after)
+        settled = {key for key in keys[1] if keys[0].count(key) == keys[1].count(key)}
+        if len(before) == len(after) and len(unpaired[0]) != len(unpaired[1]):  # statement by statement
+            for old_item, new_item, *own in zip(before, after, *keys, strict=True):
+                if not settled.issuperset(own) and (own[0] != own[1] or _are_versions(old_item, new_item)):
+                    yield old_item, new_item
         for key in dict.fromkeys(keys[1]):
             same = [
                 [item for item, own in zip(items, own_keys, strict=True) if own == key]
@@ -136,10 +147,24 @@ def _pair_statements(
                 yield from (pair for pair in pairs if _are_versions(*pair))
 
 
-def _find_value_change(old: Statement, new: Statement) -> Iterator[Difference]:
-    """Yield the assigned expression, or else the number, that differs between two statements of other shapes."""
+def _pair_by_argument(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator[tuple[Statement, Statement]]:
+    """Yield pairs of statements that differ only in an argument, each with the first such statement."""
+    remaining = list(new)
+    for statement in old:
+        match = next((other for other in remaining if any(find_argument_difference(statement, other))), None)
+        if match is not None:
+            remaining.remove(match)
+            yield statement, match
+
+
+def _find_value_change(old: Statement, new: Statement, *, is_cpp: bool) -> Iterator[Difference]:
+    """Yield the assigned expression, or else the number, that differs between two statements of other shapes.
+
+    Of sources in Python, an argument that differs is yielded, too.
+    """
     differences = list(find_expression_difference(old, new))
-    yield from differences or _find_number_change(old, new)
+    differences = differences or list(_find_number_change(old, new))
+    yield from differences or ([] if is_cpp else find_argument_difference(old, new))
 
 
 def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
