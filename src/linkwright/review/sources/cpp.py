@@ -89,7 +89,7 @@ _MEMBER_CALLBACK = re.compile(r",\s*&\s*\w+::\w+\s*,\s*this\b")
 _OUTPUT_CALLS = frozenset({"getParam", "getParamCached", "get"})
 _ROS2_PARAMETER_CALLS = frozenset({"declare_parameter", "auto_declare", "declare_parameter_if_not_declared"})
 _NODE = re.compile(
-    r"(?::\s*|,\s*)(?:rclcpp(?:_lifecycle)?::)?(?:Lifecycle)?Node\s*\(|"
+    r"(?::\s*|,\s*)(?:rclcpp(?:_lifecycle)?::)?(?:Lifecycle)?Node\s*(?:\(|\{(?=\s*\"))|"
     r"\brclcpp(?:_lifecycle)?::(?:Lifecycle)?Node::make_shared\s*\(|"
     r"\bmake_shared<\s*rclcpp(?:_lifecycle)?::(?:Lifecycle)?Node\s*>\s*\("
 )
