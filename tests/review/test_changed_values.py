@@ -98,7 +98,7 @@ def review_lines(repository, compare):
         (
             "name='drill'",
             "name=arm.name",
-            "values in Rover.drive: {0}name='drill') -> {0}name=arm.name)".format("arm.add_tool(z_offset=0.30, "),
+            "values in Rover.drive: arm.add_tool(z_offset=0.30, name='drill' -> name=arm.name)",
         ),
     ],
 )
@@ -278,7 +278,8 @@ LINKS = """def link():
             {"    add(ros='points', gz=find('points'))\n": "", "find()": "find('scan')"},
             ["gz=find() -> gz=find('scan')"],
         ),
-        ({"find('points')": "find(name)"}, ["gz=find('points') -> gz=find(name)"]),
+        ({"find('points')": "find(name)"}, ["gz=find('points' -> name)"]),
+        ({"find('points')": "find(str('points'))"}, []),
         ({"find('points')": "find(NAME, name)"}, []),
         ({"find()": "find(name)"}, []),
         ({"find()": "find('no data was found')"}, []),

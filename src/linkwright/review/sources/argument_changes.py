@@ -16,6 +16,8 @@ _DEFINITIONS = frozenset({"def", "class", "async", "lambda", "for"})
 """The words at the beginning of statements that define something, or of loops."""
 _JOINERS = frozenset({".", "::", "->"})
 _MAX_CHARACTERS = 80
+_MAX_LEFT_CHARACTERS = 30
+"""The maximum number of characters of a shown argument before the one that differs."""
 _MIN_PROSE_WORDS = 3
 """The minimum number of words of a text for human readers."""
 
@@ -31,7 +33,7 @@ class _Call(NamedTuple):
 def find_argument_difference(old: Statement, new: Statement) -> Iterator[Difference]:
     """Yield the argument that a call has in place of another one, or that is added or removed.
 
-    One of both is a literal or a constant; the names of variables are not compared.
+    Their literals and constants differ; the names of variables are not compared.
     """
     if not new.tokens or new.tokens[0].text in _DEFINITIONS:
         return
@@ -49,15 +51,25 @@ def find_argument_difference(old: Statement, new: Statement) -> Iterator[Differe
     start = _count_equal(*arguments)
     end = min(_count_equal(arguments[0][::-1], arguments[1][::-1]), *(len(items) - start for items in arguments))
     changed = [call.arguments[start : len(call.arguments) - end] for call in calls]
-    if calls[1].first == opening or max(map(len, changed)) > 1 or not any(map(_is_literal, changed)):
+    literals = [_list_literals(items) for items in changed]
+    if calls[1].first == opening or max(map(len, changed)) > 1 or literals[0] == literals[1]:
+        return
+    if any(map(_is_for_readers, changed)):
         return
     before, after = (
         _format_call(statement.tokens, call, pairs[opening])
         for statement, call, pairs in zip((old, new), calls, brackets, strict=True)
     )
+    token = new.tokens[opening]
+    if all(changed):
+        left = [text if len(text) <= _MAX_LEFT_CHARACTERS else "..." for text in arguments[1][:start]]
+        items = [*left, f"{arguments[0][start]} -> {arguments[1][start]}", *(["..."] if end else [])]
+        yield Difference(f"{after[: after.index('(') + 1]}{', '.join(items)})", before, after, token)
+        return
     is_long = max(len(before), len(after)) > _MAX_CHARACTERS
-    shown = differing_excerpts(before, after) if is_long else (before, after)
-    yield Difference(" -> ".join(shown), before, after, new.tokens[opening])
+    yield Difference(
+        " -> ".join(differing_excerpts(before, after) if is_long else (before, after)), before, after, token
+    )
 
 
 def _count_equal(old: Sequence[str], new: Sequence[str]) -> int:
@@ -91,17 +103,23 @@ def _read_call(tokens: Sequence[Token], opening: int, brackets: Mapping[int, int
     return _Call(first, opening, arguments)
 
 
-def _is_literal(arguments: Sequence[Sequence[Token]]) -> bool:
-    """Return whether an argument has a literal or a constant that no human reader is shown."""
-    for argument in arguments:
-        texts = [token.text for token in argument if token.kind is TokenKind.TEXT]
-        if argument[0].text in TEXTS_FOR_READERS or any(len(text.split()) >= _MIN_PROSE_WORDS for text in texts):
-            return False
+def _is_for_readers(arguments: Sequence[Sequence[Token]]) -> bool:
+    """Return whether an argument is a text for human readers."""
     return any(
-        token.kind in (TokenKind.TEXT, TokenKind.NUMBER) or _CONSTANT.fullmatch(token.text) is not None
+        argument[0].text in TEXTS_FOR_READERS
+        or any(token.kind is TokenKind.TEXT and len(token.text.split()) >= _MIN_PROSE_WORDS for token in argument)
+        for argument in arguments
+    )
+
+
+def _list_literals(arguments: Sequence[Sequence[Token]]) -> list[str]:
+    """Return the literals and constants in arguments."""
+    return [
+        token.text
         for argument in arguments
         for token in argument
-    )
+        if token.kind in (TokenKind.TEXT, TokenKind.NUMBER) or _CONSTANT.fullmatch(token.text) is not None
+    ]
 
 
 def _format_call(tokens: Sequence[Token], call: _Call, closing: int) -> str:

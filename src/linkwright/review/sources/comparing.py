@@ -551,11 +551,7 @@ class _SourcePair:
         for name, span in new_names.undefined_names.items() if self.file.old_path is not None else ():
             if name in old_names.bound_names:
                 text = phrase("'{name}' is used, but is no longer defined or imported", name=name)
-            elif name not in old_names.undefined_names:
-                text = phrase("'{name}' is used, but is not defined or imported", name=name)
-            else:
-                continue
-            yield self._make_change(text, span, self.new, phrase("the code that uses the name fails"))
+                yield self._make_change(text, span, self.new, phrase("the code that uses the name fails"))
         for name, span in new_names.undefined_methods.items():
             if name in old_names.attributes:
                 text = phrase("calls its method '{name}', which is no longer defined", name=name)

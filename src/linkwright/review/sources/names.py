@@ -184,6 +184,7 @@ class SourceNames:
         counts: the number of places with a literal name, by kind and name.
         conditional_lines: the branches of ``if`` statements.
         default_names: the names that parameters give by default.
+        parameter_reads: the lines in which a Python source reads a parameter that it declares, by name.
         unknown_scopes: the parameters of ROS 1 that may be private, because a caller passes the node handle, or
             another function has it.
         rates: the texts of rates and periods, each with its location.
@@ -219,6 +220,7 @@ class SourceNames:
     counts: Counter[tuple[NameKind, str]] = field(default_factory=Counter)
     conditional_lines: list[ConditionalLines] = field(default_factory=list)
     default_names: set[DefaultName] = field(default_factory=set)
+    parameter_reads: dict[str, list[int]] = field(default_factory=dict)
     unknown_scopes: set[str] = field(default_factory=set)
     rates: list[tuple[str, Span]] = field(default_factory=list)
     timers: list[Timer] = field(default_factory=list)
