@@ -99,7 +99,6 @@ _GROUPS = {
 ALTERNATIVES = {
     **{name: alternative for alternative, names in _GROUPS.items() for name in names},
     **dict.fromkeys(("air_speed", "gz-sim-air-speed-system"), _AIR_SPEED_ALTERNATIVE),
-    "AdvancedLiftDragPlugin": phrase("libLiftDragPlugin.so for each wing"),
     "RosGzPointCloud": phrase("a <sensor> of type rgbd_camera or gpu_lidar, which publishes its points"),
     "gazebo_irlock_plugin": phrase("a <sensor> of type logical_camera"),
     "gazebo_ros_grasp_fix": phrase("libgazebo_grasp_fix.so"),
