@@ -42,7 +42,6 @@ UNSIMULATED = (
     "log",
     "log-playback",
     "model-photo-shoot",
-    "air-speed",
 )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.sdf.plugins import library_name
 
-_AIR_SPEED_ALTERNATIVE = phrase("the velocity that gz-sim-odometry-publisher-system publishes, in still air")
 _WIDE_CAMERA_ALTERNATIVE = phrase("a camera with a wide <horizontal_fov>")
 _AUTOPILOT_ALTERNATIVE = phrase(
     "a ROS node in place of the autopilot: commands on the topics of the motors and joints, "
@@ -98,7 +97,6 @@ _GROUPS = {
 
 ALTERNATIVES = {
     **{name: alternative for alternative, names in _GROUPS.items() for name in names},
-    **dict.fromkeys(("air_speed", "gz-sim-air-speed-system"), _AIR_SPEED_ALTERNATIVE),
     "RosGzPointCloud": phrase("a <sensor> of type rgbd_camera or gpu_lidar, which publishes its points"),
     "gazebo_irlock_plugin": phrase("a <sensor> of type logical_camera"),
     "gazebo_ros_grasp_fix": phrase("libgazebo_grasp_fix.so"),

@@ -32,6 +32,7 @@ _SENSORS_BY_SYSTEM = {
     "navsat": ("navsat",),
     "altimeter": ("altimeter",),
     "air-pressure": ("air_pressure",),
+    "air-speed": ("air_speed",),
     "magnetometer": ("magnetometer",),
     "forcetorque": ("force_torque",),
     "logical-camera": ("logical_camera",),
@@ -62,6 +63,7 @@ _BUILT_IN = frozenset(
 _OTHER_GZ_LIBRARIES = frozenset(
     (
         *("AcousticPingerPlugin", "BallShooterPlugin", "LightBuoyPlugin"),
+        *("AirSpeedPlugin", "GenericMotorModelPlugin", "MotorFailurePlugin", "MovingPlatformController"),
         *("PolyhedraBuoyancyDrag", "PublisherPlugin", "SimpleHydrodynamics", "Surface", "USVWind"),
         *("StationkeepingScoringPlugin", "WayfindingScoringPlugin"),
     )
