@@ -65,7 +65,7 @@ _GROUPS = {
     ),
     _LIDAR_ALTERNATIVE: (
         *("MrsGazeboCommonResources_2DLidarPlugin", "MrsGazeboCommonResources_LivoxLaserSimulationPlugin"),
-        *("ros2_livox", "rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin", "ray"),
+        *("rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin", "ray"),
     ),
     _LIGHT_ALTERNATIVE: (
         *("LightIndicator", "PlacardPlugin", "traffic_light_plugin"),
