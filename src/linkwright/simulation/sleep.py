@@ -48,7 +48,7 @@ class Sleep:
             data: MuJoCo's data of the model.
             now: the simulated time in nanoseconds.
             step: the time step in nanoseconds.
-            is_allowed: whether bodies may sleep. What moves without dynamics, such as an actor, does not wake them.
+            is_allowed: whether bodies may sleep. An actor, which moves without dynamics, does not wake them.
         """
         self._model, self._data = model, data
         policies = self._mujoco.mjtSleepPolicy
