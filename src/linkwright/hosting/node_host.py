@@ -100,6 +100,11 @@ class NodeHost:
             self.join_network_soon()
         return self._launcher
 
+    def find_node(self, full_name: str) -> Node | None:
+        """Return the node with a full name that runs in this process, or None."""
+        nodes = (running.node for _, running in self._running.values())
+        return next((node for node in nodes if node.get_fully_qualified_name() == full_name), None)
+
     def use_simulated_time(self, value: bool) -> None:
         """Set whether the launcher's own node follows ``/clock`` or system time."""
         from linkwright.graph import Parameter

@@ -23,7 +23,8 @@ from launch.actions import (
 )
 from launch.event_handlers import OnProcessExit, OnProcessStart
 from launch.events import Shutdown as ShutdownEvent
-from launch.substitutions import EnvironmentVariable
+from launch.substitutions import Command, EnvironmentVariable
+from launch.utilities import perform_substitutions
 from launch_ros.actions import Node, RosTimer, SetROSLogDir, SetUseSimTime
 
 from launch import LaunchContext
@@ -114,6 +115,18 @@ class TestOutput:
         assert result.messages == ["over"]
         assert "[INFO] [talker_qos-1]: has finished cleanly" in result.err
         assert node.return_code == 0
+
+    async def test_command_reads_parameter_of_node_in_launcher_process(self, launch) -> None:
+        texts: list[str] = []
+
+        def read(context: LaunchContext) -> None:
+            arguments = ("--hide-type /talker use_sim_time", "talker use_sim_time", "/talker other")
+            commands = [Command(f"ros2 param get {words}") for words in arguments]
+            texts.extend(perform_substitutions(context, [command]) for command in commands)
+
+        talker = Node(package="demo_nodes_py", executable="talker", name="talker")
+        await launch(talker, TimerAction(period=0.1, actions=[OpaqueFunction(function=read), Shutdown()]))
+        assert texts == ["False\n", "Boolean value is: False\n", "Parameter not set.\n"]
 
     async def test_finished_node_respawns(self, launch) -> None:
         node = Node(
