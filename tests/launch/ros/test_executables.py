@@ -99,6 +99,24 @@ class TestSources:
         assert programs.scripts == {"look.py": folder / "scripts/look.py", "seer": folder / "scripts/see.py"}
         assert programs.compiled == {"driver", "comp_node"}
 
+    @pytest.mark.parametrize(
+        "command",
+        [
+            'set_target_properties(p_driver PROPERTIES OUTPUT_NAME "driver" PREFIX "")',
+            "set_property(TARGET p_driver PROPERTY OUTPUT_NAME driver)",
+            "set_target_properties(p_driver PROPERTIES RUNTIME_OUTPUT_NAME driver)",
+        ],
+    )
+    def test_output_name_is_name_of_program(self, write: Write, command: str) -> None:
+        text = f"project(p)\nadd_executable(p_driver d.cpp)\n{command}\ninstall(TARGETS p_driver DESTINATION lib/p)\n"
+        assert find_source_programs(write("p/CMakeLists.txt", text).parent).compiled == {"driver"}
+
+    def test_programs_of_external_project_are_unknown(self, write: Write) -> None:
+        build_file = "project(p)\ninclude(cmake/SuperBuild.cmake)\nreturn()\n"
+        folder = write("p/CMakeLists.txt", build_file).parent
+        write("p/cmake/SuperBuild.cmake", "include(ExternalProject)\nExternalProject_Add(ep SOURCE_DIR .)\n")
+        assert not find_source_programs(folder).is_complete
+
     def test_entry_point_runs_without_build(self, arm: Path, finder: PackageFinder) -> None:
         executable = find_executable(finder, arm.name, "wave")
         assert executable.origin is Origin.SOURCE
