@@ -59,6 +59,7 @@ class LaunchSession:
         self.is_ending = False
         self._failures: set[object] = set()
         self._is_visiting = False
+        self._is_shutdown_requested = False
         self._wake_event = asyncio.Event()
         self._queue.on_put = self._wake_event.set
         self._awaited_futures: set[asyncio.Future[Any]] = set()
@@ -266,8 +267,13 @@ class LaunchSession:
     # --- shutdown -------------------------------------------------------------------------------------------
 
     def shut_down(self, reason: str) -> None:
-        """End the launch after the events that are already queued have been handled."""
-        self.emit(events.Shutdown(reason=reason))
+        """End the launch after the events that are already queued have been handled.
+
+        Only the first request has an effect: a handler of the shutdown that fails must not cause another shutdown.
+        """
+        if not self._is_shutdown_requested:
+            self._is_shutdown_requested = True
+            self.emit(events.Shutdown(reason=reason))
 
     def interrupt(self, reason: str) -> None:
         """End the launch because the user interrupted it.
@@ -367,6 +373,7 @@ class LaunchSession:
     def _handle(self, event: events.Event) -> None:
         self.log.write_debug("launch", f"processing event: '{event.name}'")
         context = self.context
+        self._is_shutdown_requested |= isinstance(event, events.Shutdown)
         context.push_locals()
         try:
             entities: list[LaunchDescriptionEntity] = []
