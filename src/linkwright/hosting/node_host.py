@@ -153,6 +153,8 @@ class NodeHost:
             while self._planned and not self._is_closing:
                 plan = next((hosted_plan for hosted_plan in self._planned if hosted_plan.is_viewer), self._planned[0])
                 self._planned.remove(plan)
+                if self._session.postpones(plan):
+                    continue
                 self._destinations[plan.process_name] = plan.destinations[2]
                 with_world = any(hosted_plan.opens_gazebo_window for hosted_plan in self._planned)
                 if plan.is_viewer:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import re
 import socket
+import sys
 import time
 from collections.abc import Callable
 from itertools import pairwise
@@ -13,6 +14,7 @@ from typing import Any
 
 import pytest
 from launch.actions import (
+    ExecuteProcess,
     LogInfo,
     OpaqueCoroutine,
     OpaqueFunction,
@@ -127,6 +129,24 @@ class TestOutput:
         talker = Node(package="demo_nodes_py", executable="talker", name="talker")
         await launch(talker, TimerAction(period=0.1, actions=[OpaqueFunction(function=read), Shutdown()]))
         assert texts == ["False\n", "Boolean value is: False\n", "Parameter not set.\n"]
+
+    @pytest.mark.parametrize("ends", [True, False])
+    async def test_node_waits_for_file_that_process_writes(self, launch, tmp_path: Path, ends: bool) -> None:
+        path = tmp_path / "map.yaml"
+        wait = "" if ends else "; time.sleep(60)"
+        program = f"import sys, time; time.sleep(0.5); open(sys.argv[1], 'w').write('image: a.png'){wait}"
+        writer = ExecuteProcess(cmd=[sys.executable, "-c", program, str(path)])
+        reader = Node(package="demo_nodes_py", executable="talker", parameters=[{"file": str(path)}])
+        found: list[bool] = []
+        started = OnProcessStart(target_action=reader, on_start=lambda *_: found.append(path.exists()) or Shutdown())
+        result = await launch(RegisterEventHandler(started), reader, writer)
+        assert found == [True]
+        assert f"waiting for '{path}'" in result.err
+
+    async def test_node_does_not_wait_for_missing_file_that_no_process_writes(self, launch) -> None:
+        reader = Node(package="demo_nodes_py", executable="talker", parameters=[{"file": "/no/such/file"}])
+        result = await launch(reader, RegisterEventHandler(OnProcessStart(on_start=Shutdown())))
+        assert "waiting for" not in result.err
 
     async def test_finished_node_respawns(self, launch) -> None:
         node = Node(

@@ -17,6 +17,7 @@ from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, Xacro
 from linkwright.launch.engine.omissions import Omissions
 from linkwright.launch.engine.process_table import ProcessTable
 from linkwright.launch.engine.supervisor import SessionOptions
+from linkwright.launch.engine.unwritten_files import find_unwritten_file, wait_until_written
 from linkwright.launch.errors.locations import with_location
 from linkwright.launch.errors.user_code import MAX_NESTING_DEPTH, endless_nesting_error, explain
 from linkwright.launch.log.loggers import launch_config
@@ -251,6 +252,20 @@ class LaunchSession:
         return cancel
 
     # --- reports from the nodes of this process ---------------------------------------------------------------
+
+    def postpones(self, plan: HostedPlan) -> bool:
+        """Return whether a node waits for a file that a process is writing. Then the node is started later."""
+        path = find_unwritten_file(plan, self.processes)
+        if path is None:
+            return False
+        self.log.write_info(plan.process_name, f"waiting for '{path}', which another process may be writing")
+        self.spawn(self._start_when_written(plan, path))
+        return True
+
+    async def _start_when_written(self, plan: HostedPlan, path: str) -> None:
+        await wait_until_written(path, self.processes)
+        self.host.schedule_node(plan)
+        await self._start_hosted()
 
     def report_node_start(self, plan: HostedPlan) -> None:
         """Report that a node in the launcher's process is running."""
