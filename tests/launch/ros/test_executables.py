@@ -152,6 +152,21 @@ class TestSources:
         assert diagnostic.hint is not None
         assert diagnostic.hint.startswith("build it with 'colcon build --packages-select p'")
 
+    @pytest.mark.parametrize(
+        ("package", "name", "instead"),
+        [
+            ("cartographer_ros", "cartographer_node", "run `linkwright launch slam_toolbox online_async_launch.py`"),
+            ("moveit_setup_assistant", "moveit_setup_assistant", "`linkwright arm init` writes"),
+        ],
+    )
+    def test_missing_program_names_alternative(
+        self, finder: PackageFinder, package: str, name: str, instead: str
+    ) -> None:
+        with pytest.raises(LinkwrightError, match="was not found; ") as caught:
+            find_executable(finder, package, name)
+        assert is_unavailable(caught.value)
+        assert instead in caught.value.diagnostics[0].message
+
     @pytest.mark.parametrize("cmake", [None, "project(p)\ninclude(cmake/programs.cmake)\n"])
     def test_program_unknown_to_sources_is_unavailable(
         self, write: Write, finder: PackageFinder, cmake: str | None
