@@ -50,7 +50,6 @@ _REQUIRED_PARAMETERS: Mapping[str, dict[str, Any]] = {
     "ekf_node": {f"{name}{number}": "a" for name in ("odom", "imu", "pose", "twist") for number in range(2)},
     "ukf_node": {f"{name}{number}": "a" for name in ("odom", "imu", "pose", "twist") for number in range(2)},
     "lifecycle_manager": {"node_names": ["a"]},
-    "move_group": {"robot_description": _ROBOT, "robot_description_semantic": "<robot name='a'/>"},
     "robot_state_publisher": {"robot_description": _ROBOT},
     "delay": {"input_topic": "a"},
     "demux": {"output_topics": ["a"], "input_topic": "b"},
