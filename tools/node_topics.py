@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
-from node_parameters import _EXCLUDED_EXECUTABLES, _EXCLUDED_PACKAGES, _REQUIRED_PARAMETERS, _start_node
+from node_parameters import _EXCLUDED_EXECUTABLES, _EXCLUDED_PACKAGES, _REQUIRED_PARAMETERS, _ROBOT, _start_node
 
 from linkwright.graph import Node
 from linkwright.graph.parameters.parameter import ParameterRules
@@ -27,6 +27,11 @@ from linkwright.nodes.options import EXECUTABLES
 ROOT = Path(__file__).resolve().parent.parent
 TABLE_FILE = ROOT / "src" / "linkwright" / "language" / "node_topics.json"
 
+_PARAMETERS: Mapping[str, Mapping[str, Any]] = {
+    **_REQUIRED_PARAMETERS,
+    "move_group": {"robot_description": _ROBOT, "robot_description_semantic": "<robot name='a'/>"},
+}
+"""Parameters without which nodes do not create their endpoints."""
 _CREATORS = {
     "create_publisher": "publisher",
     "create_subscription": "subscription",
@@ -98,7 +103,7 @@ def _iterate_endpoints() -> Iterator[tuple[str, dict[str, Any]]]:
         names: list[str] = []
         if not executable.endswith(_EXCLUDED_EXECUTABLES) and not package.startswith(_EXCLUDED_PACKAGES):
             with _record_endpoints(topics, names):
-                _start_node((package, executable), _REQUIRED_PARAMETERS.get(executable, {}), ParameterRules())
+                _start_node((package, executable), _PARAMETERS.get(executable, {}), ParameterRules())
         for name, kind, role in _ADDITIONAL_ENDPOINTS.get(f"{package}/{executable}", ()):
             topics.setdefault((name, role), [name, kind, role])
         if topics:

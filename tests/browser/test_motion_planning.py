@@ -114,13 +114,13 @@ def find_on_screen(page: Any, point: list[float]) -> tuple[float, float]:
     )
 
 
-def read_position(page: Any) -> list[float]:
-    return page.evaluate(f"() => {{ const lw = window.linkwright; return {HANDLE}.pose.slice(0, 3); }}")
+def read_position(page: Any, handle: str = HANDLE) -> list[float]:
+    return page.evaluate(f"() => {{ const lw = window.linkwright; return {handle}.pose.slice(0, 3); }}")
 
 
-def drag_until(page: Any, dx: float, dy: float, condition: str) -> None:
-    """Hold the ball of the handle, and move the mouse by at most this many pixels, until a condition holds."""
-    x, y = find_on_screen(page, read_position(page))
+def drag_until(page: Any, dx: float, dy: float, condition: str, handle: str = HANDLE) -> None:
+    """Hold the ball of a handle, and move the mouse by at most this many pixels, until a condition holds."""
+    x, y = find_on_screen(page, read_position(page, handle))
     page.mouse.move(x, y)
     until(page, "lw.tool.hint.includes('Drag: move')")
     page.mouse.down()
@@ -207,3 +207,35 @@ def test_scene_object_is_added_moved_and_attached(planning, tmp_path):
     until(page, f"{DRAWN}.markers['Scene Geometry/sphere_1'] === 'sphere'")
     panel.get_by_role("button", name="Remove").click()
     until(page, f"{DRAWN}.markers['Scene Geometry/sphere_1'] === undefined")
+
+
+def test_selected_object_is_dragged_while_its_tab_is_open(planning, tmp_path):
+    viewer, page = planning
+    handle = f"{DRAWN}?.handles?.['object box_1']"
+    panel = page.locator(".planning-panel")
+    panel.get_by_role("tab", name="Scene Objects").click()
+    panel.get_by_role("button", name="Add", exact=True).click()
+    until(page, f"{handle} !== undefined")
+    viewer.settle(page)
+    start = read_position(page, handle)
+    drag_until(page, 80, 50, f"Math.hypot({handle}.pose[0] - {start[0]}, {handle}.pose[1] - {start[1]}) > 0.1", handle)
+    page.screenshot(path=tmp_path / "object.png")
+    page.mouse.up()
+    scene = viewer.viewer.displays[1].scene
+
+    def is_object_at_handle() -> bool:
+        position = viewer.run(lambda: scene.objects["box_1"].pose.position)
+        return math.dist((position.x, position.y, position.z), read_position(page, handle)) < 1e-3
+
+    wait_until(is_object_at_handle, TIMEOUT_S)
+    assert math.dist(read_position(page, handle), start) > 0.1
+    panel.get_by_role("tab", name="Joints").click()
+    until(page, f"{handle} === undefined && {HANDLE} !== undefined")
+
+
+def test_panel_without_a_handle_does_not_ask_to_drag_it(planning, tmp_path):
+    viewer, page = planning
+    display = viewer.viewer.displays[1]
+    viewer.run(lambda: display.set_property(("Planning Request", "Query Goal State"), False))
+    until(page, f"{HANDLE} === undefined && {RESULT} === 'Choose a goal state, or move its joints in the tab Joints.'")
+    page.screenshot(path=tmp_path / "without.png")

@@ -399,6 +399,16 @@ def test_rewritten_yaml_keeps_group_with_parameter_name(write: Any) -> None:
     assert content == {"map": {"ros__parameters": {"map": 7, "other": 2}}}
 
 
+def test_rewritten_yaml_accepts_empty_text_as_rewrites(write: Any) -> None:
+    from nav2_common.launch import RewrittenYaml
+
+    from launch import LaunchContext
+
+    path = write("p.yaml", "map:\n  ros__parameters: {other: 2}\n")
+    rewritten = RewrittenYaml(source_file=str(path), root_key="", param_rewrites="", convert_types=True)
+    assert "other: 2" in Path(rewritten.perform(LaunchContext())).read_text()
+
+
 def test_launch_utils_create_controller_spawners() -> None:
     from controller_manager import launch_utils
     from launch.utilities import perform_substitutions

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import inf, pi
 from time import perf_counter, sleep
@@ -12,8 +13,9 @@ import pytest
 from linkwright.geometry.arrays import quaternion_from_rpy
 from linkwright.geometry.shapes import Box, Sphere
 from linkwright.planning.collision_scene import CollisionScene, SceneObject
-from linkwright.planning.effort import counted_effort
-from linkwright.planning.goals import Goal, JointTarget, LinkTarget
+from linkwright.planning.effort import counted_effort, elapsed_s
+from linkwright.planning.goals import Goal, JointTarget, LinkTarget, goal_configurations
+from linkwright.planning.groups import JointGroup
 from linkwright.planning.library import load_ompl
 from linkwright.planning.planner import Failure, Method, MotionPlanner, PlanError, PlanRequest
 from linkwright.planning.robot_model import PlacedShape
@@ -313,3 +315,32 @@ def test_invalid_numbers_of_link_targets_are_found() -> None:
     target = LinkTarget("tool", orientation=np.array((np.nan, 0.0, 0.0, 1.0)))
     assert Goal(links=(target,)).find_invalid_number() == "tool"
     assert not Goal(links=(LinkTarget("tool"),)).find_invalid_number()
+
+
+class TestGoalConfigurations:
+    @staticmethod
+    def find(group: JointGroup, is_valid: Callable[[np.ndarray], bool], **joints: float) -> list[np.ndarray]:
+        """Return the configurations for the pose of the tip in the configuration from which the search starts."""
+        start = arm().positions(**joints or LEFT)
+        arm().model.move(start)
+        pose = arm().model.link_pose("tool")
+        place = PlacedShape(Sphere(1e-4), np.array((*pose[:3], 0.0, 0.0, 0.0, 1.0)))
+        goal = Goal({}, (LinkTarget("tool", (place,), np.zeros(3), pose[3:], np.full(3, 1e-3)),))
+        return list(goal_configurations(goal, arm().model, group, start, is_valid, 60.0, lambda: False))
+
+    def test_search_ends_when_no_other_configuration_is_found(self) -> None:
+        start = arm().positions(**LEFT)
+        with counted_effort():
+            found = self.find(arm().group, lambda positions: bool(np.linalg.norm(positions - start) < 0.1))
+            assert elapsed_s() < 10.0
+        assert len(found) == 1
+
+    def test_configuration_counts_once_if_joints_make_full_turns(self) -> None:
+        group = replace(arm().group, lower=np.full(6, -2 * pi), upper=np.full(6, 2 * pi))
+        start = arm().positions(**LEFT, roll=1.0, bend=0.9)
+
+        def is_same(positions: np.ndarray) -> bool:
+            return bool(np.abs((positions - start + pi) % (2 * pi) - pi).max() < 0.1)
+
+        (found,) = self.find(group, is_same, **LEFT, roll=1.0, bend=0.9)
+        assert found == pytest.approx(start, abs=0.02)

@@ -49,6 +49,29 @@ def test_tip_does_not_drift_on_a_circle() -> None:
     np.testing.assert_allclose(tip(moving.positions)[3:], start[3:], atol=2e-3)
 
 
+def test_tip_that_may_turn_moves_where_it_would_halt_in_a_singularity() -> None:
+    """With the wrist straight, two of its axes are the same, and the arm cannot turn the tip in every direction."""
+    moving = servo(lift=0.6, elbow=1.2)
+    moving.step_twist(np.array((0.0, 0.1, 0.05, 0.0, 0.0, 0.0)))
+    assert moving.condition is Condition.HALT_FOR_SINGULARITY
+    start = tip(moving.positions)
+    moving.drifts[3:] = True
+    for _ in range(100):
+        moving.step_twist(np.array((0.0, 0.1, 0.05, 0.0, 0.0, 0.0)))
+        assert moving.condition is Condition.NO_WARNING
+    np.testing.assert_allclose(tip(moving.positions)[:3] - start[:3], (0.0, 0.1, 0.05), atol=0.003)
+    assert not np.allclose(tip(moving.positions)[3:], start[3:], atol=0.05)
+
+
+def test_one_dimension_is_kept_if_the_tip_may_drift_in_all_of_them() -> None:
+    moving = servo()
+    start = tip(moving.positions)
+    moving.drifts[:] = True
+    for _ in range(50):
+        moving.step_twist(np.array((0.1, 0.1, 0.1, 0.0, 0.0, 0.0)))
+    assert tip(moving.positions)[0] - start[0] == pytest.approx(0.05, abs=0.003)
+
+
 def test_halt_is_smooth_and_complete() -> None:
     moving = servo()
     for _ in range(20):

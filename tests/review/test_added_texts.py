@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences
 
 CPP = """#include <yaml-cpp/yaml.h>
@@ -185,3 +186,19 @@ def test_constant_that_a_line_names_is_no_other_code(review_lines):
         "constants removed: RATE = 'fast'",
         "code changed in 'run()'",
     ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("kLow = 20.0f", "kLower = 18.0f", ["constants added: kLower = 18.0f; constants removed: kLow = 20.0f"]),
+        ("kLow = 20.0f", "kLower = 20.0f", ["constants renamed: kLow -> kLower"]),
+        ("  int count = 4;\n", "", ["code changed in 'Battery' (removed: count)"]),
+    ],
+)
+def test_constants_of_classes_are_told(repository, compare, old, new, expected):
+    text = "class Battery {\n  static constexpr float kLow = 20.0f;\n  int count = 4;\n};\n"
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/src/battery.hpp": text})
+    assert old in text
+    repository.write({"a/src/battery.hpp": text.replace(old, new)})
+    assert sentences(compare(repository).subjects[0]) == expected

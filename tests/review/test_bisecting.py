@@ -181,3 +181,14 @@ def test_file_with_letters_of_other_languages_is_followed_across_a_new_name(pack
     package.commit({"README.md": "Later"}, "Later")
     assert main(["bisect", "arm_description/urdf/臂.urdf.xacro", "--", "middle_joint"]) == 0
     assert capsys.readouterr().out.splitlines()[0].endswith("Ann: Longer")
+
+
+def test_end_of_history_that_cannot_be_judged_is_named(history, bisect):
+    commit = history.git("log", "--format=%h", "--grep=Commit 9")
+    status, _, errors = bisect("--old", commit, "--", "middle_joint")
+    assert status == 1
+    assert f"error[REV113]: the oldest commit cannot be judged: {commit} " in errors
+    assert "= hint: name a later commit that can be judged: `--old COMMIT`" in errors
+    _, _, errors = bisect("--", sys.executable, "-c", "import sys; sys.exit(125)")
+    assert "error[REV113]: the newest commit cannot be judged: " in errors
+    assert "= hint: name an earlier commit that can be judged: `--new COMMIT`" in errors

@@ -417,3 +417,18 @@ def test_an_executable_that_leaves_path_is_found_by_launch_files(repository, com
     repository.write({"arm/CMakeLists.txt": text % "lib/arm"})
     ((_, change),) = compare(repository).breaking_changes
     assert str(change.reason) == "commands that find it through PATH fail; launch files find it only now"
+
+
+@pytest.mark.parametrize(
+    ("build_type", "expected"),
+    [("ament_python", []), ("ament_cmake", ["no longer installed: 'share/arm/launch/'"])],
+)
+def test_cmake_files_of_packages_that_are_built_without_cmake_are_other_files(
+    repository, compare, build_type, expected
+):
+    manifest = PACKAGE_XML.replace("</package>", f"<export><build_type>{build_type}</build_type></export></package>")
+    cmake = "project(arm)\n%sament_package()\n"
+    install = "install(DIRECTORY launch DESTINATION share/arm)\n"
+    repository.commit({"arm/package.xml": manifest, "arm/CMakeLists.txt": cmake % install, "arm/launch/a.txt": ""})
+    repository.write({"arm/CMakeLists.txt": cmake % ""})
+    assert breaking(compare(repository)) == expected

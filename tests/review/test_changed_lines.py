@@ -24,3 +24,37 @@ def test_lines_that_a_text_file_gains_and_loses(repository, compare, path, old, 
     result = compare(repository)
     assert result.other_files == [path]
     assert {name: str(text) for name, text in result.file_states.items()} == ({path: expected} if expected else {})
+
+
+UNIT = """[Unit]
+Description=Arm
+[Service]
+ExecStart=/bin/bash -c 'source setup.bash && rosrun arm driver __ns:=left'
+"""
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "state"),
+    [
+        ("arm/arm.service", UNIT, "`rosrun arm driver __ns:=left`"),
+        (
+            "arm/start",
+            '#!/usr/bin/env bash\n# starts the arm\nros2 run arm driver "$@"\n',
+            '`ros2 run arm driver "$@"`',
+        ),
+        ("arm/notes", "ros2 run arm driver\n", None),
+    ],
+)
+def test_added_and_removed_scripts_and_units_show_their_commands(repository, compare, path, text, state):
+    repository.commit({"README": "arm\n"})
+    repository.commit({path: text})
+    repository.commit({path: None})
+    for commits, word in (("HEAD~2..HEAD~1", "added"), ("HEAD~1..HEAD", "removed")):
+        result = compare(repository, commits)
+        assert str(result.file_states[path]) == (word if state is None else f"{word}: {state}")
+
+
+def test_shell_script_without_a_suffix_is_compared(repository, compare):
+    repository.commit({"arm/start": '#!/bin/sh\nros2 run arm driver "${@:1:$#-1}"\n'})
+    repository.write({"arm/start": '#!/bin/sh\nros2 run arm driver "$@"\n'})
+    assert str(compare(repository).file_states["arm/start"]).endswith('-> ros2 run arm driver "$@"')

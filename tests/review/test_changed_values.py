@@ -95,6 +95,11 @@ def review_lines(repository, compare):
         ("0.30", "0.25", "values in Rover.drive: arm.add_tool(z_offset=0.30 -> 0.25, ...)"),
         ("'drill'", "'gripper'", "values in Rover.drive: arm.add_tool(z_offset=0.30, name='drill' -> 'gripper')"),
         ("sleep(1.5)", "sleep(2)", "values in Rover.drive: time.sleep(1.5 -> 2)"),
+        (
+            "name='drill'",
+            "name=arm.name",
+            "values in Rover.drive: arm.add_tool(z_offset=0.30, name='drill' -> name=arm.name)",
+        ),
     ],
 )
 def test_a_literal_that_changes_in_python_is_told_with_its_place(review_lines, old, new, expected):
@@ -121,6 +126,7 @@ def test_texts_for_people_are_not_told(review_lines, old, new):
         ("append(1)\n        self.items.append(2)", "append(2)\n        self.items.append(1)", "Rover.reset"),
         ("msg.j1 = 1", "msg.j2 = 2", "Rover.drive"),
         ("1.5", "PAUSE", "Rover.drive"),
+        ("time.sleep(1.5)", "clock.sleep(PAUSE)", "Rover.drive"),
     ],
 )
 def test_of_statements_without_a_counterpart_the_function_is_told(review_lines, old, new, function):
@@ -254,7 +260,62 @@ def test_values_of_renamed_variables_are_compared(review_lines, path, text, old,
     assert review_lines(path, text, text, changed)[0] == expected
 
 
+LINKS = """def link():
+    add(ros='scan', gz=find())
+    add(ros='points', gz=find('points'))
+"""
+
+
+@pytest.mark.parametrize(
+    ("replaced", "expected"),
+    [
+        ({"'scan', gz=find()": "'scan', gz=find('laser')"}, ["gz=find() -> gz=find('laser')"]),
+        (
+            {"'scan', gz=find()": "'scan', gz=find('laser')", "find('points')": "find('laser/points')"},
+            ["gz=find() -> gz=find('laser')", "find('points' -> 'laser/points')"],
+        ),
+        (
+            {"    add(ros='points', gz=find('points'))\n": "", "find()": "find('scan')"},
+            ["gz=find() -> gz=find('scan')"],
+        ),
+        ({"find('points')": "find(name)"}, ["gz=find('points' -> name)"]),
+        ({"find('points')": "find(str('points'))"}, []),
+        ({"find('points')": "find(NAME, name)"}, []),
+        ({"find()": "find(name)"}, []),
+        ({"find()": "find('no data was found')"}, []),
+    ],
+)
+def test_an_argument_that_is_added_or_replaced_is_told_beside_other_changes(review_lines, replaced, expected):
+    changed = LINKS
+    for old, new in replaced.items():
+        changed = changed.replace(old, new)
+    lines = [line for line in review_lines("rover/link.py", LINKS, LINKS, changed) if line.startswith("values")]
+    assert lines == ([f"values in link: {', '.join(expected)}"] if expected else [])
+
+
 def test_statements_with_other_functions_are_not_compared(review_lines):
     text = "def f():\n    near = read('near')\n    use(near)\n"
     changed = "def f():\n    far = make('far')\n    use(far)\n"
     assert review_lines("rover/save.py", text, text, changed) == ["code changed in 'f()'"]
+
+
+@pytest.mark.parametrize(("new", "is_told"), [("0x0b", False), ("0x0c", True)])
+def test_the_notation_of_a_number_is_no_value_in_a_statement_of_another_shape(review_lines, new, is_told):
+    text = "int Rover::read() {{\n  return parse(buffer, {}{});\n}}\n"
+    lines = review_lines(
+        "rover/src/a.cpp", text.format("0x0B", ""), text.format("0x0B", ""), text.format(new, " + first")
+    )
+    assert any("->" in line for line in lines) is is_told
+
+
+def test_an_index_is_not_the_value_that_replaces_a_number(review_lines):
+    text = "void Rover::read() {\n  covariance[14] = 1000000.0;\n}\n"
+    lines = review_lines("rover/src/a.cpp", text, "1000000.0", "covariance_[2]")
+    assert all("-> 2" not in line for line in lines)
+
+
+@pytest.mark.parametrize(("old", "new", "is_told"), [("1.6581", "M_PI_2", True), ("1.5708", "M_PI_2", False)])
+def test_a_constant_of_mathematics_replaces_a_number(review_lines, old, new, is_told):
+    text = "void Rover::read() {\n  angle_ = a - NUMBER;\n}\n"
+    lines = review_lines("rover/src/a.cpp", text.replace("NUMBER", old), old, new)
+    assert (f"values in Rover::read: angle_ a - {old} -> a - {new}" in lines) is is_told

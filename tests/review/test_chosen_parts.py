@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from tests.repositories import PACKAGE_XML
+from tests.repositories import ARM, PACKAGE_XML
 
 PATH = "a/urdf/base.xacro"
+ROBOT = "arm_description/urdf/arm.urdf.xacro"
 BASE = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="wheel" default="track"/>
   <xacro:arg name="lidar" default="true"/>
@@ -60,3 +61,38 @@ def test_default_that_adds_a_part_is_not_breaking(repository, compare):
         "default of argument 'lidar' false -> true; with link lidar_link"
     ]
     assert not result.breaking_changes
+
+
+def test_argument_that_no_longer_chooses_an_included_file_is_breaking(package, compare):
+    """The robots of the repository do not show it, because the defaults are equal."""
+    arguments = "".join(f'<xacro:arg name="{name}" default="arm_description"/>' for name in ("config", "model"))
+    text = ARM.replace('  <xacro:arg name="tool"', f'  {arguments}\n  <xacro:arg name="tool"')
+    text = text.replace("$(find arm_description)", "$(find ${place})")
+    place = '  <xacro:property name="place" value="$(arg %s)"/>\n'
+    include = '  <xacro:include filename="$(find ${place})/urdf/segment.xacro"/>\n'
+    text = text.replace(include, "").replace("  <link", f"{place}{include}  <link", 1)
+    package.commit({ROBOT: text % "config"})
+    package.write({ROBOT: (text % "model").replace("place", "source")})
+    ((_, change),) = compare(package).breaking_changes
+    names = [f"$(find ${{{name}}})/urdf/segment.xacro" for name in ("place", "source")]
+    assert str(change.sentence) == f"include filename: {names[0]} -> {names[1]}"
+    assert str(change.reason) == "callers that pass 'config' get another file"
+
+
+@pytest.mark.parametrize(
+    ("default", "condition", "is_breaking"),
+    [("none", "tool == 'camera'", True), ("none", "'camera' == tool", True), ("camera", "tool == 'camera'", False)],
+)
+def test_further_condition_that_a_default_does_not_fulfill_is_breaking(
+    repository, compare, default, condition, is_breaking
+):
+    part = "<xacro:if value=\"${arm == 'long'}\">%s</xacro:if>"
+    link = '<link name="cam"/><joint name="cam_joint" type="fixed"><parent link="base"/><child link="cam"/></joint>'
+    text = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r"><xacro:arg name="arm" default="short"/>%s
+      <xacro:property name="arm" value="$(arg arm)"/><link name="base"/>%s</robot>"""
+    argument = f'<xacro:arg name="tool" default="{default}"/><xacro:property name="tool" value="$(arg tool)"/>'
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/urdf/r.urdf.xacro": text % ("", part % link)})
+    new_part = part % f'<xacro:if value="${{{condition}}}">{link}</xacro:if>'
+    repository.write({"a/urdf/r.urdf.xacro": text % (argument, new_part)})
+    reasons = {str(change.reason) for _, change in compare(repository).breaking_changes}
+    assert reasons == ({"robots of callers that do not pass 'tool' lack the part"} if is_breaking else set())

@@ -365,3 +365,25 @@ def test_plugin_description_that_is_exported_twice_is_told(repository, compare, 
     repository.write({"a/CMakeLists.txt": AMENT + new})
     lines = [text for found in compare(repository).subjects for text in sentences(found) if "times" in text]
     assert lines == (["plugin description 'tools.xml' is exported 2 times"] if is_repeated else [])
+
+
+def test_a_program_that_only_tests_install_is_not_breaking_when_it_is_gone(repository, compare):
+    text = (
+        "project(arm)\nadd_executable({name} src/a.cpp)\nif(BUILD_TESTING)\n  add_executable(check test/{name}.cpp)\n"
+    )
+    text += "  install(TARGETS check DESTINATION lib/arm)\nendif()\ninstall(TARGETS {name} DESTINATION lib/arm)\n"
+    repository.commit({**MANIFEST, "a/CMakeLists.txt": text.replace("{name}", "arm")})
+    repository.write({"a/CMakeLists.txt": text.replace("{name}", "arm").replace("check", "probe")})
+    result = compare(repository)
+    assert any("'check" in line for line in sentences(subject(result, "a/CMakeLists.txt")))
+    assert breaking(result) == []
+
+
+@pytest.mark.parametrize("is_exported", [True, False])
+def test_a_folder_of_headers_that_exported_targets_bring_is_not_lost(repository, compare, is_exported):
+    export = "ament_export_targets(export_arm)\n" if is_exported else "\n"
+    new = AMENT.replace("ament_export_include_directories(include)\n", export)
+    repository.commit({**MANIFEST, "a/CMakeLists.txt": AMENT})
+    repository.write({"a/CMakeLists.txt": new})
+    lost = [line for line in breaking(compare(repository)) if "include folders" in line]
+    assert lost == ([] if is_exported else ["exported include folders removed: 'include'"])

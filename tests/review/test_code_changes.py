@@ -234,6 +234,7 @@ def send(text):
     [
         ("import math\n", "", "'math' is used, but is no longer defined or imported"),
         ("def send(text)", "def post(text)", "'send' is used, but is no longer defined or imported"),
+        ("import math\n", "from std_msgs.msg import *\n", "'math' is used, but is no longer defined or imported"),
     ],
 )
 def test_name_that_is_no_longer_defined_is_breaking(repository, compare, old, new, expected):
@@ -251,6 +252,7 @@ def test_name_that_is_no_longer_defined_is_breaking(repository, compare, old, ne
         ("value: String", "value: Text"),
         ("value / 2", "unicode(value) / 2"),
         ("value / 2", "[item for item in value][0]"),
+        ("import math\n", "from std_msgs.msg import *\nmath = Math()\n"),
         ("import math\n", "print 'a'\n"),
     ],
 )

@@ -112,3 +112,22 @@ def test_instance_is_no_name_of_a_node(repository, compare, call, expected):
     repository.write({PATH: text.format(call)})
     (found,) = compare(repository).subjects
     assert [line for line in sentences(found) if "nodes" in line] == [expected]
+
+
+@pytest.mark.parametrize(
+    ("expression", "is_breaking"),
+    [
+        ('fmt::format("bridge.{}.topic", name)', True),
+        ('"left/" + name', True),
+        ('"bridge." + name', False),
+        ("get_topic(name)", False),
+        ('name + read("left")', False),
+    ],
+)
+def test_a_parameter_whose_name_an_expression_cannot_give_is_lost(repository, compare, expression, is_breaking):
+    text = "void Arm::f() {{ declare_parameter<double>({}, 1.0); }}\n"
+    repository.commit({**MANIFEST, "arm/a.cpp": text.format('"bridge.topic"')})
+    repository.write({"arm/a.cpp": text.format(expression)})
+    result = compare(repository)
+    assert any("has a computed name now" in line for line in sentences(result.subjects[0]))
+    assert bool(breaking(result)) is is_breaking

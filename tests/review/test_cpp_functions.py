@@ -101,3 +101,53 @@ def test_many_functions_with_other_arguments_are_one_line(repository, compare):
     assert breaking(compare(repository)) == [
         "functions with other arguments: Gripper::open, Gripper::close, Gripper::move, Gripper::hold"
     ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("int rate() const {", "int rate() {", ["function 'Driver::rate': const yes -> no"]),
+        ("int rate() const {", "int rate();\n  int rate() const {", []),
+        ("void stop();", "void stop() const;", []),
+    ],
+)
+def test_a_function_that_constant_objects_no_longer_have_is_breaking(repository, compare, old, new, expected):
+    repository.commit(FILES)
+    assert old in HEADER
+    repository.write({"a/include/arm/driver.hpp": HEADER.replace(old, new)})
+    assert breaking(compare(repository)) == expected
+
+
+def test_the_definition_of_a_method_behind_its_class_is_no_function_of_its_own(repository, compare):
+    text = "#pragma once\nclass Route {\npublic:\n  template <typename T>\n  T get(int id) const;\n};\n"
+    definition = "template <typename T>\ninline\nT Route::get(int id) const\n{\n  return T(id);\n}\n"
+    repository.commit({**FILES, "a/include/arm/driver.hpp": text + definition})
+    repository.write({"a/include/arm/driver.hpp": "#pragma once\nclass Route {\npublic:\n};\n"})
+    (line,) = [line for line in breaking(compare(repository)) if "removed" in line]
+    assert line == "functions removed: 'Route::get' (int)"
+
+
+MEMBERS = """#pragma once
+class Arm : public Node {
+  void f(const std::map<int, double> & a);
+  std::vector<std::pair<int, int>> items_;
+  double rate_{10.0};
+  int n_[3];
+};
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("  int n_[3];\n", "  int n_[3];\n  std::shared_ptr<Foo<int>> foo_;\n", "code changed in 'Arm' (added: foo_)"),
+        ("items_;\n  double rate_{10.0};\n", "items_;\n", "code changed in 'Arm' (removed: rate_)"),
+        ("void f(", "void g(", "code changed in 'Arm' (added: g; removed: f)"),
+        ("int n_[3]", "long n_[3]", "code changed in 'Arm'"),
+    ],
+)
+def test_a_changed_class_is_told_with_the_members_that_come_and_go(repository, compare, old, new, expected):
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/src/arm.hpp": MEMBERS})
+    assert old in MEMBERS
+    repository.write({"a/src/arm.hpp": MEMBERS.replace(old, new)})
+    assert sentences(compare(repository).subjects[0]) == [expected]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import breaking, sentences
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
 CLASS = "class Arm { public: Arm(); ros::NodeHandle nh, other; ros::Publisher p; };\n"
@@ -172,8 +172,10 @@ def test_parameter_that_becomes_private_is_renamed(repository, compare, argument
 def test_parameter_of_rospy_that_becomes_private_is_renamed(repository, compare):
     text = "import rospy\nrospy.init_node('arm')\ngain = rospy.get_param('gain', 1)\n"
     repository.commit({**MANIFEST, "arm/arm.py": text})
-    repository.write({"arm/arm.py": text.replace("'gain'", "'~gain'")})
-    assert breaking(compare(repository)) == ["parameter 'gain' (1) renamed to '~gain' (1)"]
+    repository.write({"arm/arm.py": text.replace("'gain', 1", "'~gain', 2")})
+    result = compare(repository)
+    assert breaking(result) == ["parameter 'gain' (1) renamed to '~gain' (2)"]
+    assert sentences(subject(result, "arm/arm.py")) == breaking(result)
 
 
 @pytest.mark.parametrize(

@@ -109,3 +109,10 @@ def test_function_of_a_header_is_compared_by_what_its_callers_see(repository, co
     found = [line for item in result.subjects for line in sentences(item) if line.startswith("function")]
     assert found == lines
     assert breaking(result) == (lines if is_breaking else [])
+
+
+@pytest.mark.parametrize(("old", "new"), [("int32_t", "size_t"), ("const std::uint8_t&", "int"), ("long", "int")])
+def test_a_parameter_of_another_integer_type_takes_the_old_arguments(old, new):
+    assert accepts_type(normalize_type(old), normalize_type(new))
+    assert not accepts_type(normalize_type(old), "std::string")
+    assert not accepts_type("int&", "long&")

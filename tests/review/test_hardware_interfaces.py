@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import sentences, subject
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
 PATH = "arm/src/arm.cpp"
@@ -61,3 +61,21 @@ def test_names_of_other_lists_are_no_interfaces(repository, compare):
     repository.commit({**MANIFEST, PATH: text})
     repository.write({PATH: text.replace("mass", "weight")})
     assert not any("interface" in sentence for sentence in sentences(subject(compare(repository), PATH)))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('["port"]', '["device"]', "parameters of the hardware removed: 'port'"),
+        ('.at("slave")', '.at("module")', "parameters of the hardware removed: 'slave'"),
+    ],
+)
+def test_parameters_that_hardware_reads_from_its_description_are_names(repository, compare, old, new, expected):
+    text = "#include <hardware_interface/system_interface.hpp>\nint Arm::on_init(const HardwareInfo & info) {\n"
+    text += '  port_ = info_.hardware_parameters["port"];\n  slave_ = info_.joints[j].parameters.at("slave");\n}\n'
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": text})
+    assert old in text
+    repository.write({"arm/src/arm.cpp": text.replace(old, new)})
+    result = compare(repository)
+    assert breaking(result) == [expected]
+    assert not [line for line in sentences(result.subjects[0]) if "keys" in line]

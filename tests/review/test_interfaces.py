@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.repositories import PACKAGE
+from tests.repositories import PACKAGE, PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
 STATE = """module robot {
@@ -148,3 +148,38 @@ def test_misspelled_primitive_type_in_ros1_is_still_a_mistake(repository, compar
     repository.commit({"package.xml": ROS1_MANIFEST, "msg/arm_state.msg": "int32 id\n"})
     repository.write({"msg/arm_state.msg": "itn32 id\n"})
     assert breaking(compare(repository)) == ["can no longer be read: there is no type 'itn32'"]
+
+
+def test_many_added_and_removed_fields_share_a_line(repository, compare):
+    repository.commit({"p/msg/State.msg": "float32 a\nfloat32 b\nfloat32 c\nint32 id\n"})
+    repository.write({"p/msg/State.msg": "int32 id\nstring[] one_name\nbool is_two\nuint8 three_count\n"})
+    assert breaking(compare(repository)) == [
+        "fields added: string[] one_name, bool is_two, uint8 three_count",
+        "fields removed: float32 a, float32 b, float32 c",
+    ]
+
+
+BUILD = "project({})\nfind_package(rosidl_default_generators REQUIRED)\nrosidl_generate_interfaces({} {})\n"
+MSGS = PACKAGE_XML.replace("arm_description", "{}")
+SERVICE = "{}/Pose[] poses\nstring name\nint32 first\nint32 second\nint32 third\n---\nbool success\nstring message\n"
+
+
+@pytest.mark.parametrize("is_built", [True, False])
+def test_an_interface_that_moves_to_another_package_keeps_the_types_of_its_package(repository, compare, is_built):
+    pose = "float64 x\n"
+    old = {"old_msgs/srv/Find.srv": SERVICE.format("old_msgs"), "old_msgs/msg/Pose.msg": pose}
+    new = {"new_msgs/srv/Find.srv": SERVICE.format("new_msgs"), "new_msgs/msg/Pose.msg": pose}
+    manifests = {f"{name}_msgs/package.xml": MSGS.format(f"{name}_msgs") for name in ("old", "new")}
+    built = "msg/Pose.msg srv/Find.srv"
+    repository.commit(
+        {
+            **manifests,
+            "old_msgs/CMakeLists.txt": BUILD.format("old_msgs", "old_msgs", built),
+            "new_msgs/CMakeLists.txt": BUILD.format("new_msgs", "new_msgs", built if is_built else "msg/Pose.msg"),
+            **old,
+        }
+    )
+    repository.commit({**dict.fromkeys(old), **new})
+    lines = [line for found in compare(repository, "HEAD~..HEAD").subjects for line in sentences(found)]
+    assert not [line for line in lines if line.startswith("field")]
+    assert ("CMakeLists.txt does not build it" in lines) is not is_built

@@ -220,9 +220,9 @@ def generate_launch_description():
         ("on_exit=[EmitEvent()]", "on_exit=[hand]",
          ["event handler OnProcessExit of arm/driver: on_exit [EmitEvent] -> [arm/hand]"], False),
         ('{"speed": speed}', '{"speed": 1}',
-         ["node 'arm/driver': parameter speed $(var speed 1) -> 1"], False),
+         ["node 'arm/driver': parameter speed $(var speed 1) -> 1 (the same by default)"], False),
         ('speed = LaunchConfiguration("speed", default="1")', "speed = 1",
-         ["node 'arm/driver': parameter speed $(var speed 1) -> 1"], False),
+         ["node 'arm/driver': parameter speed $(var speed 1) -> 1 (the same by default)"], False),
     ],
 )  # fmt: skip
 def test_only_what_is_used_is_compared(review_changes, old, new, expected, is_breaking):
@@ -237,7 +237,10 @@ def test_argument_that_is_used_without_being_declared_is_removed(review_changes)
     )
     new = text.replace('LaunchConfiguration("speed", default="1")', "1")
     found, found_breaking = review_changes("arm.launch.py", text, text, new)
-    assert found == ["node 'arm/driver': parameter rate $(var speed 1) -> 1", "argument 'speed' removed"]
+    assert found == [
+        "node 'arm/driver': parameter rate $(var speed 1) -> 1 (the same by default)",
+        "argument 'speed' removed",
+    ]
     assert found_breaking == found[1:]
 
 
@@ -380,3 +383,37 @@ def test_node_of_xml_that_becomes_a_lifecycle_node_is_named(repository, compare)
     repository.commit({path: text})
     repository.write({path: text.replace("<node", "<lifecycle_node")})
     assert sentences(subject(compare(repository), path)) == ["node 'arm/hand': lifecycle true added"]
+
+
+@pytest.mark.parametrize(
+    ("use", "expected"),
+    [
+        ("", "argument 'mode' removed: default fast; the file did not use it"),
+        ('<node pkg="arm" exec="driver" name="$(var mode)"/>', "argument 'mode' removed: default fast"),
+        ('<!-- <node exec="$(var mode)"/> -->', "argument 'mode' removed: default fast; the file did not use it"),
+    ],
+)  # fmt: skip
+def test_removed_argument_that_the_file_did_not_use_is_not_breaking(repository, compare, use, expected):
+    declaration = '<arg name="mode" default="fast"/>'
+    include = '<include file="$(find-pkg-share other)/launch/base.launch.xml"/>'
+    repository.commit({"arm/launch/arm.launch.xml": f"<launch>{declaration}{use}{include}</launch>"})
+    new_use = use.replace(' name="$(var mode)"', "")
+    repository.write({"arm/launch/arm.launch.xml": f"<launch>{new_use}{include}</launch>"})
+    result = compare(repository)
+    assert expected in sentences(subject(result, "arm/launch/arm.launch.xml"))
+    assert (expected in breaking(result)) is ("did not use" not in expected)
+
+
+def test_removed_argument_that_a_python_file_uses_by_a_computed_name_is_breaking(review_changes):
+    text = READING.replace(
+        '"rate": LaunchConfiguration("rate")', "name: LaunchConfiguration(name) for name in ['rat' + 'e']"
+    )
+    declaration = '        DeclareLaunchArgument("rate", default_value="1"),\n'
+    assert review_changes("arm.launch.py", text, declaration, "")[1] == ["argument 'rate' removed: default 1"]
+
+
+def test_removed_argument_of_ros1_is_breaking_though_the_file_did_not_use_it(repository, compare):
+    node = '<node pkg="arm" type="driver" name="d"/>'
+    repository.commit({"arm/launch/arm.launch": f'<launch><arg name="mode" default="fast"/>{node}</launch>'})
+    repository.write({"arm/launch/arm.launch": f"<launch>{node}</launch>"})
+    assert breaking(compare(repository)) == ["argument 'mode' removed: default fast"]

@@ -99,7 +99,7 @@ def test_values_of_one_name_have_their_conditions(review_changes):
 def test_name_has_the_value_whose_condition_holds_by_default(review_changes):
     old, new = REMAP.format("$(arg side)/scan"), REMAP.format("real/scan")
     changes, found_breaking = review_changes(ARGUMENTS + old, ARGUMENTS + new)
-    assert changes == ["node 'cam/driver': remapping scan $(arg side)/scan -> real/scan"]
+    assert changes == ["node 'cam/driver': remapping scan $(arg side)/scan -> real/scan (the same by default)"]
     assert found_breaking == []
     _, found_breaking = review_changes(ARGUMENTS + old, ARGUMENTS + REMAP.format("sim/scan"))
     assert len(found_breaking) == 1

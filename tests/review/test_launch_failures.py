@@ -148,7 +148,8 @@ def test_arguments_that_a_function_adds_to_a_list_are_told(review_changes, call,
     start, end = LAUNCH.index("def spawner"), LAUNCH.index("\n\ndef setup")
     text = LAUNCH.replace(LAUNCH[start:end], SPAWNER).replace("spawner(item)", f"spawner({call})")
     changes, _ = review_changes("arm.launch.py", text, 'BOTH = ["left", "right"', 'BOTH = ["left", "right", "top"')
-    words = f"[top, --controller-manager, /cm, {word}, --timeout, 5]"
+    added = "--namespace (if `name_of_robot()`), arm (if `name_of_robot()`)"
+    words = f"[top, --controller-manager, /cm, {word}, {added}, --timeout, 5]"
     assert f"node 'controller_manager/spawner' of 'top' added: if `kind == 'both'`, arguments {words}" in changes
 
 

@@ -191,7 +191,7 @@ def test_launch_file_with_name_of_a_test_is_compared(review_changes):
          "parameter 'use_sim_time': value true -> false", False),
         ('"ROBOT" value="arm"', '"ROBOT" value="leg"', "environment variable 'ROBOT': value arm -> leg", False),
         ('<arg name="ur" default="$(arg ur)"/>', '<arg name="ur" default="ur10"/>',
-         "include of 'other.launch': ur $(arg ur) -> ur10", False),
+         "include of 'other.launch': ur $(arg ur) -> ur10 (before, ur5 by default)", False),
     ],
 )  # fmt: skip
 def test_actions_in_xml_are_compared(review_changes, old, new, expected, is_breaking):
@@ -260,7 +260,12 @@ PACKAGE = {
 @pytest.mark.parametrize(
     ("old", "new", "expected", "is_breaking"),
     [
-        ("    ld.add_action(Mixin.arg_frame())\n", "", "argument 'frame' removed: default base", True),
+        (
+            "    ld.add_action(Mixin.arg_frame())\n",
+            "",
+            "argument 'frame' removed: default base; the file did not use it",
+            False,
+        ),
         ("rate=10", "rate=20", "node 'arm/driver': parameter rate 10 -> 20", False),
         ('IfCondition("a")', 'IfCondition("b")', "node 'arm/driver': condition if a -> if b", False),
         ('"left"', '"right"', "action 'node_camera': arguments [left] -> [right]", False),
@@ -305,7 +310,7 @@ def generate_launch_description():
     ("old", "new", "expected"),
     [
         ('"tty0"', '"tty1"', "argument 'port': default tty0 -> tty1"),
-        (', {"name": "port", "default": "tty0"}', "", "argument 'port' removed: default tty0"),
+        (', {"name": "port", "default": "tty0"}', "", "argument 'port' removed: default tty0; the file did not use it"),
         ('["left", "right"]', '["left", "rear"]', "node 'arm/driver': namespace right -> rear"),
         ('["left", "right"]', '["left"]', "node 'arm/driver' removed: namespace right"),
     ],

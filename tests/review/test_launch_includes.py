@@ -136,7 +136,7 @@ def test_argument_in_an_expression_is_used_and_one_in_a_comment_is_not(repositor
         (
             'value="$(arg camera)"',
             'value="false"',
-            "include of '$(dirname)/part.launch': camera $(arg camera) -> false",
+            "include of '$(dirname)/part.launch': camera $(arg camera) -> false (before, true by default)",
         ),
         ('default="true"', 'default="false"', "argument 'camera': default true -> false"),
     ],

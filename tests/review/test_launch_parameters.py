@@ -31,7 +31,8 @@ FILE = """<launch>
 )
 def test_topic_that_a_node_publishes_is_a_name_that_others_use(review_changes, name, new, is_breaking):
     changes, found = review_changes("arm.launch", FILE.format(name=name), 'value="state"', f'value="{new}"')
-    assert changes == [f"node 'arm/driver': parameter {name} state -> {new}"]
+    default = " (arm/state by default)" if "$" in new else ""
+    assert changes == [f"node 'arm/driver': parameter {name} state -> {new}{default}"]
     assert found == (changes if is_breaking else [])
 
 

@@ -184,3 +184,80 @@ SPAWNS = f'<launch><node pkg="rviz2" exec="rviz2"/>{SPAWN}</launch>'
 )
 def test_robot_that_is_no_longer_spawned_is_breaking(review_changes, new, is_breaking):
     assert bool(review_changes("arm.launch.xml", SPAWNS, SPAWN, new)[1]) is is_breaking
+
+
+LOOP = """import os
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    ld = LaunchDescription()
+    for i in range(int(os.environ["ROBOTS"])):
+        ld.add_action(Node(package="ros_gz_sim", executable="create", arguments=["-name", "robot" + str(i)]))
+        ld.add_action(Node(package="arm", executable="driver", namespace="robot" + str(i)))
+    return ld
+"""
+TWICE = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="ros_gz_sim", executable="create", arguments=["-name", "robot1"]),
+        Node(package="ros_gz_sim", executable="create", arguments=["-name", "robot2"]),
+        Node(package="arm", executable="driver", namespace="robot1"),
+        Node(package="arm", executable="driver", namespace="robot2"),
+    ])
+"""
+
+
+def test_loop_of_unknown_length_may_start_all_old_nodes(repository, compare):
+    repository.commit({"arm/launch/arm.launch.py": TWICE})
+    repository.write({"arm/launch/arm.launch.py": LOOP})
+    result = compare(repository)
+    found = sentences(subject(result, "arm/launch/arm.launch.py"))
+    assert any(sentence.startswith("node 'arm/driver' removed") for sentence in found)
+    assert not any("removed" in sentence for sentence in breaking(result))
+
+
+SWITCHES = """<launch>
+  <arg name="left" default="true"/>
+  <arg name="right" default="false"/>
+  <group if="$(var left)"><node pkg="arm" exec="driver" name="d"/></group>
+  <group if="$(var right)"><node pkg="arm" exec="driver" name="d"/></group>
+</launch>
+"""
+
+
+def test_node_that_starts_under_another_condition_by_default_is_not_stopped(repository, compare):
+    repository.commit({"arm/launch/arm.launch.xml": SWITCHES})
+    new = SWITCHES.replace('"true"', '"no"').replace('"false"', '"true"').replace('"no"', '"false"')
+    repository.write({"arm/launch/arm.launch.xml": new})
+    assert breaking(compare(repository)) == []
+    repository.write({"arm/launch/arm.launch.xml": SWITCHES.replace('"true"', '"false"')})
+    assert breaking(compare(repository)) == ["argument 'left': default true -> false"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("5", "$(var rate)", "node 'arm/driver': parameter rate 5 -> $(var rate) (7 by default)"),
+        ("7", "$(var rate)", "node 'arm/driver': parameter rate 7 -> $(var rate) (the same by default)"),
+        ("$(var rate)", "5", "node 'arm/driver': parameter rate $(var rate) -> 5 (before, 7 by default)"),
+        ("5", "$(env RATE)", "node 'arm/driver': parameter rate 5 -> $(env RATE)"),
+    ],
+)
+def test_values_that_arguments_give_now_are_shown_with_their_defaults(review_changes, old, new, expected):
+    node = f'<node pkg="arm" exec="driver"><param name="rate" value="{old}"/></node>'
+    text = f'<launch><arg name="rate" default="7"/><let name="x" value="$(var rate)"/>{node}</launch>'
+    found, _ = review_changes("arm.launch.xml", text, f'value="{old}"/></node>', f'value="{new}"/></node>')
+    assert expected in found
+
+
+def test_file_of_the_same_package_with_a_similar_name_replaces_an_include(review_changes):
+    text = '<launch><include file="$(find camera)/launch/rs_rgbd.launch"/></launch>'
+    found, lost = review_changes("arm.launch", text, "rs_rgbd", "rs_camera")
+    files = [f"include of '$(find camera)/launch/{name}.launch'" for name in ("rs_rgbd", "rs_camera")]
+    assert found == [" replaced by ".join(files)]
+    assert lost == []

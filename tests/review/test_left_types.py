@@ -81,3 +81,17 @@ def test_a_client_with_the_type_of_another_package_is_named(repository, compare)
     repository.write({"lamp/a.py": service.format(package="new_msgs")})
     line = "service client 'tags' still has the type old_msgs/Tags; 'lamp/a.py' now uses new_msgs/Tags"
     assert line in breaking(compare(repository))
+
+
+def test_a_publisher_whose_type_is_of_an_unknown_package_is_not_named(repository, compare):
+    subscriber = "import rospy\nfrom {package}.msg import Tags\ns = rospy.Subscriber('tags', Tags, print)\n"
+    publisher = "import rospy\np = rospy.Publisher('tags', find_type().Tags)\n"
+    repository.commit(
+        {
+            "lamp/package.xml": MANIFEST.format(name="lamp"),
+            "lamp/a.py": subscriber.format(package="old_msgs"),
+            "lamp/b.py": publisher,
+        }
+    )
+    repository.write({"lamp/a.py": subscriber.format(package="new_msgs")})
+    assert not [line for line in breaking(compare(repository)) if "still has the type" in line]

@@ -112,3 +112,24 @@ def test_header_is_an_interface_only_if_something_installs_it(repository, compar
     repository.write({"a/include/arm/driver.hpp": HEADER.replace("class Driver {\n};\n", "")})
     expected = ["classes removed: 'Driver'"] if is_interface else []
     assert [text for text in breaking(compare(repository)) if "classes" in text] == expected
+
+
+def test_targets_of_a_build_file_that_another_one_replaces_are_reported(repository, compare):
+    cmake = """project(arm)
+add_library(arm_core SHARED src/core.cpp)
+add_executable(drive src/drive.cpp)
+add_executable(stop src/stop.cpp)
+install(TARGETS arm_core EXPORT arm_targets DESTINATION lib)
+install(TARGETS drive stop DESTINATION lib/${PROJECT_NAME})
+"""
+    entries = "entry_points={'console_scripts': ['drive = arm.drive:main']}"
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/CMakeLists.txt": cmake}
+    repository.commit(files)
+    (repository.root / "arm/CMakeLists.txt").unlink()
+    repository.write(
+        {"arm/setup.py": f"from setuptools import setup\nsetup(name='arm', packages=['arm'], {entries})\n"}
+    )
+    lines = breaking(compare(repository))
+    assert "installed executables removed: 'stop'" in lines
+    assert "installed libraries removed: 'arm_core'" in lines
+    assert not [line for line in lines if "'drive'" in line]

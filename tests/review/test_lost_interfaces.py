@@ -129,3 +129,30 @@ def test_a_source_that_uses_a_removed_interface_is_named(repository, compare, fi
     files = {"lamp_msgs/msg/Light.msg": "", **({"lamp_msgs/msg/Lamp.msg": MESSAGE} if is_renamed else {})}
     found = review_source(repository, compare, file, text, files)
     assert found == (["uses the interface 'lamp_msgs/Light', which no longer exists"] if is_found else [])
+
+
+@pytest.mark.parametrize(
+    ("code", "is_named"),
+    [
+        ("state_.label = text;", True),
+        ("f(this->state_.label);", True),
+        ("other_.state_.label = text;", False),
+        ("OtherState state_;\n  state_.label = text;", False),
+        ("state_.level = 1;", False),
+    ],
+)
+def test_a_source_that_uses_a_lost_field_of_a_member_of_its_base_class_is_named(repository, compare, code, is_named):
+    base = f"#pragma once\n{INCLUDE}class Base {{\nprotected:\n  lamp_msgs::msg::Light state_;\n}};\n"
+    repository.commit(
+        {
+            "lamp_msgs/package.xml": MANIFEST.format(name="lamp_msgs"),
+            "lamp/package.xml": MANIFEST.format(name="lamp"),
+            "lamp_msgs/msg/Light.msg": MESSAGE,
+            "lamp/include/lamp/base.hpp": base,
+            "lamp/include/lamp/lamp.hpp": '#pragma once\n#include "lamp/base.hpp"\nclass Lamp : public Base {};\n',
+            "lamp/src/lamp.cpp": f'#include "lamp/lamp.hpp"\nvoid Lamp::run() {{\n  {code}\n}}\n',
+        }
+    )
+    repository.write({"lamp_msgs/msg/Light.msg": MESSAGE.replace("string label\n", "")})
+    lines = [line for line in breaking(compare(repository)) if line.startswith("uses")]
+    assert lines == (["uses 'label', which 'lamp_msgs/Light' no longer has"] if is_named else [])

@@ -38,3 +38,37 @@ def test_a_structure_that_another_file_declares_is_not_lost(repository, compare,
     repository.commit(FILES)
     repository.write({"lib/include/m/position.h": HEADER.replace("Position", "Place"), **files})
     assert breaking(compare(repository)) == []
+
+
+ENUMERATIONS = """#pragma once
+namespace m {
+enum Register { REG_SPEED = 1, REG_ODOM = 2 };
+enum class Mode { kFast, kSlow };
+}
+"""
+ENUMERATOR_FILES = {
+    "lib/include/m/registers.h": ENUMERATIONS,
+    "lib/test/registers_test.cc": "#include <m/registers.h>\nTEST(a, b) { send(m::REG_SPEED, 2); }\n",
+    "lib/src/main.cpp": "#include <m/registers.h>\nint f(m::Mode mode) { return mode == m::Mode::kFast; }\n",
+    "lib/src/other.cpp": "int f() { return REG_SPEED; }\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        ("REG_SPEED = 1, ", "", {"lib/test/registers_test.cc": "REG_SPEED"}),
+        ("kFast", "kRapid", {"lib/src/main.cpp": "kFast"}),
+        ("kSlow", "kCareful", {}),
+        ("enum Register { REG_SPEED = 1, ", "constexpr int REG_SPEED = 1;\nenum Register { ", {}),
+    ],
+)
+def test_users_of_a_lost_enumerator_do_not_build(repository, compare, old, new, found):
+    repository.commit(ENUMERATOR_FILES)
+    assert old in ENUMERATIONS
+    repository.write({"lib/include/m/registers.h": ENUMERATIONS.replace(old, new)})
+    result = compare(repository)
+    used = {item.path: str(item.changes[0].sentence) for item in result.subjects if "include" not in item.path}
+    assert used == {
+        path: f"uses '{name}', which 'lib/include/m/registers.h' no longer has" for path, name in found.items()
+    }

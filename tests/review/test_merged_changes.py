@@ -10,7 +10,7 @@ import pytest
 from linkwright.diagnostics import phrase
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
 from linkwright.review.merging import merge_changes, name_edit
-from linkwright.review.reports.sections import format_cases, format_change
+from linkwright.review.reports.sentences import format_cases, format_change
 from tests.repositories import ARM, MACRO
 from tests.review.conftest import breaking, sentences, subject
 
@@ -226,3 +226,23 @@ def test_other_parameter_with_the_same_default_is_not_a_renamed_one(package, com
         {SEGMENT: MACRO.replace("length:=0.5", "length:=0.5 topic:=''").replace("name}_joint", "name}${topic}_joint")}
     )
     assert "macro 'segment': parameter color removed" in breaking(compare(package))
+
+
+CONTROL = """<ros2_control name="arm" type="system"><hardware><plugin>a/B</plugin></hardware>
+<joint name="upper_joint">INTERFACES<state_interface name="position"/></joint></ros2_control>"""
+
+
+def test_interfaces_that_a_joint_loses_are_one_line(package, compare):
+    names = ("position", "velocity", "effort")
+    interfaces = "".join(f'<command_interface name="pass_{name}"/>' for name in names)
+    path = "arm_description/urdf/arm.urdf.xacro"
+    package.commit({path: ARM.replace("</robot>", CONTROL.replace("INTERFACES", interfaces) + "</robot>")})
+    package.commit({path: ARM.replace("</robot>", CONTROL.replace("INTERFACES", "") + "</robot>")})
+    (change,) = [change for _, change in compare(package, "HEAD~1..HEAD").breaking_changes]
+    assert str(change.sentence) == (
+        "extension 'ros2_control arm': joint upper_joint command_interface pass_position, pass_velocity, pass_effort "
+        "removed"
+    )
+    assert str(change.reason) == (
+        "controllers that claim 'upper_joint/pass_position' do not start; likewise for the others"
+    )

@@ -63,7 +63,7 @@ def test_note_does_not_call_a_file_missing_that_both_versions_have(package, comp
 
 def test_values_of_a_call_of_a_missing_macro_are_compared(sensor_package, compare):
     sensor_package.write({PATH: WITH_SENSOR.replace('rate="10"', 'rate="20"')})
-    assert sentences(subject(compare(sensor_package), PATH)) == ["extension 'xacro:lidar': @rate 10 -> 20"]
+    assert sentences(subject(compare(sensor_package), PATH)) == ["call of macro 'lidar': @rate 10 -> 20"]
 
 
 def test_equal_rest_is_not_reported(sensor_package, compare):
@@ -149,8 +149,8 @@ def test_unreadable_robots_that_did_not_change_are_counted_in_a_note(package, co
 @pytest.mark.parametrize(
     ("new", "expected"),
     [
-        ("", ["extension 'xacro:lidar front' removed: parent=lower"]),
-        ('<xacro:lidar name="back" parent="lower"/>', ["extension 'xacro:lidar front' removed: parent=lower"]),
+        ("", ["call of macro 'lidar front' removed: parent=lower"]),
+        ('<xacro:lidar name="back" parent="lower"/>', ["call of macro 'lidar front' removed: parent=lower"]),
         ('<xacro:laser name="front" parent="lower"/>', []),
         ('<xacro:lidar name="front" parent="upper"/>', []),
     ],
@@ -161,3 +161,9 @@ def test_removed_call_of_a_macro_of_a_missing_package_is_breaking(package, compa
     package.commit({PATH: ARM.replace("</robot>", f"{include}{call}</robot>")})
     package.write({PATH: ARM.replace("</robot>", f"{include}{new}</robot>")})
     assert breaking(compare(package)) == expected
+
+
+def test_topic_that_a_call_of_a_missing_macro_newly_passes_may_be_breaking(sensor_package, compare):
+    for attribute, is_breaking in (('topic="scan"', True), ('rate_limit="5"', False)):
+        sensor_package.write({PATH: WITH_SENSOR.replace('rate="10"', f'rate="10" {attribute}')})
+        assert bool(breaking(compare(sensor_package))) is is_breaking

@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.files.git_repository import GitRepository
-from linkwright.review.reports.sections import list_other_files
+from linkwright.review.reports.sentences import list_other_files
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 

@@ -257,3 +257,35 @@ def test_python2_and_byte_order_marks_are_read(repository, compare, start):
     repository.commit({"arm/driver.py": start + PYTHON})
     repository.write({"arm/driver.py": start + PYTHON.replace('"stair_mode"', '"mode"')})
     assert breaking(compare(repository)) == ["service 'stair_mode' (SetBool) renamed to 'mode' (SetBool)"]
+
+
+def test_a_source_that_neither_version_can_parse_is_told(repository, compare):
+    text = "def run(:\n    return 1\n"
+    repository.commit({"arm/driver.py": text})
+    repository.write({"arm/driver.py": text.replace("1", "2")})
+    (found,) = compare(repository).subjects
+    assert [str(problem.text) for problem in found.problems] == [
+        "neither version can be read: line 1 has a syntax error"
+    ]
+    assert found.changes == []
+
+
+def test_the_default_of_the_constructor_is_the_name_of_the_node(repository, compare):
+    text = PYTHON.replace("(self)", "(self, name='driver', *, rate=1)", 1).replace(
+        '__init__("driver")', "__init__(name)"
+    )
+    repository.commit({**FILES, "arm/arm/driver.py": text})
+    repository.write({"arm/arm/driver.py": text.replace("'driver'", "'base'")})
+    assert breaking(compare(repository)) == ["node 'driver' renamed to 'base'"]
+
+
+def test_a_node_with_braces_that_moves_to_python_keeps_its_name(repository, compare):
+    text = 'struct Arm : rclcpp::Node {};\nHand::Hand(const Options & options) : rclcpp::Node{"hand", options} {}\n'
+    repository.commit({**FILES, "arm/src/hand.cpp": text})
+    (repository.root / "arm/src/hand.cpp").unlink()
+    code = "from rclpy.node import Node\n\n\nclass Hand(Node):\n    def __init__(self):\n"
+    repository.write({"arm/arm/hand.py": f"{code}        super().__init__('hand')\n"})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert not [line for line in lines if "nodes" in line]
+    repository.write({"arm/src/hand.cpp": text.replace('"hand"', '"fist"'), "arm/arm/hand.py": ""})
+    assert "node 'hand' renamed to 'fist'" in breaking(compare(repository))

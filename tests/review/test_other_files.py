@@ -46,7 +46,7 @@ XML_LAUNCH = """<launch>
     [
         ("RATE = 10", "RATE = 20", "node 'arm/driver': parameter rate 10 -> 20", False),
         ('"false"', '"true"', "argument 'use_sim_time': default false -> true", False),
-        ('        DeclareLaunchArgument("model"),\n', "", "argument 'model' removed", True),
+        ('        DeclareLaunchArgument("model"),\n', "", "argument 'model' removed; the file did not use it", False),
         ('"use_sim_time", default_value="false"', '"use_sim_time"',
          "argument 'use_sim_time': default false removed", True),
         ('name="right"', 'name="rear"', "node 'arm/camera': name right -> rear", True),

@@ -16,7 +16,7 @@ HEAD = "#include <ros/ros.h>\nvoid Arm::init() {{\n  {}\n}}\n"
     [
         ("a.cpp", 'getRequiredParam(nh, "gain", &gain_);', "parameters added: 'gain'"),
         ("a.cpp", 'rate_ = declare_or_get_param<double>(node, "rate", 5.0);', "parameters added: 'rate' (5.0)"),
-        ("a.cpp", 'declareParameter("speed", rclcpp::ParameterValue(0.3));', "parameters added: 'speed'"),
+        ("a.cpp", 'declareParameter("speed", rclcpp::ParameterValue(0.3));', "parameters added: 'speed' (0.3)"),
         ("a.cpp", 'auto p = get_parameter("port").as_int();', "parameters added: 'port'"),
         ("a.cpp", 'auto s = this->sdf->Get<double>("noise", 0.1).first;',
          "parameters of the plugin added: 'noise' (0.1)"),
@@ -66,3 +66,18 @@ def test_element_that_a_plugin_no_longer_reads_is_breaking(repository, compare):
     repository.write({"arm/src/a.cpp": HEAD.format('_sdf->Get<double>("noise_level");')})
     (sentence,) = breaking(compare(repository))
     assert sentence == "parameter of the plugin 'noise' renamed to 'noise_level'"
+
+
+def test_a_default_behind_a_condition_that_the_parameter_is_set_is_none(repository, compare):
+    text = 'void f() {\n  if (nh.hasParam("x")) { nh.param("x", x_, 0.0); }\n  nh.param("y", y_, 0.0);\n}\n'
+    repository.commit({**MANIFEST, "arm/a.cpp": "void f() {}\n"})
+    repository.write({"arm/a.cpp": text})
+    assert "parameters added: 'x', 'y' (0.0)" in sentences(compare(repository).subjects[0])
+
+
+@pytest.mark.parametrize("function", ["declare_double", "params_.declare_double", "this->registerParameter<double>"])
+def test_a_function_that_declares_a_parameter_is_known_by_its_name(repository, compare, function):
+    text = f'void f() {{ {function}("rate", 0.5); }}\n'
+    repository.commit({**MANIFEST, "arm/a.cpp": text})
+    repository.write({"arm/a.cpp": text.replace("0.5", "0.7")})
+    assert sentences(compare(repository).subjects[0]) == ["parameter 'rate': default 0.5 -> 0.7"]

@@ -305,9 +305,27 @@ def test_list_without_names_has_the_smallest_edit_with_its_values(review_changes
     found, _ = review_changes(old, new)
     assert found == [
         (
-            "list actions: 3 values changed, 4 parts removed: [0].target.y 0.0 -> -0.2; [2].target.y 0.0 -> -0.2; "
-            "[4].target.y 0.0 -> -0.2; [old 2] removed: action move, target.x 0.0, target.y -0.1, target.turn -60; "
+            "list actions: 3 values changed, 4 parts removed: [0, 2, 4].target.y 0.0 -> -0.2; "
+            "[old 2] removed: action move, target.x 0.0, target.y -0.1, target.turn -60; "
             "[old 3].action grasp removed; [old 6] removed: action move, target.x 0.0, target.y -0.1, target.turn 60; "
             "[old 7].action grasp removed"
         )
     ]
+
+
+def test_equal_changes_of_list_items_are_told_once(review_changes):
+    lasers = "lasers:\n" + "".join(f"  - {{id: {n}, two_pt: false}}\n" for n in range(12))
+    found, _ = review_changes(lasers, lasers.replace("two_pt: false", "two_pt: true"))
+    assert found == ["list lasers: 12 values changed: [0..11].two_pt false -> true"]
+    found, _ = review_changes(
+        lasers, lasers.replace("id: 3, two_pt: false", "id: 3, two_pt: 5").replace("false", "true")
+    )
+    assert found == ["list lasers: 12 values changed: [0..2, 4..11].two_pt false -> true; [3].two_pt false -> 5"]
+
+
+def test_components_of_a_vector_are_one_line(review_changes):
+    found, _ = review_changes(
+        "link:\n  cog:\n    x: 0.0\n    y: 0.1\n    z: 2\n  speed: 1\n",
+        "link:\n  cog:\n    x: 0.5\n    y: 0.2\n    z: 2\n  speed: 3\n",
+    )
+    assert found == ["link.cog: x 0.0 -> 0.5, y 0.1 -> 0.2", "link.speed 1 -> 3"]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.review import open_versions, review
+from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 from tests.review.test_scene_images import make_stl
 
@@ -144,3 +145,20 @@ def test_added_elements_of_an_unreadable_robot_have_their_values(repository, com
     (change,) = subject(compare(repository), PATH).changes
     assert str(change.sentence) == "joint j0 type=fixed added: parent link=a, child link=c"
     assert change.other_names == ("joint j1: parent link=a, child link=d",)
+
+
+def test_installed_files_have_uris_instead_of_paths_of_the_computer(repository, compare):
+    mesh = "<visual><geometry><mesh filename='%s/meshes/a.stl'/></geometry></visual>"
+    robot = "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'><link name='base'>%s</link></robot>"
+    repository.commit(
+        {
+            "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+            "arm/CMakeLists.txt": "project(arm)\ninstall(DIRECTORY model/meshes DESTINATION share/arm)\n",
+            "arm/model/meshes/a.stl": b"solid a\nendsolid a\n",
+            "arm/urdf/arm.urdf.xacro": robot % (mesh % "model://vendor"),
+        }
+    )
+    repository.write({"arm/urdf/arm.urdf.xacro": robot % (mesh % "file://$(find arm)")})
+    found = sentences(subject(compare(repository), "arm/urdf/arm.urdf.xacro"))
+    expected = "link 'base': visual geometry mesh model://vendor/meshes/a.stl -> mesh package://arm/meshes/a.stl"
+    assert found == [expected]

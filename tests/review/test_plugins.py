@@ -90,3 +90,20 @@ def test_other_division_into_blocks_of_gazebo_is_no_change(repository, compare):
         {PATH: robot_text(BLOCKS.replace('<collision/></gazebo>\n    <gazebo reference="base">', "<collision/>"))}
     )
     assert compare(repository).subjects == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("/", "", None),
+        ("left", "/left", None),
+        ("/left", "/right", "programs do not find the topics and services of the plugin in the namespace '/left'"),
+        ("", "/right", "programs do not find the topics and services of the plugin in the namespace '/'"),
+    ],
+)
+def test_namespace_of_a_plugin_is_compared_as_gazebo_ros_completes_it(repository, compare, old, new, reason):
+    plugin = "<gazebo><plugin name='dock' filename='libdock.so'><ros><namespace>%s</namespace></ros></plugin></gazebo>"
+    repository.commit({PATH: robot_text(plugin % old)})
+    repository.write({PATH: robot_text(plugin % new)})
+    reasons = [str(change.reason) for found in compare(repository).subjects for change in found.changes]
+    assert reasons == ([] if reason is None else [reason])

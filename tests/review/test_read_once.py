@@ -12,6 +12,7 @@ from linkwright.lint.affected import TextFiles
 from linkwright.packages import PackageFinder
 from linkwright.review import open_versions, review
 from linkwright.review.robots import figures
+from linkwright.review.sources import reading
 from linkwright.sdf.resources import ResourceFinder
 from tests.review.test_scene_images import make_stl
 
@@ -139,3 +140,24 @@ def test_files_are_not_searched_for_names_if_no_description_can_read_a_changed_f
     review(versions)
     versions.close()
     assert reads == []
+
+
+def test_each_source_is_read_once(package, compare, monkeypatch):
+    node = 'void start() {{ pub_ = create_publisher<std_msgs::msg::String>("{0}", 10); }}\n'
+    files = {f"arm_description/src/{name}.cpp": node.format(name) for name in ("a", "b", "c")}
+    package.commit(files)
+    package.commit({path: text.replace('("', '("new_') for path, text in files.items()})
+    calls = record_calls(monkeypatch, reading, "read_cpp")
+    assert len(compare(package, "HEAD~1..HEAD").subjects) == 3
+    paths = [source.name for source, _ in calls]
+    assert len(paths) == len(set(paths)) == 6
+
+
+def test_next_review_reads_a_changed_working_tree(package, compare):
+    path = "arm_description/src/a.cpp"
+    node = 'void start() { pub_ = create_publisher<std_msgs::msg::String>("first", 10); }\n'
+    package.commit({path: node})
+    for name in ("second", "third_"):
+        package.write({path: node.replace("first", name)})
+        (subject,) = compare(package, "HEAD").subjects
+        assert f"'{name}'" in str(subject.changes[0].sentence)

@@ -119,3 +119,16 @@ def test_removed_nodes_of_behavior_trees_are_breaking_with_the_trees_that_use_th
 def test_unchanged_registrations_are_no_change(review_source):
     lines, _ = review_source(TREE, TREE.replace("return 1;", "return f(1);"), {"arm/trees/main.xml": TREE_FILE})
     assert lines == ["code changed in 'Foo::run()'"]
+
+
+@pytest.mark.parametrize(
+    ("lost", "expected"),
+    [("nav_core", ["class for pluginlib 'arm::Planner': base classes mbf::Planner, nav_core::Planner -> mbf::Planner"]),
+     ("", [])],
+)  # fmt: skip
+def test_a_class_that_is_no_longer_exported_for_a_base_class_is_breaking(repository, compare, lost, expected):
+    export = "PLUGINLIB_EXPORT_CLASS(arm::Planner, {}::Planner)\n"
+    text = export.format("nav_core") + export.format("mbf")
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/a.cpp": text})
+    repository.write({"arm/a.cpp": text.replace(export.format(lost), "") + "// planner\n"})
+    assert breaking(compare(repository)) == expected

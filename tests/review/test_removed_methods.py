@@ -53,6 +53,41 @@ def test_a_method_that_moves_to_the_base_class_is_not_breaking(repository, compa
     assert breaking(compare(repository)) == []
 
 
+def test_other_arguments_of_a_method_are_breaking_if_the_base_class_is_in_a_deeper_module_of_the_package(
+    repository, compare
+):
+    files = {f"arm/arm/{name}": "" for name in ("parts/__init__.py", "tools/__init__.py")}
+    text = "from arm.parts.base import Base\n\n\nclass Arm(Base):\n    def read(self, count):\n        return count\n"
+    setup = PYTHON["arm/setup.py"].replace("['arm']", "['arm', 'arm.tools']")
+    repository.commit(
+        {**PYTHON, **files, "arm/setup.py": setup, "arm/arm/parts/base.py": BASE, "arm/arm/tools/a.py": text}
+    )
+    repository.write({"arm/arm/tools/a.py": text.replace("(self, count)", "(self, register, count)")})
+    assert breaking(compare(repository)) == ["function 'Arm.read': arguments (count) -> (register, count)"]
+
+
+@pytest.mark.parametrize(
+    ("packages", "is_installed"),
+    [("['arm']", False), ("['arm', 'arm.parts']", True), ("find_packages()", True), ("list_packages()", True)],
+)
+def test_a_class_removed_from_a_folder_that_setup_does_not_install_is_not_breaking(
+    repository, compare, packages, is_installed
+):
+    setup = f"from setuptools import find_packages, setup\nsetup(name='arm', packages={packages})\n"
+    build_type = "<export><build_type>ament_python</build_type></export></package>"
+    repository.commit(
+        {
+            "arm/package.xml": MANIFEST["arm/package.xml"].replace("</package>", build_type),
+            "arm/setup.py": setup,
+            "arm/arm/__init__.py": "",
+            "arm/arm/parts/__init__.py": "",
+            "arm/arm/parts/a.py": "class Arm:\n    pass\n\n\nclass Leg:\n    pass\n",
+        }
+    )
+    repository.write({"arm/arm/parts/a.py": "class Leg:\n    pass\n"})
+    assert breaking(compare(repository)) == (["classes removed: 'Arm'"] if is_installed else [])
+
+
 def test_the_public_names_of_our_nodes_are_among_those_of_rclpy():
     public = {name for name in dir(Node) if not name.startswith("_") and name.islower()}
     assert public - OWN_NAMES <= NODE_NAMES

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.review.reports.sections import list_other_files
+from linkwright.review.reports.sentences import list_other_files
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
@@ -94,3 +94,45 @@ def test_package_that_moves_to_another_folder_is_one_change_and_breaks_nothing(r
     result = compare(repository, "HEAD~1..HEAD")
     assert [sentences(found) for found in result.subjects] == [["package 'arm_tools' moved from arm_tools/"]]
     assert breaking(result) == []
+
+
+def test_package_with_another_manifest_in_another_folder_is_moved(repository, compare):
+    """Git does not pair manifests with few equal lines."""
+    repository.commit(FILES)
+    manifest = "<package format='3'><name>arm_tools</name><build_type>ament_cmake</build_type></package>\n"
+    files = {**rename_package_files("tools/arm_tools", "arm_tools"), "tools/arm_tools/package.xml": manifest}
+    repository.commit(files)
+    result = compare(repository, "HEAD~1..HEAD")
+    assert "package 'arm_tools' moved from arm_tools/" in sentences(subject(result, "tools/arm_tools/package.xml"))
+    assert [subject.path for subject in result.subjects] == ["tools/arm_tools/package.xml"]
+
+
+def test_findings_that_name_the_renamed_package_are_neither_new_nor_fixed(package, compare):
+    mesh = '<visual><geometry><mesh filename="package://arm_description/meshes/none.stl"/></geometry></visual>'
+    robot = f'<robot name="tool"><link name="tool">{mesh}</link></robot>'
+    package.commit({"arm_description/urdf/tool.urdf": robot})
+    package.git("mv", "arm_description", "robot_arm")
+    manifest = (package.root / "robot_arm/package.xml").read_text(encoding="utf-8")
+    package.commit(
+        {
+            "robot_arm/package.xml": manifest.replace("arm_description", "robot_arm"),
+            **{
+                path: (package.root / path).read_text(encoding="utf-8").replace("arm_description", "robot_arm")
+                for path in (f"robot_arm/urdf/{name}" for name in ("tool.urdf", "arm.urdf.xacro", "segment.xacro"))
+            },
+        }
+    )
+    review = compare(package, "HEAD~1..HEAD")
+    assert review.new_findings == []
+    assert review.fixed_findings == []
+
+
+def test_robot_that_neither_version_can_read_has_one_problem_after_a_move(package, compare):
+    package.commit({"arm_description/urdf/two.urdf": '<robot name="two"><link name="a"/><link name="b"/></robot>'})
+    package.git("mv", "arm_description/urdf/two.urdf", "arm_description/urdf/pair.urdf")
+    package.commit({})
+    problems = [
+        str(problem.text) for subject in compare(package, "HEAD~1..HEAD").subjects for problem in subject.problems
+    ]
+    assert len(problems) == 1
+    assert problems[0].startswith("neither version can be read: ")

@@ -77,8 +77,10 @@ def test_equal_changes_of_several_files_are_listed_once(package, compare):
     assert [line for line in lines if line in names] == [names[0], names[6]]
     breaking = [change for _, change in result.breaking_changes if "cmd_vel_nav" in str(change.sentence)]
     assert len(breaking) == 12
-    for report in (as_markdown(result), as_html(result)):
-        assert re.search(r"the same in 5 more files: .* and 1 more", report)
+    page, comment = as_html(result), as_markdown(result)
+    assert re.search(r"the same in 5 more files: .* and 1 more", page)
+    assert re.search(r"cmd&#95;vel&#95;nav.* and 2 more</code>", comment)
+    for report in (page, comment):
         assert report.split("arm_description/launch/g", 1)[0].count("cmd_vel_nav") <= 2
 
 
@@ -124,7 +126,10 @@ def test_control_characters_in_names_are_replaced():
 def test_long_review_is_truncated_to_comment_size():
     subjects = []
     for robot in range(30):
-        changes = [Change(phrase("link '{name}' removed", name=f"link_{robot}_{number}")) for number in range(300)]
+        changes = [
+            Change(phrase("link '{name}' moved by {distance} m", name=f"link_{robot}_{number}", distance=number))
+            for number in range(300)
+        ]
         subjects.append(Subject(SubjectKind.DESCRIPTION, f"urdf/{robot}.urdf", "a", "b", changes))
     text = as_markdown(Review("main", "", subjects))
     assert len(text) < 65_536
@@ -209,7 +214,7 @@ def test_unknown_fail_on_condition_is_a_usage_error(run):
 def test_first_argument_is_commit_or_package(run):
     assert run("HEAD~1", "arm_description")[1] == run("HEAD~1..HEAD", "arm_description")[1]
     status, output, _ = run("arm_description")
-    assert (status, output) == (0, "0 breaking changes, 0 changes, 0 new findings, 0 fixed\n")
+    assert (status, output) == (0, "nothing that a review compares changed from main to the working tree\n")
 
 
 def test_github_annotations_are_printed(run):

@@ -29,18 +29,20 @@ STATE = '  <group_state name="home" group="manipulator"><joint name="upper_joint
         ('<joint name="left"/><joint name="right"/>', '<chain base_link="lower" tip_link="tip"/>',
          "group 'hand': + chain lower tip, - joint left, - joint right", None),
         ('<joint name="left"/>', '<joint name="left"/><joint name="middle"/>', "group 'hand': + joint middle", None),
-        (STATE, "", "group_state 'manipulator/home' removed",
+        (STATE, "", "group_state 'manipulator/home' removed: upper_joint 0",
          "programs that move to the state 'manipulator/home' do not find it"),
         ('name="home"', 'name="rest"', "group_state 'manipulator/home' renamed to 'manipulator/rest'",
          "programs that move to the state 'manipulator/home' do not find it"),
         ('<group name="hand"', '<group name="gripper"', "group 'hand' renamed to 'gripper'",
          "programs that plan for the group 'hand' do not find it"),
-        ('  <end_effector name="tool" group="hand" parent_link="lower"/>\n', "", "end_effector 'tool' removed",
+        ('  <end_effector name="tool" group="hand" parent_link="lower"/>\n', "",
+         "end_effector 'tool' removed: group hand, parent_link lower",
          "programs that use the end effector 'tool' do not find it"),
         ('parent_frame="world"', 'parent_frame="map"', "virtual_joint 'fixed': parent_frame world -> map",
          "MoveIt no longer plans in the frame 'world'"),
         ('  <virtual_joint name="fixed" type="fixed" parent_frame="world" child_link="base_link"/>\n', "",
-         "virtual_joint 'fixed' removed", "MoveIt no longer plans in the frame 'world'"),
+         "virtual_joint 'fixed' removed: type fixed, parent_frame world, child_link base_link",
+         "MoveIt no longer plans in the frame 'world'"),
         ('tip_link="lower"', 'tip_link="tool"', "group 'manipulator': + chain base_link tool, - chain base_link lower",
          "pose goals for the group 'manipulator' that name no link move 'tool' instead of 'lower'"),
         ('<chain base_link="base_link"', '<chain base_link="upper"',
@@ -172,3 +174,15 @@ def test_files_that_cannot_be_read_for_the_same_reason_are_one_note(repository, 
     assert result.subjects == []
     (note,) = result.notes
     assert str(note).startswith(f"3 changed files are not compared, such as '{paths[0]}': neither version can be read")
+
+
+def test_many_pairs_of_a_lost_link_are_summarized(package, compare):
+    pair = '  <disable_collisions link1="%s" link2="%s" reason="Never"/>\n'
+    pairs = [("cover", f"link_{number}") for number in range(24)]
+    kept = "".join(pair % ("base_link", f"link_{number}") for number in range(24))
+    text = SRDF.replace("</robot>", f"{kept}%s</robot>")
+    package.commit({PATH: text % "".join(pair % names for names in [*pairs, ("link_0", "link_1")])})
+    package.write({PATH: text % ""})
+    assert sentences(subject(compare(package), PATH)) == [
+        "disable_collisions: 25 pairs removed: all pairs with cover, link_0 - link_1"
+    ]

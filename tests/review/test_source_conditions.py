@@ -13,6 +13,8 @@ PUBLISHER = "        self.create_publisher(Bool, '{}', 10)\n"
 IF = "        if self.debug:\n    {}"
 CPP = "void Arm::start() {{\n  ok_ = true;\n{}}}\n"
 CPP_PUBLISHER = '  pub_ = create_publisher<std_msgs::msg::Bool>("out", 10);\n'
+DECLARED = "        self.declare_parameter('rate', 10)\n"
+READ = "        self.rate = self.get_parameter('rate').value\n"
 OUT = PUBLISHER.format("out")
 
 
@@ -32,6 +34,14 @@ OUT = PUBLISHER.format("out")
         ("a.cpp", CPP_PUBLISHER, "  if (a_) {\n    f();\n  } else if (b_) {\n    g();\n  } else {\n" + CPP_PUBLISHER
          + "  }\n", ["publisher 'out': now only if !(a_) and !(b_)"]),
         ("a.cpp", CPP_PUBLISHER, "  if (a_) { f(); }\n" + CPP_PUBLISHER, []),
+        ("a.py", DECLARED, IF.format(DECLARED), ["parameter 'rate': now only if self.debug"]),
+        ("a.py", DECLARED + READ, DECLARED + IF.format(READ), ["parameter 'rate': read now only if self.debug"]),
+        ("a.py", DECLARED + IF.format(READ), DECLARED + READ, ["parameter 'rate': no longer read only if self.debug"]),
+        ("a.py", DECLARED, "        if not self.has_parameter('rate'):\n    " + DECLARED, []),
+        ("a.cpp", '  nh_.getParam("rate", rate_);\n', '  if (slow_) {\n  nh_.getParam("rate", rate_);\n  }\n',
+         ["parameter 'rate': now only if slow_"]),
+        ("a.cpp", '  nh_.getParam("rate", rate_);\n',
+         '  if (nh_.hasParam("rate")) {\n  nh_.getParam("rate", rate_);\n  }\n', []),
     ],
 )  # fmt: skip
 def test_a_name_behind_a_new_condition_is_told(repository, compare, path, old, new, expected):

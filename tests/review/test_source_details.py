@@ -224,6 +224,7 @@ def test_script_without_a_suffix_is_read_if_its_first_line_names_python(reposito
         ("exec code in d\nx = `y` <> 0xFFL\n", 2),
         ("print('a',\n  'b')\nx = ur'y'\n", 3),
         ("def f():\n\tif a:\n            print 'a'\n\treturn 0\n", 4),
+        ("print 'a'\nx = [8.5e-06, 1E+05, .5e-3, 0xfe-06, 1e5-3]\n", 2),
     ],
 )
 def test_python_2_can_be_parsed_as_python_3_with_the_same_lines(text, number):

@@ -266,6 +266,14 @@ def test_namespaces_of_an_installed_header(repository, compare, old, new, expect
     assert found == ([expected] if expected else [])
 
 
+def test_a_namespace_that_another_header_of_the_package_opens_is_not_lost(repository, compare):
+    path = "arm/include/arm/arm.hpp"
+    other = {"arm/include/arm/tool.hpp": "#pragma once\nnamespace arm {\nint size();\n}\n"}
+    repository.commit({**HEADER_PACKAGE, path: NAMESPACES, **other})
+    repository.write({path: NAMESPACES.replace("namespace arm", "namespace tool")})
+    assert not [sentence for sentence in breaking(compare(repository)) if "namespace" in sentence]
+
+
 ALIASES = """#pragma once
 class Arm {
 public:
@@ -298,3 +306,22 @@ def test_header_that_a_manifest_of_rosbuild_exports_is_an_interface(repository, 
     repository.commit({**files, "arm/include/arm/arm.h": ALIASES})
     repository.write({"arm/include/arm/arm.h": ALIASES.replace("  void move(Speed speed);\n", "")})
     assert breaking(compare(repository)) == ["functions removed: 'Arm::move' (Speed)"]
+
+
+def test_a_node_whose_base_class_gets_its_name_in_braces_is_compared(repository, compare):
+    text = 'Arm::Arm(const rclcpp::NodeOptions & options) : rclcpp::Node{"arm", options} {}\n'
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": text})
+    repository.write({"arm/src/arm.cpp": text.replace('"arm"', '"arms"')})
+    assert breaking(compare(repository)) == ["node 'arm' renamed to 'arms'"]
+
+
+@pytest.mark.parametrize(
+    ("base", "expected"),
+    [("public rclcpp_lifecycle::LifecycleNode", ["node 'arm' renamed to 'arms'"]), ("public Device", [])],
+)
+def test_a_node_whose_own_base_class_gets_its_name_is_compared(repository, compare, base, expected):
+    header = f"#pragma once\nclass BaseNode : {base} {{\npublic:\n  BaseNode(const std::string & name);\n}};\n"
+    source = '#include "arm/base_node.hpp"\nArm::Arm() : arm::BaseNode("arm"), rate_(1) {}\n'
+    repository.commit({**MANIFEST, "arm/include/arm/base_node.hpp": header, "arm/src/arm.cpp": source})
+    repository.write({"arm/src/arm.cpp": source.replace('"arm"', '"arms"')})
+    assert breaking(compare(repository)) == expected

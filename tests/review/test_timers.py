@@ -44,3 +44,18 @@ def test_a_timer_that_moves_to_another_source_is_not_told(repository, compare):
     repository.commit({**MANIFEST, "arm/a.py": PYTHON.format(STEP + STATE), "arm/b.py": PYTHON.format("")})
     repository.write({"arm/a.py": PYTHON.format(STATE), "arm/b.py": PYTHON.format(STEP)})
     assert all("timer" not in text for found in compare(repository).subjects for text in sentences(found))
+
+
+@pytest.mark.parametrize(
+    ("call", "old", "new"),
+    [
+        ("rclcpp::create_timer(this, get_clock(), {}, f)", "rclcpp::Duration(1, 0)", "rclcpp::Duration(2, 0)"),
+        ("rclcpp::create_timer(node_, clock_, {}, f)", "100ms", "200ms"),
+    ],
+)
+def test_the_period_behind_the_node_and_its_clock_is_told(repository, compare, call, old, new):
+    text = "void Arm::f() {{ timer_ = {}; }}\n"
+    repository.commit({**MANIFEST, "arm/a.cpp": text.format(call.format(old))})
+    repository.write({"arm/a.cpp": text.format(call.format(new))})
+    expected = [f"rate or period: create_timer({old}) -> create_timer({new})"]
+    assert sentences(compare(repository).subjects[0]) == expected

@@ -227,24 +227,50 @@ def test_submodule_change_is_a_note(package, compare, tmp_path):
     assert result.notes == []
 
 
+def lose_contents(repository, commit, path):
+    """Remove the contents of a file, which a partial clone may lack."""
+    blob = repository.git("rev-parse", f"{commit}:{path}")
+    (repository.root / ".git/objects" / blob[:2] / blob[2:]).unlink()
+    (repository.root / path).write_bytes(b"")
+
+
+def test_files_of_partial_clone_are_recognized_as_renamed(package, compare):
+    config = "".join(f"key_{number}: {number}\n" for number in range(30))
+    package.commit(
+        {"arm_description/meshes/a.stl": b"solid a\nendsolid a\n", "arm_description/config/arm.yaml": config}
+    )
+    commit = package.commit(
+        {
+            "arm_description/config/arm.yaml": None,
+            "arm_description/config/limits.yaml": config.replace("key_7: 7", "key_7: 8"),
+            "arm_description/meshes/a.stl": None,
+            "arm_description/meshes/link.stl": b"solid a\nendsolid a\n",
+            "arm_description/meshes/b.stl": b"solid b\nendsolid b\n",
+        }
+    )
+    for name in ("link", "b"):
+        lose_contents(package, commit, f"arm_description/meshes/{name}.stl")
+    result = compare(package, "HEAD~1..HEAD")
+    assert breaking(result) == [
+        "renamed from arm_description/config/arm.yaml",
+        "renamed from arm_description/meshes/a.stl",
+    ]
+
+
 def test_missing_file_of_partial_clone_is_a_problem_of_that_file_only(package, compare, tmp_path):
     mesh = package.commit({"arm_description/meshes/a.stl": b"solid a\nendsolid a\n" * 1000})
     package.commit({"arm_description/urdf/segment.xacro": arm_with_mass(3)})
-    blob = package.git("rev-parse", f"{mesh}:arm_description/meshes/a.stl")
-    (package.root / ".git/objects" / blob[:2] / blob[2:]).unlink()
-    (package.root / "arm_description/meshes/a.stl").write_bytes(b"")
+    lose_contents(package, mesh, "arm_description/meshes/a.stl")
     result = compare(package, "HEAD~1..HEAD")
     assert mass_sentences(result) == ["link 'upper': inertial mass 2 -> 3 kg"]
-    assert "git cannot check out one file of 'HEAD~1', such as 'arm_description/meshes/a.stl'" in map(str, result.notes)
+    assert "git cannot check out one file of both versions: 'arm_description/meshes/a.stl'" in map(str, result.notes)
 
 
 def test_a_file_that_git_cannot_check_out_is_not_a_new_finding(package, compare):
     mesh = package.commit({"arm_description/meshes/a.stl": b"solid a\nendsolid a\n" * 1000})
     visual = '<visual><geometry><mesh filename="package://arm_description/meshes/a.stl"/></geometry></visual>'
     package.commit({"arm_description/urdf/tool.urdf": f'<robot name="t"><link name="t">{visual}</link></robot>'})
-    blob = package.git("rev-parse", f"{mesh}:arm_description/meshes/a.stl")
-    (package.root / ".git/objects" / blob[:2] / blob[2:]).unlink()
-    (package.root / "arm_description/meshes/a.stl").write_bytes(b"")
+    lose_contents(package, mesh, "arm_description/meshes/a.stl")
     found = compare(package, "HEAD~1..HEAD").new_findings
     assert [str(finding.message) for finding in found] == []
 

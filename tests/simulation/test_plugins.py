@@ -42,7 +42,6 @@ UNSIMULATED = (
     "log",
     "log-playback",
     "model-photo-shoot",
-    "air-speed",
 )
 
 
@@ -97,6 +96,7 @@ def test_systems_listed_as_built_in_are_simulated():
         assert name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM) or library in (
             *CLASSIC_SYSTEMS,
             *_LIBRARIES_WITHOUT_EFFECT,
+            "ActorCollisionsPlugin",
             "WaveVisual",
             "rmagine_embree_map_gzplugin",
             "rotors_gazebo_ros_interface_plugin",

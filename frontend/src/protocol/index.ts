@@ -144,6 +144,7 @@ import type {
   MotionPlanningState,
   MoveSceneObject,
   RemoveSceneObject,
+  SelectSceneObject,
   SetQueryJoint,
 } from "./motion-planning";
 import type { CommandNavigation, GoalOutcome, NavigationState, WatchNavigation } from "./navigation";
@@ -507,6 +508,7 @@ export type PageMessage =
   | SaveWorld
   | SayCommand
   | SeekTime
+  | SelectSceneObject
   | SetArguments
   | SetJoint
   | SetJoints

@@ -71,6 +71,13 @@ export interface MoveSceneObject {
   type: "move_scene_object";
 }
 
+/** The object of the planning scene that gets a handle; an empty name takes the handle away. */
+export interface SelectSceneObject {
+  display: string;
+  name: string;
+  type: "select_scene_object";
+}
+
 /** The removal of an object from the planning scene. */
 export interface RemoveSceneObject {
   display: string;
@@ -134,6 +141,7 @@ export interface MotionPlanningState {
   pipeline: string;
   planner: string;
   settings: PlanningSettings;
+  draggable: boolean;
   joints: PlannedJoint[];
   unreachable: string[];
   colliding: string[];

@@ -1,11 +1,11 @@
 import type { Connection } from "../connection/connection";
-import type { AddSceneObject, AttachSceneObject, ChoosePlanner, ChooseQueryState, CommandMotion, MotionPlanningState, MoveSceneObject, RemoveSceneObject, SetQueryJoint } from "../protocol";
+import type { AddSceneObject, AttachSceneObject, ChoosePlanner, ChooseQueryState, CommandMotion, MotionPlanningState, MoveSceneObject, RemoveSceneObject, SelectSceneObject, SetQueryJoint } from "../protocol";
 import { Signal } from "../signal";
 import type { DisplayDataStore } from "./display-data";
 import type { DisplaysState } from "./displays";
 
 /** The messages of the panel, to which this adds the display. */
-type PanelMessage = AddSceneObject | AttachSceneObject | ChoosePlanner | ChooseQueryState | CommandMotion | MoveSceneObject | RemoveSceneObject | SetQueryJoint;
+type PanelMessage = AddSceneObject | AttachSceneObject | ChoosePlanner | ChooseQueryState | CommandMotion | MoveSceneObject | RemoveSceneObject | SelectSceneObject | SetQueryJoint;
 export type PanelRequest = PanelMessage extends infer M ? (M extends PanelMessage ? Omit<M, "display"> : never) : never;
 
 /** The state of planning of the MotionPlanning displays; the panel shows the first one that can plan. */

@@ -26,17 +26,6 @@ _RESPONSE_TIMEOUT_S = 5.0
 
 An unresponsive node does not block the others.
 """
-_LABELS_BY_TYPE = {
-    1: ("Boolean value is:", "bool_value"),
-    2: ("Integer value is:", "integer_value"),
-    3: ("Double value is:", "double_value"),
-    4: ("String value is:", "string_value"),
-    5: ("Byte values are:", "byte_array_value"),
-    6: ("Boolean values are:", "bool_array_value"),
-    7: ("Integer values are:", "integer_array_value"),
-    8: ("Double values are:", "double_array_value"),
-    9: ("String values are:", "string_array_value"),
-}
 _USAGE_ERROR = 2
 
 
@@ -137,17 +126,16 @@ def configure_get(parser: argparse.ArgumentParser) -> None:
 
 def run_get(arguments: argparse.Namespace) -> int:
     """Print the value of a parameter, as ros2 does."""
+    from linkwright.graph.parameters.value_text import UNSET_TEXT, format_parameter_value
 
     async def job(session: Session) -> int:
         parameters = await RemoteParameters.of(session, arguments)
         values = await parameters.get_values([arguments.parameter_name])
         if not values or values[0].type == 0:
             await parameters.check_declared([arguments.parameter_name])
-            print("Parameter not set.")
+            print(UNSET_TEXT)
             return 0
-        label, field = _LABELS_BY_TYPE[values[0].type]
-        value = getattr(values[0], field)
-        print(value if arguments.hide_type else f"{label} {value}")
+        print(format_parameter_value(values[0], hide_type=arguments.hide_type))
         return 0
 
     return run_in_graph(arguments, job)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import subprocess
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, foreign, phrase
@@ -23,6 +23,9 @@ _MAX_LFS_POINTER_BYTES = 1024
 _LFS_POINTER = lazy_pattern(
     rb"version https://git-lfs\.github\.com/spec/v1\n(?:[^\n]+\n)*?oid sha256:(?P<hash>[0-9a-f]{64})\n"
 )
+_RAW = ("--raw", "-z", "--no-abbrev")
+_MAX_MISSING_FILES = 500
+"""The maximum number of files without contents that are passed to git."""
 _LINK_MODE = "120000"
 _NO_FILE_MODE = "000000"
 
@@ -53,6 +56,21 @@ class ChangedFile:
     def path(self) -> str:
         """The new path, or the old path of a removed file."""
         return self.new_path or self.old_path or ""
+
+
+@dataclass(frozen=True, slots=True)
+class _RawChange:
+    """A changed file in the output of git.
+
+    Attributes:
+        file: the changed file.
+        old_contents: the mode and hash of the old contents.
+        hashes: the hashes of the contents that git stores.
+    """
+
+    file: ChangedFile
+    old_contents: str
+    hashes: tuple[str, ...]
 
 
 class GitRepository:
@@ -249,8 +267,8 @@ class GitRepository:
     def changed_files(self, old_commit: str, new_commit: str | None = None) -> list[ChangedFile]:
         """Return the files that differ between two commits, sorted by path.
 
-        Renamed files are recognized as git recognizes them, unless the clone lacks the contents of a file. Of several
-        renamed files with equal contents, the old and new paths are paired by their similarity.
+        Renamed files are recognized as git recognizes them; those whose contents the clone lacks, only if they are
+        equal. Of several renamed files with equal contents, the old and new paths are paired by their similarity.
 
         Args:
             old_commit: the hash of the old commit.
@@ -260,20 +278,46 @@ class GitRepository:
         Raises:
             LinkwrightError: CLI346 if git cannot compare them.
         """
-        arguments = ("--raw", "-z", "--no-abbrev")
         commits = [old_commit] if new_commit is None else [old_commit, new_commit]
-        result = self.run("diff", "--no-ext-diff", "--find-renames", *arguments, *commits)
-        if result.returncode != 0:  # a partial clone may lack files, which these commands do not read
-            command = ("diff-index",) if new_commit is None else ("diff-tree", "-r")
-            result = self.run(*command, *arguments, *commits)
+        result = self.run("diff", "--no-ext-diff", "--find-renames", *_RAW, *commits)
+        if result.returncode != 0:
+            result = self._compare_incomplete_commits(commits)
         if result.returncode != 0:
             message = phrase("git cannot compare the commits: {reason}", reason=foreign(result.stderr.strip()))
             raise LinkwrightError(Diagnostic("CLI346", message))
-        files = _pair_equal_files(list(_parse_raw_changes(result.stdout)))
+        files = _pair_equal_files(_parse_raw_changes(result.stdout))
         if new_commit is None:
             names = self.run("ls-files", "--others", "--exclude-standard", "-z").stdout.split("\0")
             files += [ChangedFile(None, name) for name in names if name]
         return sorted(files, key=lambda file: file.path)
+
+    def _compare_incomplete_commits(self, commits: Sequence[str]) -> subprocess.CompletedProcess[str]:
+        """Compare commits of a clone that lacks the contents of files, such as a partial clone.
+
+        To recognize renamed files that were edited, git needs their contents. It therefore compares the files with
+        known contents, and then the others, which it recognizes if they are equal.
+        """
+        command = (*(("diff-index",) if len(commits) == 1 else ("diff-tree", "-r")), *_RAW)
+        result = self.run(*command, *commits)
+        objects = self.run("cat-file", "--batch-all-objects", "--batch-check=%(objectname)")
+        known = set(objects.stdout.split())
+        missing = {
+            path
+            for change in _parse_raw_changes(result.stdout)
+            if not change.file.is_submodule and not known.issuperset(change.hashes)
+            for path in (change.file.old_path, change.file.new_path)
+            if path is not None
+        }
+        if result.returncode != 0 or objects.returncode != 0 or not 0 < len(missing) <= _MAX_MISSING_FILES:
+            return result
+        results = [
+            self.run(*command, option, *commits, "--", *(f":(top,{magic}literal){path}" for path in sorted(missing)))
+            for magic, option in (("exclude,", "--find-renames"), ("", "--find-renames=100%"))
+        ]
+        if any(part.returncode != 0 for part in results):
+            return result
+        result.stdout = "".join(part.stdout for part in results)
+        return result
 
 
 def compute_file_hash(path: Path) -> str:
@@ -299,16 +343,13 @@ def read_lfs_hash(path: Path) -> str | None:
     return match["hash"].decode() if match else None
 
 
-def _pair_equal_files(files: Sequence[tuple[str, ChangedFile]]) -> list[ChangedFile]:
-    """Return the changed files, with the renamed files of equal contents paired by their paths.
-
-    Args:
-        files: the changed files, each with the mode and hash of its old contents.
-    """
+def _pair_equal_files(changes: Iterable[_RawChange]) -> list[ChangedFile]:
+    """Return the changed files, with the renamed files of equal contents paired by their paths."""
     groups: dict[str, list[ChangedFile]] = {}
-    for contents, file in files:
+    for change in changes:
+        file = change.file
         is_moved = file.old_path is not None and file.old_path != file.new_path
-        groups.setdefault(contents if is_moved else file.path, []).append(file)
+        groups.setdefault(change.old_contents if is_moved else file.path, []).append(file)
     paired: list[ChangedFile] = []
     for group in groups.values():
         old_paths = [file.old_path for file in group if file.old_path]
@@ -324,8 +365,8 @@ def _pair_equal_files(files: Sequence[tuple[str, ChangedFile]]) -> list[ChangedF
     return paired
 
 
-def _parse_raw_changes(text: str) -> Iterator[tuple[str, ChangedFile]]:
-    """Yield the files in the output of ``git diff --raw -z``, each with the mode and hash of its old contents.
+def _parse_raw_changes(text: str) -> Iterator[_RawChange]:
+    """Yield the files in the output of ``git diff --raw -z``.
 
     A file is ``:OLDMODE NEWMODE OLDHASH NEWHASH STATUS``, a path and, if it was renamed, its new path. Each of them
     ends with a null byte.
@@ -334,7 +375,7 @@ def _parse_raw_changes(text: str) -> Iterator[tuple[str, ChangedFile]]:
     for header in fields:
         if not header:
             return
-        old_mode, new_mode, old_hash, _, status = header.lstrip(":").split(" ")
+        old_mode, new_mode, old_hash, new_hash, status = header.lstrip(":").split(" ")
         old_path = new_path = next(fields)
         if status.startswith(("R", "C")):
             new_path = next(fields)
@@ -344,4 +385,5 @@ def _parse_raw_changes(text: str) -> Iterator[tuple[str, ChangedFile]]:
             _SUBMODULE_MODE in (old_mode, new_mode),
             new_mode == _PROGRAM_MODE if {old_mode, new_mode} == {_PROGRAM_MODE, _PLAIN_MODE} else None,
         )
-        yield f"{old_mode} {old_hash}", file
+        hashes = tuple(name for name in (old_hash, new_hash) if name.strip("0"))
+        yield _RawChange(file, f"{old_mode} {old_hash}", hashes)

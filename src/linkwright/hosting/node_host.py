@@ -100,6 +100,11 @@ class NodeHost:
             self.join_network_soon()
         return self._launcher
 
+    def find_node(self, full_name: str) -> Node | None:
+        """Return the node with a full name that runs in this process, or None."""
+        nodes = (running.node for _, running in self._running.values())
+        return next((node for node in nodes if node.get_fully_qualified_name() == full_name), None)
+
     def use_simulated_time(self, value: bool) -> None:
         """Set whether the launcher's own node follows ``/clock`` or system time."""
         from linkwright.graph import Parameter
@@ -148,6 +153,8 @@ class NodeHost:
             while self._planned and not self._is_closing:
                 plan = next((hosted_plan for hosted_plan in self._planned if hosted_plan.is_viewer), self._planned[0])
                 self._planned.remove(plan)
+                if self._session.postpones(plan):
+                    continue
                 self._destinations[plan.process_name] = plan.destinations[2]
                 with_world = any(hosted_plan.opens_gazebo_window for hosted_plan in self._planned)
                 if plan.is_viewer:

@@ -246,6 +246,9 @@ class Supervisor(Protocol):
     def shut_down(self, reason: str) -> None:
         """End the run when the current work is done."""
 
+    def postpones(self, plan: HostedPlan) -> bool:
+        """Return whether a node cannot start yet. Then the run schedules it again later."""
+
     def report_node_start(self, plan: HostedPlan) -> None:
         """Report that a node or viewer has started."""
 

@@ -340,6 +340,10 @@ class ModelView:
         """Clear a failure whose cause has been fixed."""
         self._failures.discard(failure)
 
+    def postpones(self, plan: HostedPlan) -> bool:
+        """Return False, because a view has no processes for which a node would have to wait."""
+        return False
+
     def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
         """Run a coroutine in the background.
 

@@ -24,6 +24,7 @@ ON_DEMAND = (
                 _MOTIONS,
                 "AddSceneObject",
                 "AttachSceneObject",
+                "SelectSceneObject",
                 "ChoosePlanner",
                 "ChooseQueryState",
                 "CommandMotion",

@@ -25,6 +25,10 @@ from linkwright.planning.robot_model import PlacedShape, RobotModel
 
 _MAX_GOALS = 6
 """The maximum number of configurations in which a planner may end."""
+_MAX_REPEATS = 20
+"""The number of attempts in a row without a new configuration after which the search ends; many arms have few."""
+_REPEATS_PER_FAILURE = 5
+"""How many repeats an attempt counts that finds nothing, because it takes longer."""
 _DISTINCT = 0.05
 """The distance between two configurations, in rad or m over all joints, above which they count as different."""
 
@@ -163,20 +167,25 @@ def goal_configurations(
     deadline = elapsed_s() + timeout_s
     found: list[Array] = []
     attempt: np.random.Generator | None = None
-    origin = positions
-    while len(found) < _MAX_GOALS and (remaining := deadline - elapsed_s()) > 0.0 and not is_canceled():
+    origin, repeats = positions, 0
+    while len(found) < _MAX_GOALS and repeats < _MAX_REPEATS and not is_canceled():
+        if (remaining := deadline - elapsed_s()) <= 0.0:
+            return
         pose = target.sample(attempt, current)
         solution = solver.solve(pose, origin, min(remaining, 0.05), is_valid)
         spend(ATTEMPT_S)
-        attempt = random
+        attempt = random if attempt is None else None  # Arms with few joints reach hardly another pose of the region.
         origin = start.copy()
         origin[solver.indexes] = group.sample(random)
-        if solution is None or any(np.linalg.norm(solution - other) < _DISTINCT for other in found):
+        repeats += bool(found) * (1 if solution is not None else _REPEATS_PER_FAILURE)
+        if solution is None:
             continue
         solution[solver.indexes] = group.unwind(solution[solver.indexes], start[solver.indexes])
-        if goal.is_met(model, solution):
-            found.append(solution)
-            yield solution
+        if any(np.linalg.norm(solution - other) < _DISTINCT for other in found) or not goal.is_met(model, solution):
+            continue
+        repeats = 0
+        found.append(solution)
+        yield solution
 
 
 def _sample_point(region: PlacedShape, random: np.random.Generator) -> Array:

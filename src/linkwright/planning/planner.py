@@ -73,9 +73,13 @@ class PlanError(Exception):
     """
 
     def __init__(self, failure: Failure, contacts: Sequence[Contact] = (), reason: str = "") -> None:
-        super().__init__(reason or failure.value)
+        super().__init__(failure, contacts, reason)  # Pickle calls the class with these.
         self.failure = failure
         self.contacts = contacts
+        self._reason = reason
+
+    def __str__(self) -> str:
+        return self._reason or self.failure.value
 
 
 @dataclass(frozen=True, slots=True, eq=False)

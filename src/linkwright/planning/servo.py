@@ -15,6 +15,7 @@ from enum import Enum
 from math import exp, inf, log
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array
 from linkwright.planning.groups import JointGroup
@@ -83,6 +84,8 @@ class Servo:
         condition: the reason why the motion is slowed or halted.
         collision_scale: the share of the velocities that is allowed by collisions, see `set_clearances`.
         halts_all_joints: whether all joints halt when one of them must.
+        drifts: in which dimensions the velocity of the tip is free, so that the others are easier to reach: linear and
+            angular along and about x, y and z of the root link, shape (6,). One that is not free is left at least.
     """
 
     def __init__(self, model: RobotModel, group: JointGroup, settings: ServoSettings) -> None:
@@ -92,6 +95,7 @@ class Servo:
         self.positions: Array = np.zeros(len(model.joint_names))
         self.collision_scale = 1.0
         self.halts_all_joints = True
+        self.drifts: NDArray[np.bool_] = np.zeros(6, dtype=bool)
         self.reset(self.positions)
 
     @property
@@ -135,7 +139,7 @@ class Servo:
         """
         middle = self.positions.copy()  # The Jacobian in the middle of the step keeps the tip on a straight line.
         middle[self._indexes] += 0.5 * self._settings.publish_period * self.velocities
-        jacobian = self._jacobian(middle)
+        jacobian, twist = self._jacobian(middle), twist[self._kept_dimensions()]
         left, values, right = np.linalg.svd(jacobian, full_matrices=False)
         if values[-1] <= 0.0:
             self._step(np.zeros(len(self._indexes)), Condition.HALT_FOR_SINGULARITY)
@@ -185,8 +189,8 @@ class Servo:
         """Return the share of the velocity that is allowed, and why.
 
         Args:
-            twist: the velocity of the tip, shape (6,).
-            weakest: the direction in which the tip moves least, shape (6,).
+            twist: the velocity of the tip in the dimensions in which it must not drift, shape (dimensions,).
+            weakest: the direction in which the tip moves least, of the same shape.
             inverse: the pseudo-inverse of the Jacobian.
             number: the condition number of the Jacobian.
         """
@@ -207,12 +211,20 @@ class Servo:
         share = (number - lower) / ((hard_stop - lower) * settings.leaving_singularity_threshold_multiplier)
         return max(0.0, 1.0 - share), Condition.DECELERATE_FOR_LEAVING_SINGULARITY
 
+    def _kept_dimensions(self) -> NDArray[np.intp]:
+        """Return the indexes of the dimensions in which the tip must not drift."""
+        return np.flatnonzero(~self.drifts) if not np.all(self.drifts) else np.zeros(1, dtype=np.intp)
+
     def _jacobian(self, positions: Array) -> Array:
-        """Return the Jacobian of the tip in the frame of the root link, shape (6, joints)."""
+        """Return the Jacobian of the tip in the frame of the root link, shape (dimensions, joints).
+
+        It lacks the rows of dimensions in which the tip may drift.
+        """
         assert self._group.tip is not None, "only groups with a tip have velocities of the tip"
         mujoco, model, data = load_mujoco(), self._model.mujoco_model, self._model.data
         self._model.move(positions)
         mujoco.mj_comPos(model, data)
         jacobian = np.zeros((6, model.nv))
         mujoco.mj_jacBody(model, data, jacobian[:3], jacobian[3:], self._model.body(self._group.tip))
-        return jacobian[:, self._dofs]
+        kept: Array = jacobian[np.ix_(self._kept_dimensions(), self._dofs)]
+        return kept

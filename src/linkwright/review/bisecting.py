@@ -102,12 +102,8 @@ class History:
         Raises:
             LinkwrightError: REV113, the oldest or the newest commit cannot be judged.
         """
-        try:
-            outcome = judge(self.new)
-            is_unchanged = judge(self.old) == outcome
-        except UndecidedError as error:
-            raise self._make_undecided_error(error) from error.__cause__
-        if is_unchanged:
+        outcome = self._judge_end(judge, self.new)
+        if self._judge_end(judge, self.old) == outcome:
             return None
         first, earlier = self.new, [self.old]
         undecided: set[str] = set()
@@ -153,14 +149,28 @@ class History:
             hint = SHALLOW_HINT
         raise LinkwrightError(Diagnostic("REV114", message, hint=hint))
 
-    def _make_undecided_error(self, error: UndecidedError) -> LinkwrightError:
-        """Return the error for an oldest or newest commit that cannot be judged."""
+    def _judge_end(self, judge: Callable[[str], bool], commit: str) -> bool:
+        """Return the outcome of the oldest or newest commit.
+
+        Raises:
+            LinkwrightError: REV113, the commit cannot be judged.
+        """
+        try:
+            return judge(commit)
+        except UndecidedError as error:
+            raise self._make_undecided_error(commit, error) from error.__cause__
+
+    def _make_undecided_error(self, commit: str, error: UndecidedError) -> LinkwrightError:
         cause = error.__cause__
         notes = (
             tuple(Note(finding.message) for finding in cause.diagnostics) if isinstance(cause, LinkwrightError) else ()
         )
-        message = phrase("the oldest or the newest commit cannot be judged")
-        hint = phrase("name commits that can be judged with `--old` and `--new`")
+        title = self._read_title(commit)
+        message = phrase("the oldest commit cannot be judged: {title}", title=title)
+        hint = phrase("name a later commit that can be judged: `--old COMMIT`")
+        if commit == self.new:
+            message = phrase("the newest commit cannot be judged: {title}", title=title)
+            hint = phrase("name an earlier commit that can be judged: `--new COMMIT`")
         return LinkwrightError(Diagnostic("REV113", message, notes=notes, hint=hint))
 
     def _list_candidates(self, first: str, earlier: Sequence[str]) -> list[str]:

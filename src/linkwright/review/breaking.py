@@ -8,7 +8,7 @@ from collections.abc import Collection
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, interfaces_of
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.joint_limits import find_limited_reason
-from linkwright.review.names_in_plugins import NAME_TAGS, extract_used_name
+from linkwright.review.names_in_plugins import NAME_TAGS, NAMESPACE_TAG, extract_used_name
 from linkwright.urdf import Robot
 
 MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
@@ -92,7 +92,7 @@ def find_extension_reason(difference: Difference, lost: Collection[tuple[str, st
     """
     if difference.name.startswith(ROS2_CONTROL):
         return _find_hardware_reason(difference, lost)
-    return find_plugin_name_reason(difference) if difference.kind == "changed" and difference.old else None
+    return find_plugin_name_reason(difference) if difference.kind == "changed" and difference.old is not None else None
 
 
 def _find_hardware_reason(difference: Difference, lost: Collection[tuple[str, str]] | None) -> Phrase | None:
@@ -127,9 +127,18 @@ def find_plugin_name_reason(difference: Difference) -> Phrase | None:
     is_same_name = difference.new is not None and extract_used_name(difference.old or "") == extract_used_name(
         difference.new
     )
+    if NAMESPACE_TAG.search(tag) and (difference.old or difference.property.endswith("ros namespace")):
+        return None if is_same_name else _namespace_reason(extract_used_name(difference.old or ""))
     if difference.old and NAME_TAGS.search(tag) and not is_same_name:
         return name_reason(extract_used_name(difference.old))
     return None
+
+
+def _namespace_reason(name: str) -> Phrase:
+    """Return the reason why another namespace of a plugin is breaking."""
+    return phrase(
+        "programs do not find the topics and services of the plugin in the namespace '{name}'", name=name or "/"
+    )
 
 
 def world_reason(name: str) -> Phrase:

@@ -12,14 +12,22 @@ from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.excerpts import differing_excerpts, shorten
-from linkwright.review.versions import Versions
+from linkwright.review.versions import Version, Versions
 
-_SUFFIXES = frozenset({".sh", ".bash", ".zsh", ".rules", ".service", ".dockerfile"})
+_SHELL_SUFFIXES = frozenset({".sh", ".bash", ".zsh"})
+_UNIT_SUFFIX = ".service"
+_SUFFIXES = _SHELL_SUFFIXES | {".rules", _UNIT_SUFFIX, ".dockerfile"}
+_HEAD_BYTES = 100
 _FILE_NAME = re.compile(
     r"(.*\.)?(docker|container)file(\..*)?|\w*(packages?|apt|requirements?|dependencies)\w*\.txt|\.env"
 )
 _PACKAGE = re.compile(r"[A-Za-z0-9][\w.+:~<>=!-]*")
 """A line of a list of packages."""
+_SHELL = re.compile(rb"#![^\n]*/(?:env[ \t]+)?(?:ba|z|da)?sh\b")
+"""The first line of a shell script, whose name may have no suffix."""
+_UNIT_COMMAND = re.compile(r"Exec\w+=")
+"""The lines of a unit of systemd that start programs."""
+_ROS_COMMAND = re.compile(r"\b(?:ros2 (?:run|launch)|rosrun|roslaunch)\b.*")
 _MAX_LINES = 6
 """The maximum number of changed lines that are shown, except in a list of packages."""
 _MAX_LINE_LENGTH = 160
@@ -32,7 +40,7 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
 
     Comments and empty lines are left out. If there are many lines, only their number is given.
     """
-    if file.old_path is None or file.new_path is None or file.is_submodule or not _has_lines(file.path):
+    if file.old_path is None or file.new_path is None or file.is_submodule or not _has_lines(versions.new, file.path):
         return None
     paths = versions.old.file(file.old_path), versions.new.file(file.new_path)
     try:
@@ -58,6 +66,22 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
     return _format_lines(*counts)
 
 
+def list_commands(version: Version, path: str) -> Phrase | None:
+    """Return the first commands of an added or removed shell script or unit of systemd, or None for other files."""
+    is_unit = path.endswith(_UNIT_SUFFIX)
+    if not is_unit and not _is_shell_script(version, path):
+        return None
+    lines = [*_split_content_lines(version.text(path))]
+    lines = [_find_started_program(line) for line in lines if _UNIT_COMMAND.match(line)] if is_unit else lines
+    return joined_first([f"`{shorten(line, _MAX_LINE_LENGTH)}`" for line in lines], _MAX_LINES) if lines else None
+
+
+def _find_started_program(line: str) -> str:
+    """Return the part of a command that starts a program of ROS, or the whole command."""
+    match = _ROS_COMMAND.search(line)
+    return line if match is None else match[0].rstrip("'\"")
+
+
 def _format_lines(added: Phrase | str, removed: Phrase | str) -> Phrase:
     parts = [phrase("{items} added", items=added)] if added else []
     if removed:
@@ -65,9 +89,21 @@ def _format_lines(added: Phrase | str, removed: Phrase | str) -> Phrase:
     return joined(parts, "; ")
 
 
-def _has_lines(path: str) -> bool:
+def _has_lines(version: Version, path: str) -> bool:
     name = PurePosixPath(path).name.lower()
-    return PurePosixPath(name).suffix in _SUFFIXES or _FILE_NAME.fullmatch(name) is not None
+    is_known = PurePosixPath(name).suffix in _SUFFIXES or _FILE_NAME.fullmatch(name) is not None
+    return is_known or _is_shell_script(version, path)
+
+
+def _is_shell_script(version: Version, path: str) -> bool:
+    """Return whether a file is a shell script by its suffix or its first line."""
+    if PurePosixPath(path).suffix in _SHELL_SUFFIXES:
+        return True
+    try:
+        with version.file(path).open("rb") as file:
+            return _SHELL.match(file.read(_HEAD_BYTES)) is not None
+    except OSError:
+        return False
 
 
 def _split_content_lines(text: str) -> Iterable[str]:

@@ -43,6 +43,7 @@ class SubjectKind(Enum):
     MESH = "mesh"
     SCENARIO = "scenario"
     SEMANTICS = "semantic description"
+    BEHAVIOR_TREE = "behavior tree"
     PART = "part of descriptions"
     PLUGINS = "plugin description"
     SOURCE = "node source"
@@ -85,6 +86,7 @@ class Change:
         other_names: the names of other links, joints or extensions that change in the same way.
         other_locations: the locations of their values, if they differ from the first location.
         path_change: how the path of the file changed; None for other changes.
+        is_code: whether the change only names functions and classes with other code.
     """
 
     sentence: Phrase
@@ -95,6 +97,7 @@ class Change:
     other_names: tuple[str, ...] = ()
     other_locations: tuple[Location, ...] = ()
     path_change: PathChange | None = None
+    is_code: bool = False
 
     @property
     def name(self) -> str:

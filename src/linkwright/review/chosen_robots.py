@@ -11,8 +11,8 @@ from linkwright.diagnostics import joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.breaking import frame_reason
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
+from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
-from linkwright.review.launches.formats import is_launch_file
 from linkwright.review.launches.included import MAX_INCLUDE_DEPTH, IncludedActions, IncludedFile
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
 from linkwright.review.launches.programs import try_read_outline

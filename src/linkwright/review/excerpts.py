@@ -20,6 +20,8 @@ _MAX_DIFFERENCE = 400
 _MAX_EXCERPT = 900
 """The number of characters after which no further difference is shown."""
 _MAX_TOKENS = 3000
+_SEPARATORS = (", ", "; ", "，", "；", "、")
+"""The separators of items, in English and Chinese."""
 _TOKEN = re.compile(r"\w+|\s+|[^\w\s]")
 
 
@@ -35,13 +37,14 @@ class _Part(NamedTuple):
 
 
 def shorten(text: str, limit: int) -> str:
-    """Return a text, cut after a whole item if it is longer than a number of characters."""
+    """Return a text, cut after a whole item or word if it is longer than a number of characters."""
     if len(text) <= limit:
         return text
-    item_end, word_end = text.rfind(", ", limit // 2, limit), text.rfind(" ", limit // 2, limit)
-    if item_end > 0:
-        return f"{text[:item_end]}, ..."
-    return f"{text[:word_end]} ..." if word_end > 0 else f"{text[:limit]}..."
+    end, separator = max((text.rfind(separator, limit // 2, limit), separator) for separator in _SEPARATORS)
+    if end > 0:
+        return f"{text[:end]}{separator.rstrip()} ..."
+    end = text.rfind(" ", limit // 2, limit)
+    return f"{text[:end]} ..." if end > 0 else f"{text[:limit]}..."
 
 
 def shorten_middle(text: str, limit: int) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError, Phrase, phrase
@@ -13,8 +14,11 @@ from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
 from linkwright.review.installed_paths import keeps_installed_path, keeps_type
 from linkwright.review.kinds import KindRule, adapt_rule_to_contents
 from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot
-from linkwright.review.users.unused_test_files import is_unused_test_file
+from linkwright.review.users.unused_test_files import is_test_file, is_unused_test_file
 from linkwright.review.versions import Version, Versions
+
+_TESTED_KINDS = (SubjectKind.PARAMETERS, SubjectKind.LAUNCH_FILE)
+"""The kinds of files whose changes are not breaking if only tests use the files."""
 
 
 def compare_file(
@@ -29,7 +33,9 @@ def compare_file(
         new_path: the path in the new version; None for a removed file.
         drawings: the kinds of drawings of robots that look different.
     """
+    is_test = rule.kind in _TESTED_KINDS and old_path is not None and is_test_file(versions.old, old_path)
     if old_path is None or new_path is None:
+        rule = replace(rule, removal_reason=None) if is_test else rule
         return _describe_unpaired_file(versions, rule, old_path, new_path, drawings)
     pair = FilePair(versions, old_path, new_path, drawings)
     try:
@@ -38,6 +44,11 @@ def compare_file(
         rule.compare(pair)
     except Exception as error:  # noqa: BLE001 - the other files are still compared
         pair.problems.append(make_problem(error))
+    if is_test and not pair.is_lost:  # no other package uses its names
+        pair.changes = [
+            change if change.path_change is not None else replace(change, effect=Effect.CHANGED, reason=None)
+            for change in pair.changes
+        ]
     return Subject(
         rule.kind,
         new_path,

@@ -142,7 +142,8 @@ class FilePair:
             cases: the names of the argument sets with which the description cannot be read; empty for all.
         """
         if old is not None and new is not None:
-            if (old.reason, old.path) == (new.reason, new.path):
+            is_same_file = (old.path, new.path) == (self.old_path, self.new_path) or old.path == new.path
+            if is_same_file and old.reason == new.reason:
                 self._add(Problem(phrase("neither version can be read: {reason}", reason=new.text), is_of_both=True))
             else:
                 self.add_unreadable(self.versions.old, old, is_of_both=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
@@ -14,6 +14,7 @@ from linkwright.lint.known_findings import count_keys, find_new_findings
 from linkwright.lint.targets import DESCRIPTION_SUFFIXES, Targets
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.folders import finding_with_package_uris, without_folder
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version, Versions
 
 
@@ -49,8 +50,7 @@ def find_findings(version: Version, targets: Targets) -> Findings:
         files.update(path for file in (checked.path, *included) if (path := version.relative(file)) is not None)
 
     diagnostics, _ = version.checker().check(targets, [version.root], add_files)
-    shares = {name: share for name, share in version.shares.items() if not share.is_relative_to(version.root)}
-    findings = [finding_with_package_uris(finding, shares) for finding in diagnostics]
+    findings = [finding_with_package_uris(finding, version.installed_shares) for finding in diagnostics]
     return Findings(findings, frozenset(files), frozenset(errors))
 
 
@@ -99,8 +99,8 @@ def compare_findings(
     """Return the new and the fixed findings: those that only one of the versions has.
 
     A finding in a description that the other version could not read, or that no robot there includes, may be
-    as old as the file. It is neither new nor fixed. The same holds for a finding that moved to another file, and for
-    one about a file that git cannot check out.
+    as old as the file. It is neither new nor fixed. The same holds for a finding that moved to another file, for one
+    that only names a package by its new name, and for one about a file that git cannot check out.
 
     Args:
         versions: both versions.
@@ -122,7 +122,10 @@ def compare_findings(
         ]
         for version, own, other, other_version, names in sides
     )
-    return _drop_moved(added, fixed), _drop_moved(fixed, added)
+    rename = PackageNames(find_renamed_packages(versions)).rename_derived
+    added_keys = [(finding.code, str(finding.message)) for finding in added]
+    fixed_keys = [(finding.code, rename(str(finding.message))) for finding in fixed]
+    return _drop_moved(added, added_keys, fixed_keys), _drop_moved(fixed, fixed_keys, added_keys)
 
 
 def _names_missing_file(finding: Diagnostic, version: Version) -> bool:
@@ -134,20 +137,24 @@ def _names_missing_file(finding: Diagnostic, version: Version) -> bool:
     return any(path in str(finding.message) for path in missing)
 
 
-def _drop_moved(findings: Sequence[Diagnostic], others: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Return the findings that the other version does not have in another file."""
-    counts = Counter(map(_get_message_key, others))
+def _drop_moved(
+    findings: Sequence[Diagnostic], keys: Sequence[Hashable], other_keys: Sequence[Hashable]
+) -> list[Diagnostic]:
+    """Return the findings that the other version does not have in another file.
+
+    Args:
+        findings: the findings that one version does not have in the same file.
+        keys: the code and message of each, with the new names of packages.
+        other_keys: those of the findings of the other version.
+    """
+    counts = Counter(other_keys)
     result = []
-    for finding in findings:
-        if counts[_get_message_key(finding)] > 0:
-            counts[_get_message_key(finding)] -= 1
+    for finding, key in zip(findings, keys, strict=True):
+        if counts[key] > 0:
+            counts[key] -= 1
         else:
             result.append(finding)
     return result
-
-
-def _get_message_key(finding: Diagnostic) -> tuple[str, str]:
-    return finding.code, str(finding.message)
 
 
 def _invert(names: Mapping[str, str]) -> dict[str, str]:

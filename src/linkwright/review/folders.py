@@ -35,13 +35,19 @@ def finding_with_package_uris(finding: Diagnostic, shares: Mapping[str, Path]) -
         finding: the finding to change.
         shares: the share folders outside the version, such as those that show installed files, by package.
     """
+    return _change_finding(finding, _make_uri_writer(shares))
+
+
+def _make_uri_writer(shares: Mapping[str, Path]) -> Callable[[str], str]:
+    """Return a function that replaces paths in share folders in a text by URIs."""
 
     def change(text: str) -> str:
         for name, share in shares.items():
-            text = text.replace(f"{share}/", f"package://{name}/")
+            uri = f"package://{name}/"
+            text = text.replace(f"file://{share}/", uri).replace(f"{share}/", uri)
         return text
 
-    return _change_finding(finding, change)
+    return change
 
 
 def _change_texts(value: _Value, change: Callable[[str], str]) -> _Value:
@@ -63,41 +69,47 @@ def _change_texts(value: _Value, change: Callable[[str], str]) -> _Value:
     return value
 
 
-def review_without_folder(result: Review, folder: Path) -> Review:
-    """Return a review with its texts changed by `without_folder`."""
+def review_without_folder(result: Review, folder: Path, shares: Mapping[str, Path]) -> Review:
+    """Return a review with its texts changed by `without_folder`, and with URIs in place of paths in share folders.
+
+    Args:
+        result: the review.
+        folder: the folder of a version.
+        shares: the share folders outside the version, by package.
+    """
+    write_uris = _make_uri_writer(shares)
+
+    def change(text: str) -> str:
+        return without_folder(write_uris(text), folder)
+
     return replace(
         result,
-        subjects=[_remove_folder_from_subject(subject, folder) for subject in result.subjects],
-        new_findings=[_remove_folder_from_finding(finding, folder) for finding in result.new_findings],
-        fixed_findings=[_remove_folder_from_finding(finding, folder) for finding in result.fixed_findings],
-        notes=[without_folder(note, folder) for note in result.notes],
+        subjects=[_change_subject(subject, change) for subject in result.subjects],
+        new_findings=[_change_finding(finding, change) for finding in result.new_findings],
+        fixed_findings=[_change_finding(finding, change) for finding in result.fixed_findings],
+        notes=[_change_texts(note, change) for note in result.notes],
     )
 
 
-def _remove_folder_from_subject(subject: Subject, folder: Path) -> Subject:
+def _change_subject(subject: Subject, change_text: Callable[[str], str]) -> Subject:
     return replace(
         subject,
         changes=[
             replace(
                 change,
-                sentence=without_folder(change.sentence, folder),
-                reason=without_folder(change.reason, folder),
-                cases=without_folder(change.cases, folder),
+                sentence=_change_texts(change.sentence, change_text),
+                reason=_change_texts(change.reason, change_text),
+                cases=_change_texts(change.cases, change_text),
             )
             for change in subject.changes
         ],
         figures=[
-            replace(figure, old=without_folder(figure.old, folder), new=without_folder(figure.new, folder))
+            replace(figure, old=_change_texts(figure.old, change_text), new=_change_texts(figure.new, change_text))
             for figure in subject.figures
         ],
-        problems=[replace(problem, text=without_folder(problem.text, folder)) for problem in subject.problems],
-        cases=[without_folder(case, folder) for case in subject.cases],
+        problems=[replace(problem, text=_change_texts(problem.text, change_text)) for problem in subject.problems],
+        cases=[_change_texts(case, change_text) for case in subject.cases],
     )
-
-
-def _remove_folder_from_finding(finding: Diagnostic, folder: Path) -> Diagnostic:
-    """Return a finding with its texts changed by `without_folder`."""
-    return _change_finding(finding, lambda text: without_folder(text, folder))
 
 
 def _change_finding(finding: Diagnostic, change: Callable[[str], str]) -> Diagnostic:

@@ -12,6 +12,7 @@ from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.changes import SubjectKind
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.behavior_trees import compare_behavior_trees, tree_contents
 from linkwright.review.files.build_contents import build_contents
 from linkwright.review.files.build_facts import BuildFacts
 from linkwright.review.files.cmake_files import CMAKE_FILE, compare_cmake_files, read_cmake_facts
@@ -42,7 +43,7 @@ from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files,
 from linkwright.review.files.templates import TEMPLATE_SUFFIXES
 from linkwright.review.files.worlds import compare_worlds, is_model, world_contents
 from linkwright.review.launches.contents import launch_contents
-from linkwright.review.launches.files import compare_launch_files
+from linkwright.review.launches.files import compare_launch_files, compare_launch_tests
 from linkwright.review.robots.descriptions import compare_descriptions
 from linkwright.review.robots.semantics import SUFFIX, compare_expanded_semantics
 from linkwright.review.versions import TEST_FOLDERS, Version
@@ -258,6 +259,19 @@ LAUNCH_HELPER = KindRule(
 """The rule for Python modules that make actions for launch files."""
 
 
+BEHAVIOR_TREE = KindRule(
+    SubjectKind.BEHAVIOR_TREE,
+    compare_behavior_trees,
+    (".xml",),
+    phrase("behavior tree added"),
+    phrase("behavior tree removed"),
+    phrase("programs and parameter files that name the file do not find it"),
+    contents=tree_contents,
+    shows_removed=True,
+)
+"""The rule for XML files that contain behavior trees."""
+
+
 MAP = KindRule(
     SubjectKind.MAP,
     compare_map_files,
@@ -272,6 +286,18 @@ MAP = KindRule(
 
 LAUNCH_FILE = next(rule for rule in _RULES if rule.kind is SubjectKind.LAUNCH_FILE)
 """The rule for launch files, including XML files that other launch files include."""
+
+
+LAUNCH_TEST = KindRule(
+    SubjectKind.LAUNCH_FILE,
+    compare_launch_tests,
+    (".test",),
+    phrase("test added"),
+    phrase("test removed"),
+    contents=launch_contents,
+    shows_removed=True,
+)
+"""The rule for launch files that tests of ROS 1 run."""
 
 
 def may_help_launch_files(path: str) -> bool:

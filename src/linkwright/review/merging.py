@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, phrase
@@ -13,6 +13,9 @@ _PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+) (?P<property>.+)")
 """A property of hardware of ros2_control below one of its joints, GPIOs or sensors."""
 _PARAMETER = re.compile(r"(?P<parent>(?:.* )?)(?P<parameter>param \S+)")
 """A parameter of hardware of ros2_control, or of one of its joints, as a whole."""
+_INTERFACE = re.compile(r"(?P<parent>(?:.* )?(?:command|state)_interface) \S+")
+"""An interface of ros2_control as a whole."""
+_NO_VALUES = ("None", "None")
 _TRANSMISSION = "transmission "
 _PART_OF_TRANSMISSION = re.compile(r"(joint|actuator) \S+")
 """A joint or motor of a transmission. Its name differs in each transmission."""
@@ -39,7 +42,28 @@ def merge_changes(changes: Iterable[Change]) -> list[Change]:
             content = key(change) if change.name else None
             groups.setdefault(number if content is None else (content, change.cases), []).append(change)
         changes = [group[0] if len(group) == 1 else _merge_group(group, names) for group in groups.values()]
-    return list(changes)
+    return _merge_interfaces(list(changes))
+
+
+def _merge_interfaces(changes: Sequence[Change]) -> list[Change]:
+    """Return the changes, with added or removed interfaces of the same joint or sensor in one line."""
+    groups: dict[Hashable, list[Change]] = {}
+    for number, change in enumerate(changes):
+        key: Hashable = number
+        interface = _INTERFACE.fullmatch(change.property_name)
+        if interface is not None and change.core is change.sentence and change.values[2:] == _NO_VALUES:
+            content = change.effect, change.name, change.other_names, change.core.template, change.cases
+            key = *content, interface["parent"], change.reason is None
+        groups.setdefault(key, []).append(change)
+    return [group[0] if len(group) == 1 else _join_interfaces(group) for group in groups.values()]
+
+
+def _join_interfaces(changes: Sequence[Change]) -> Change:
+    first = changes[0]
+    names = [change.property_name.rpartition(" ")[2] for change in changes]
+    parent = first.property_name.rpartition(" ")[0]
+    sentence = first.sentence.with_arguments(property=f"{parent} {', '.join(names)}")
+    return replace(first, sentence=sentence, reason=merge_reasons(change.reason for change in changes))
 
 
 def merge_reasons(reasons: Iterable[Phrase | None]) -> Phrase | None:

@@ -8,6 +8,8 @@ from linkwright.descriptions.comparison import Difference
 
 NAME_TAGS = re.compile(r"topic|namespace|frame(?!_?(rate|skip|count))|remapping|\bservice", re.IGNORECASE)
 """The tags of parameters with names in the graph or in tf."""
+NAMESPACE_TAG = re.compile(r"namespace", re.IGNORECASE)
+"""The tags of the namespaces of plugins."""
 
 
 def extract_used_name(value: str) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.changes import Subject
+from linkwright.review.versions import Version
 
 _MAX_NAMES = 5
 """The maximum number of missing packages and files that a note names."""
@@ -60,6 +61,40 @@ def group_equal_problems(subjects: Sequence[Subject]) -> tuple[list[Subject], li
     ]
     grouped = {subject.path for group in groups.values() for subject in group}
     return [subject for subject in subjects if subject.path not in grouped], notes
+
+
+def make_checkout_notes(versions: Sequence[Version]) -> Iterator[Phrase]:
+    """Yield a note about symbolic links that are ignored, and notes about files that git cannot check out.
+
+    What both versions have in common is one note.
+    """
+    commits = [(version.name, version.commit) for version in versions if version.commit is not None]
+    links = max((commit.removed_links for _, commit in commits), key=len, default=())
+    if links:
+        yield counted(
+            "symbolic link '{path}' points outside the repository and is ignored",
+            "{count} symbolic links, such as '{path}', point outside the repository and are ignored",
+            len(links),
+            path=links[0],
+        )
+    missing = [(name, commit.missing_files) for name, commit in commits if commit.missing_files]
+    if len(missing) > 1 and len({tuple(files) for _, files in missing}) == 1:
+        files = missing[0][1]
+        yield counted(
+            "git cannot check out one file of both versions: '{path}'",
+            "git cannot check out {count} files of both versions, such as '{path}'",
+            len(files),
+            path=files[0],
+        )
+        return
+    for name, files in missing:
+        yield counted(
+            "git cannot check out one file of '{version}', such as '{path}'",
+            "git cannot check out {count} files of '{version}', such as '{path}'",
+            len(files),
+            version=name,
+            path=files[0],
+        )
 
 
 def make_missing_notes(subjects: Sequence[Subject]) -> Iterator[Phrase]:

@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changed_lines import compare_lines
+from linkwright.review.changed_lines import compare_lines, list_commands
 from linkwright.review.renamed_packages import find_moved_files
 from linkwright.review.versions import Version, Versions
 
@@ -32,8 +32,13 @@ def find_file_states(versions: Versions, files: Iterable[ChangedFile]) -> dict[s
             state = phrase("moved with the package from {folder}", folder=f"{moved[file.path] or '.'}/")
         version, path = (versions.new, file.new_path) if file.new_path else (versions.old, file.old_path)
         kind = None if path is None or file.is_submodule else _find_foreign_kind(version, path)
+        commands = None
+        if None in (file.old_path, file.new_path) and path is not None and not file.is_submodule:
+            commands = list_commands(version, path)
         if state is None:
             state = kind or compare_lines(versions, file)
+        elif commands is not None and file.path not in moved:
+            state = phrase("{change}: {items}", change=state, items=commands)
         elif kind is not None:
             state = phrase("{state}, {kind}", state=state, kind=kind)
         if state is not None:

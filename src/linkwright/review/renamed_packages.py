@@ -12,7 +12,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
 from linkwright.review.merging import name_edit
-from linkwright.review.versions import Versions
+from linkwright.review.versions import Version, Versions
 
 _NAMED_AFTER_PACKAGES = (SubjectKind.BUILD, SubjectKind.MANIFEST, SubjectKind.PLUGINS)
 """The kinds of files in which names that contain the package name are derived from it."""
@@ -52,19 +52,42 @@ class RenamedPackage:
 def find_renamed_packages(versions: Versions) -> list[RenamedPackage]:
     """Return the packages with a new name or folder.
 
-    Git must recognize their manifests as renamed or changed.
+    Git must recognize their manifests as renamed or changed, or the name of the package must be the same.
     """
     packages = []
-    for file in versions.changed_files:
-        if not file.old_path or not file.new_path or PurePosixPath(file.path).name != MANIFEST:
-            continue
-        old_folder, new_folder = (PurePosixPath(path).parent for path in (file.old_path, file.new_path))
-        old_name = package_name(versions.old.file(old_folder.as_posix()))
-        new_name = package_name(versions.new.file(new_folder.as_posix()))
+    for old_path, new_path in _pair_manifests(versions):
+        old_folder, new_folder = (PurePosixPath(path).parent for path in (old_path, new_path))
+        old_name, new_name = _read_name(versions.old, old_path), _read_name(versions.new, new_path)
         if old_name and new_name and (old_name != new_name or old_folder != new_folder):
             folders = (folder.as_posix().removeprefix(".") for folder in (old_folder, new_folder))
             packages.append(RenamedPackage(old_name, new_name, *folders))
     return packages
+
+
+def _pair_manifests(versions: Versions) -> Iterator[tuple[str, str]]:
+    """Yield the old and new paths of changed manifests.
+
+    A removed and an added manifest are a pair if no other changed manifest has the name of their package.
+    """
+    removed: dict[str | None, list[str]] = {}
+    added: dict[str | None, list[str]] = {}
+    for file in versions.changed_files:
+        if PurePosixPath(file.path).name != MANIFEST:
+            continue
+        if file.old_path and file.new_path:
+            yield file.old_path, file.new_path
+        elif file.old_path:
+            removed.setdefault(_read_name(versions.old, file.old_path), []).append(file.old_path)
+        elif file.new_path:
+            added.setdefault(_read_name(versions.new, file.new_path), []).append(file.new_path)
+    for name in removed.keys() & added.keys() - {None}:
+        if len(removed[name]) == len(added[name]) == 1:
+            yield removed[name][0], added[name][0]
+
+
+def _read_name(version: Version, path: str) -> str | None:
+    """Return the name of a package, from the path of its manifest."""
+    return package_name(version.file(path).parent)
 
 
 def match_moved_files(versions: Versions) -> Versions:

@@ -11,12 +11,13 @@ from multiprocessing import get_context
 from pathlib import PurePosixPath
 from typing import Any, TypeVar
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.affected import TextFiles, may_be_read
 from linkwright.lint.targets import Targets, find_included_robots, find_targets, is_plain_robot
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
+from linkwright.review.build_types import is_unused_cmake_file
 from linkwright.review.changes import (
     Change,
     Effect,
@@ -28,6 +29,7 @@ from linkwright.review.changes import (
 from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
+from linkwright.review.files.behavior_tree_files import is_tree_file
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
@@ -37,8 +39,10 @@ from linkwright.review.files.templates import is_template
 from linkwright.review.findings import Findings, compare_findings, find_findings, find_findings_singly
 from linkwright.review.folders import review_without_folder
 from linkwright.review.kinds import (
+    BEHAVIOR_TREE,
     LAUNCH_FILE,
     LAUNCH_HELPER,
+    LAUNCH_TEST,
     MAP,
     PARAMETERS,
     SEMANTIC_XACRO,
@@ -46,12 +50,14 @@ from linkwright.review.kinds import (
     find_rule,
     may_help_launch_files,
 )
-from linkwright.review.launches.formats import is_launch_xml, is_launch_yaml, join_format_changes
+from linkwright.review.launch_paths import contains_actions, is_launch_xml, is_launch_yaml
+from linkwright.review.launches.formats import join_format_changes
 from linkwright.review.launches.helpers import imports_actions
 from linkwright.review.launches.missing_programs import drop_told_findings
 from linkwright.review.notes import (
     group_equal_problems,
     is_unreadable_as_before,
+    make_checkout_notes,
     make_missing_notes,
     make_unreadable_notes,
 )
@@ -62,6 +68,7 @@ from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import match_moved_files, remove_consequences
 from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.comparing import source_subjects
+from linkwright.review.sources.reading import forget_source_names
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.users.left_robot_names import find_left_robot_names
 from linkwright.review.users.lost_files import find_lost_files
@@ -107,6 +114,7 @@ def review(
     Raises:
         LinkwrightError: REV103, there is no such package.
     """
+    forget_source_names()
     versions = match_moved_files(versions)
     drawings = Drawings(images=with_images or with_scenes, scenes=with_scenes)
     result = _Reviewer(versions, _find_package_folders(versions, packages), drawings).run(workers)
@@ -117,7 +125,7 @@ def review(
         other_files=[path for path in result.other_files if path not in scenarios],
     )
     for version in (versions.old, versions.new):
-        result = review_without_folder(result, version.root)
+        result = review_without_folder(result, version.root, version.installed_shares)
     return result
 
 
@@ -317,8 +325,12 @@ class _Reviewer:
         if rule is not None and rule.kind is SubjectKind.PARAMETERS:
             return MAP if any(is_map(version.file(path)) for version, path in sides if path) else rule
         if rule is None and any(is_launch_xml(version.file(name)) for version, name in sides if name):
-            return LAUNCH_FILE
+            return LAUNCH_TEST if path.endswith(LAUNCH_TEST.suffixes) else LAUNCH_FILE
+        if rule is None and any(is_tree_file(version.file(name)) for version, name in sides if name):
+            return BEHAVIOR_TREE
         if rule is None and may_help_launch_files(path):
+            if any(contains_actions(version, name) for version, name in sides if name):
+                return LAUNCH_FILE
             is_helper = any(imports_actions(version.file(path)) for version, path in sides if path)
             return LAUNCH_HELPER if is_helper else None
         return rule
@@ -341,11 +353,14 @@ class _Reviewer:
     def _belongs_to_robot(self, rule: KindRule, file: ChangedFile) -> bool:
         """Return whether a file belongs to a robot.
 
-        Hidden files, and YAML files outside all packages, are settings of tools.
+        Hidden files, and YAML files outside all packages, are settings of tools. Build files of CMake in packages that
+        are built without it have no effect.
         """
         if any(part.startswith(".") for part in PurePosixPath(file.path).parts):
             return False
         sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
+        if all(is_unused_cmake_file(version, path) for version, path in sides if path):
+            return False
         return rule.kind is not SubjectKind.PARAMETERS or any(
             version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST)) is not None for version, path in sides if path
         )
@@ -398,25 +413,7 @@ class _Reviewer:
                     yield phrase("submodule '{path}' added; its files are not compared", path=file.path)
                 elif not self._is_removed_submodule(file):
                     yield phrase("submodule '{path}' changed; its files are not compared", path=file.path)
-        for version in (self._versions.old, self._versions.new):
-            if version.commit is None:
-                continue
-            links = version.commit.removed_links
-            if links:
-                yield counted(
-                    "symbolic link '{path}' points outside the repository and is ignored",
-                    "{count} symbolic links, such as '{path}', point outside the repository and are ignored",
-                    len(links),
-                    path=links[0],
-                )
-            if version.commit.missing_files:
-                yield counted(
-                    "git cannot check out one file of '{version}', such as '{path}'",
-                    "git cannot check out {count} files of '{version}', such as '{path}'",
-                    len(version.commit.missing_files),
-                    version=version.name,
-                    path=version.commit.missing_files[0],
-                )
+        yield from make_checkout_notes([self._versions.old, self._versions.new])
 
 
 def _is_only_moved(subject: Subject) -> bool:

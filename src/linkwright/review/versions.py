@@ -135,6 +135,11 @@ class Version:
             return self.commit.packages
         return {name: find_share_of_sources(name, folder) for name, folder in SourceScan(self.root).packages().items()}
 
+    @property
+    def installed_shares(self) -> Mapping[str, Path]:
+        """The share folders outside the version, which show the installed files, by the name of the package."""
+        return {name: share for name, share in self.shares.items() if not share.is_relative_to(self.root)}
+
     def _find_nearest_copies(self, folder: Path) -> dict[str, Path]:
         """Return the nearest share folder of each package with several copies, by package name."""
         return {

@@ -1,4 +1,4 @@
-"""Models without collisions that display actors and roads."""
+"""Models that display actors and roads."""
 
 from __future__ import annotations
 
@@ -7,13 +7,16 @@ from math import atan2, hypot
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import Pose, Vector3
 from linkwright.sdf.actors import Actor
-from linkwright.sdf.links import Link, Visual
+from linkwright.sdf.links import Collision, Link, Visual
 from linkwright.sdf.materials import Material
 from linkwright.sdf.models import Model
+from linkwright.sdf.plugins import library_name
 from linkwright.sdf.poses import RawPose
 from linkwright.sdf.shapes import Mesh
 from linkwright.sdf.worlds import Road
 
+ACTOR_COLLISIONS_LIBRARY = "ActorCollisionsPlugin"
+"""The plugin of Gazebo Classic that lets an actor collide."""
 _SKIN_NAME = "skin"
 """The name of the link that shows the skin, and the prefix of its visuals."""
 _ROAD_THICKNESS = 0.01
@@ -38,25 +41,43 @@ Lengths are in m, and positions are relative to the hips, which are 1 m above th
 def make_actor_model(actor: Actor, hips: Vector3 | None = (0.0, 0.0, 0.0)) -> Model:
     """Return the model of an actor: the shapes of its links, and its skin.
 
+    An actor with `ACTOR_COLLISIONS_LIBRARY` collides: its links with their collisions, and its skin as a plain figure
+    of a person's size, which replaces the boxes that Gazebo puts around the bones.
+
     Args:
         actor: the actor to display.
         hips: the position of the skeleton's first joint in the coordinates of the skin's mesh, before its scale is
             applied; Gazebo puts this joint at the pose of the actor. None if the skin does not exist: a plain figure of
             a person's size replaces the skin.
     """
-    links = [Link(link.name, pose=link.pose, visuals=link.visuals, element=link.element) for link in actor.links]
+    collides = any(library_name(plugin.filename) == ACTOR_COLLISIONS_LIBRARY for plugin in actor.plugins)
+    links = [
+        Link(
+            link.name,
+            pose=link.pose,
+            visuals=link.visuals,
+            collisions=link.collisions if collides else (),
+            element=link.element,
+        )
+        for link in actor.links
+    ]
+    body = tuple(
+        Collision(f"{_SKIN_NAME}{index}", shape, RawPose(Pose(position)), element=actor.element)
+        for index, (shape, position, _) in enumerate(_PERSON_SHAPES)
+        if collides
+    )
     if actor.skin is not None and hips is None:
         visuals = tuple(
             Visual(f"{_SKIN_NAME}{index}", shape, RawPose(Pose(position)), material, element=actor.element)
             for index, (shape, position, material) in enumerate(_PERSON_SHAPES)
         )
-        links.append(Link(_SKIN_NAME, visuals=visuals, element=actor.element))
+        links.append(Link(_SKIN_NAME, visuals=visuals, collisions=body, element=actor.element))
     elif actor.skin is not None and hips is not None:
         scale = actor.skin.scale
         x, y, z = (-scale * hip for hip in hips)
         mesh = Mesh(actor.skin.filename, (scale, scale, scale))
         visual = Visual(_SKIN_NAME, mesh, RawPose(Pose((x, y, z))), element=actor.element)
-        links.append(Link(_SKIN_NAME, visuals=(visual,), element=actor.element))
+        links.append(Link(_SKIN_NAME, visuals=(visual,), collisions=body, element=actor.element))
     return Model(actor.name, static=True, links=tuple(links), element=actor.element)
 
 

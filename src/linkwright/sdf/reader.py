@@ -69,7 +69,6 @@ TAGS_WITHOUT_EFFECT = {
     "lens": {"custom_function", "cutoff_angle", "env_texture_size", "projection", "scale_to_hfov", "type"},
     "sensor": {
         "air_flow",
-        "air_speed",
         "dvl",
         "projector",
         "rfid",

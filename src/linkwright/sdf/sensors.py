@@ -143,6 +143,13 @@ class AirPressure:
 
 
 @dataclass(frozen=True, slots=True)
+class AirSpeed:
+    """A pitot tube, with noise in pascals."""
+
+    noise: Noise = NO_NOISE
+
+
+@dataclass(frozen=True, slots=True)
 class Sonar:
     """A sonar, with lengths in meters.
 
@@ -201,6 +208,7 @@ class Sensor:
     magnetometer: NoiseXyz | None = None
     altimeter: Altimeter | None = None
     air_pressure: AirPressure | None = None
+    air_speed: AirSpeed | None = None
     force_torque: ForceTorque | None = None
     sonar: Sonar | None = None
     logical_camera: LogicalCamera | None = None
@@ -430,6 +438,12 @@ SENSOR = ElementRule(
             "air_pressure",
             "the reference altitude and the noise of a barometer",
             value("reference_altitude", NUMBER, "the altitude of the world's origin", "m", default="0"),
+            make_wrapped_noise_rule("pressure", "the noise on the pressure", "noise"),
+        ),
+        object_rule(
+            AirSpeed,
+            "air_speed",
+            "the noise of a sensor of air speed",
             make_wrapped_noise_rule("pressure", "the noise on the pressure", "noise"),
         ),
         _FORCE_TORQUE,

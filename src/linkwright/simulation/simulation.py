@@ -21,7 +21,7 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.restitution import Stepper
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
 from linkwright.simulation.scene.compiling import compile_scene, count_links, find_rejected_models, step_to_nanoseconds
-from linkwright.simulation.scene.figures import move_actors, set_kinematic_poses
+from linkwright.simulation.scene.figures import ACTOR_PERIOD_NS, move_actors, set_kinematic_poses
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.schedule import Schedule, Task
@@ -93,6 +93,10 @@ class Simulation:
         self._is_reshaped = False  # whether the scene's bodies or joints differ from the model
         self._is_current = False
         self._set_model(*compiled)
+        if any(figure.walks_into_bodies for figure in self.scene.figures):
+            self.schedule.add(
+                ACTOR_PERIOD_NS, lambda: move_actors(self.scene.figures, self.model, self.data, self.seconds), 0
+            )
 
     @property
     def seconds(self) -> float:
@@ -284,7 +288,8 @@ class Simulation:
         self.model, self.data = model, data
         self._state: tuple[Array, Array] = data.qpos, data.qvel
         self._stepper = Stepper(model, data)
-        self._sleep.set_model(model, data, self.time, self.step)
+        is_allowed = not any(figure.walks_into_bodies for figure in self.scene.figures)
+        self._sleep.set_model(model, data, self.time, self.step, is_allowed=is_allowed)
         self._solving.set_model(model, data, self.time, self.step)
 
     def reset(self) -> None:

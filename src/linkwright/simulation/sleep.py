@@ -40,7 +40,7 @@ class Sleep:
         self._model: Any = None
         self._data: Any = None
 
-    def set_model(self, model: Any, data: Any, now: int, step: int) -> None:
+    def set_model(self, model: Any, data: Any, now: int, step: int, *, is_allowed: bool = True) -> None:
         """Use another model and its data, and wake all bodies.
 
         Args:
@@ -48,10 +48,11 @@ class Sleep:
             data: MuJoCo's data of the model.
             now: the simulated time in nanoseconds.
             step: the time step in nanoseconds.
+            is_allowed: whether bodies may sleep. An actor, which moves without dynamics, does not wake them.
         """
         self._model, self._data = model, data
         policies = self._mujoco.mjtSleepPolicy
-        self._may_sleep: Any = model.tree_sleep_policy == policies.mjSLEEP_AUTO_ALLOWED
+        self._may_sleep: Any = (model.tree_sleep_policy == policies.mjSLEEP_AUTO_ALLOWED) & is_allowed
         self._seconds = step * max(1, round(_CHECK_PERIOD_NS / step)) * 1e-9
         self._calm_checks = np.zeros(model.ntree, dtype=np.int64)
         self._last_positions: Array = data.qpos.copy()

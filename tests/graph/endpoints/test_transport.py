@@ -3,6 +3,7 @@
 import pytest
 
 from linkwright.graph import (
+    ActionClient,
     DurabilityPolicy,
     EndpointInfo,
     EndpointKind,
@@ -371,3 +372,21 @@ async def test_graph_watchers_are_notified_of_changes(graph):
     node.create_publisher(String, "topic", 1)
     assert len(messages) == before + 1
     assert messages[-1] > messages[before - 1]
+
+
+async def test_graph_watchers_are_notified_when_the_last_part_of_an_action_server_matches(graph):
+    """Discovery reports the endpoints of a server before each of them matches."""
+    client = ActionClient(graph.create_node("node"), "example_interfaces/action/Fibonacci", "count")
+    was_ready = []
+    graph.watch(lambda: was_ready.append(client.server_is_ready()))
+    for part in (client._goal_client, client._cancel_client, client._result_client):
+        part.set_remote_service(object())  # No request is sent to it.
+    client._status.set_remote_count(1)
+    assert not any(was_ready)
+    client._feedback_subscription.set_remote_count(1)
+    assert was_ready[-1]
+    count = len(was_ready)
+    client._feedback_subscription.set_remote_count(2)
+    assert len(was_ready) == count
+    client._feedback_subscription.set_remote_count(0)
+    assert not was_ready[-1]

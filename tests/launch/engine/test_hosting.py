@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import re
 import socket
+import sys
 import time
 from collections.abc import Callable
 from itertools import pairwise
@@ -13,6 +14,7 @@ from typing import Any
 
 import pytest
 from launch.actions import (
+    ExecuteProcess,
     LogInfo,
     OpaqueCoroutine,
     OpaqueFunction,
@@ -23,7 +25,8 @@ from launch.actions import (
 )
 from launch.event_handlers import OnProcessExit, OnProcessStart
 from launch.events import Shutdown as ShutdownEvent
-from launch.substitutions import EnvironmentVariable
+from launch.substitutions import Command, EnvironmentVariable
+from launch.utilities import perform_substitutions
 from launch_ros.actions import Node, RosTimer, SetROSLogDir, SetUseSimTime
 
 from launch import LaunchContext
@@ -114,6 +117,36 @@ class TestOutput:
         assert result.messages == ["over"]
         assert "[INFO] [talker_qos-1]: has finished cleanly" in result.err
         assert node.return_code == 0
+
+    async def test_command_reads_parameter_of_node_in_launcher_process(self, launch) -> None:
+        texts: list[str] = []
+
+        def read(context: LaunchContext) -> None:
+            arguments = ("--hide-type /talker use_sim_time", "talker use_sim_time", "/talker other")
+            commands = [Command(f"ros2 param get {words}") for words in arguments]
+            texts.extend(perform_substitutions(context, [command]) for command in commands)
+
+        talker = Node(package="demo_nodes_py", executable="talker", name="talker")
+        await launch(talker, TimerAction(period=0.1, actions=[OpaqueFunction(function=read), Shutdown()]))
+        assert texts == ["False\n", "Boolean value is: False\n", "Parameter not set.\n"]
+
+    @pytest.mark.parametrize("ends", [True, False])
+    async def test_node_waits_for_file_that_process_writes(self, launch, tmp_path: Path, ends: bool) -> None:
+        path = tmp_path / "map.yaml"
+        wait = "" if ends else "; time.sleep(60)"
+        program = f"import sys, time; time.sleep(0.5); open(sys.argv[1], 'w').write('image: a.png'){wait}"
+        writer = ExecuteProcess(cmd=[sys.executable, "-c", program, str(path)])
+        reader = Node(package="demo_nodes_py", executable="talker", parameters=[{"file": str(path)}])
+        found: list[bool] = []
+        started = OnProcessStart(target_action=reader, on_start=lambda *_: found.append(path.exists()) or Shutdown())
+        result = await launch(RegisterEventHandler(started), reader, writer)
+        assert found == [True]
+        assert f"waiting for '{path}'" in result.err
+
+    async def test_node_does_not_wait_for_missing_file_that_no_process_writes(self, launch) -> None:
+        reader = Node(package="demo_nodes_py", executable="talker", parameters=[{"file": "/no/such/file"}])
+        result = await launch(reader, RegisterEventHandler(OnProcessStart(on_start=Shutdown())))
+        assert "waiting for" not in result.err
 
     async def test_finished_node_respawns(self, launch) -> None:
         node = Node(

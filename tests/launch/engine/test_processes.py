@@ -7,6 +7,7 @@ import re
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 from launch.actions import (
@@ -283,6 +284,12 @@ class TestHandlers:
         assert result.messages == ["over"]
         assert "process[py-2] was required: shutting down launched system" in result.err
         assert "sending signal 'SIGINT' to process[other-1]" in result.err
+
+    async def test_wrong_on_exit_is_reported_when_process_ends(self, launch) -> None:
+        action: Any = LaunchConfiguration("on_exit")
+        result = await launch(execute_python("print('ran', flush=True)", on_exit=action, output="screen"))
+        assert "ran" in result.out
+        assert "expected launch actions, got" in result.err
 
     async def test_on_exit_accepts_function(self, launch) -> None:
         result = await launch(

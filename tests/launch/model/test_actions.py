@@ -211,6 +211,14 @@ class TestTimerAction:
 
 
 class TestEvents:
+    async def test_failing_shutdown_handler_is_reported_once(self, launch) -> None:
+        def fail(_: LaunchContext) -> None:
+            raise FileNotFoundError("gone")
+
+        handler = RegisterEventHandler(OnShutdown(on_shutdown=[OpaqueFunction(function=fail)]))
+        result = await launch(handler, Shutdown(reason="over"))
+        assert result.err.count("raised FileNotFoundError: gone") == 1
+
     async def test_shutdown_handlers_receive_reason(self, launch) -> None:
         result = await launch(
             RegisterEventHandler(OnShutdown(on_shutdown=[log_text(LocalSubstitution("event.reason"))])),

@@ -99,6 +99,24 @@ class TestSources:
         assert programs.scripts == {"look.py": folder / "scripts/look.py", "seer": folder / "scripts/see.py"}
         assert programs.compiled == {"driver", "comp_node"}
 
+    @pytest.mark.parametrize(
+        "command",
+        [
+            'set_target_properties(p_driver PROPERTIES OUTPUT_NAME "driver" PREFIX "")',
+            "set_property(TARGET p_driver PROPERTY OUTPUT_NAME driver)",
+            "set_target_properties(p_driver PROPERTIES RUNTIME_OUTPUT_NAME driver)",
+        ],
+    )
+    def test_output_name_is_name_of_program(self, write: Write, command: str) -> None:
+        text = f"project(p)\nadd_executable(p_driver d.cpp)\n{command}\ninstall(TARGETS p_driver DESTINATION lib/p)\n"
+        assert find_source_programs(write("p/CMakeLists.txt", text).parent).compiled == {"driver"}
+
+    def test_programs_of_external_project_are_unknown(self, write: Write) -> None:
+        build_file = "project(p)\ninclude(cmake/SuperBuild.cmake)\nreturn()\n"
+        folder = write("p/CMakeLists.txt", build_file).parent
+        write("p/cmake/SuperBuild.cmake", "include(ExternalProject)\nExternalProject_Add(ep SOURCE_DIR .)\n")
+        assert not find_source_programs(folder).is_complete
+
     def test_entry_point_runs_without_build(self, arm: Path, finder: PackageFinder) -> None:
         executable = find_executable(finder, arm.name, "wave")
         assert executable.origin is Origin.SOURCE
@@ -133,6 +151,21 @@ class TestSources:
         assert diagnostic.message == "executable 'driver' of package 'p' is a compiled program that was not built"
         assert diagnostic.hint is not None
         assert diagnostic.hint.startswith("build it with 'colcon build --packages-select p'")
+
+    @pytest.mark.parametrize(
+        ("package", "name", "instead"),
+        [
+            ("cartographer_ros", "cartographer_node", "run `linkwright launch slam_toolbox online_async_launch.py`"),
+            ("moveit_setup_assistant", "moveit_setup_assistant", "`linkwright arm init` writes"),
+        ],
+    )
+    def test_missing_program_names_alternative(
+        self, finder: PackageFinder, package: str, name: str, instead: str
+    ) -> None:
+        with pytest.raises(LinkwrightError, match="was not found; ") as caught:
+            find_executable(finder, package, name)
+        assert is_unavailable(caught.value)
+        assert instead in caught.value.diagnostics[0].message
 
     @pytest.mark.parametrize("cmake", [None, "project(p)\ninclude(cmake/programs.cmake)\n"])
     def test_program_unknown_to_sources_is_unavailable(

@@ -8,12 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linkwright.diagnostics import LinkwrightError
+from linkwright.graph import LATCHED_QOS
 from linkwright.graph.actions.goal import GoalStatus
 from linkwright.messages import get_message
-from linkwright.nodes import NodeOptions
 from linkwright.planning.nodes.conversions import RequestError
-from linkwright.planning.nodes.move_group import MoveGroup
 from tests.planning.nodes.bench import (
     PARAMETERS,
     START,
@@ -534,10 +532,28 @@ class TestMargins:
 
 class TestStart:
     @pytest.mark.parametrize("name", ["robot_description", "robot_description_semantic"])
-    def test_missing_description_is_an_error(self, graph, name: str) -> None:
-        with pytest.raises(LinkwrightError) as error:
-            MoveGroup(graph, NodeOptions(parameters={**PARAMETERS, name: ""}))
-        assert error.value.diagnostics[0].code == "ARM104"
+    async def test_missing_description_is_read_from_topic(self, graph, logged, name: str) -> None:
+        bench = Bench(graph, **{name: ""})
+        assert not logged("INFO")
+        publisher = bench.node.create_publisher("std_msgs/msg/String", name, LATCHED_QOS)
+        publisher.publish(message("std_msgs/msg/String", data="<robot"))
+        await graph.settle()
+        assert len(logged("ERROR")) == 1
+        publisher.publish(message("std_msgs/msg/String", data=PARAMETERS[name]))
+        await graph.settle()
+        response = await bench.call("GetPositionFK", "compute_fk", fk_link_names=["tool"])
+        assert response.error_code.val == 1
+        bench.move_group.close()
+
+    async def test_description_that_does_not_arrive_is_reported(self, graph, clock, logged) -> None:
+        bench = Bench(graph, robot_description="", robot_description_timeout=2.0)
+        await clock.advance(1.9)
+        assert not logged("ERROR")
+        await clock.advance(5.0)
+        (text,) = logged("ERROR")
+        assert text.startswith("Could not find parameter robot_description and did not receive robot_description")
+        assert text.endswith("within 2.000000 seconds.")
+        bench.move_group.close()
 
     async def test_planners_are_listed_by_pipeline(self, bench) -> None:
         interfaces = (await bench.call("QueryPlannerInterfaces", "query_planner_interface")).planner_interfaces

@@ -133,6 +133,30 @@ class TestCommands:
         direction = np.array((2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)))
         np.testing.assert_allclose(moved, 0.03 * direction, atol=0.004)
 
+    async def test_twist_leaves_out_dimensions_that_are_not_controlled(self, humble) -> None:
+        controlled = {f"control_{axis}_{kind}": True for axis in "xyz" for kind in ("translation", "rotation")}
+        name = "change_control_dimensions"
+        kind = "moveit_msgs/srv/ChangeControlDimensions"
+        assert (await humble.call(kind, name, **controlled | {"control_y_translation": False})).success
+        start = humble.tip()
+        await humble.run(0.5, humble.twists, twist(y=0.1, z=0.1))
+        np.testing.assert_allclose((humble.tip() - start)[:3], (0.0, 0.0, 0.05), atol=0.004)
+        assert (await humble.call(kind, name, **controlled)).success
+        start = humble.tip()
+        await humble.run(0.5, humble.twists, twist(y=0.1))
+        np.testing.assert_allclose((humble.tip() - start)[:3], (0.0, 0.05, 0.0), atol=0.004)
+
+    async def test_tip_drifts_only_in_the_dimensions_that_are_named(self, humble) -> None:
+        command = twist(y=0.1)
+        command.twist.angular.y = 0.5
+        kind, name = "moveit_msgs/srv/ChangeDriftDimensions", "change_drift_dimensions"
+        assert (await humble.call(kind, name, drift_x_translation=True, drift_z_translation=True)).success
+        start = humble.tip()
+        await humble.run(0.3, humble.twists, command)
+        moved = humble.tip() - start
+        assert moved[1] == pytest.approx(0.03, abs=0.004)
+        assert np.abs(moved[[0, 2]]).max() > 0.01
+
     async def test_jog_moves_one_joint(self, humble) -> None:
         before = humble.positions.copy()
         await humble.run(0.5, humble.jogs, jog(twist=0.4))

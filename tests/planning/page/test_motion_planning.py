@@ -13,6 +13,7 @@ from linkwright.page.protocol.motion_planning import (
     AttachSceneObject,
     MoveSceneObject,
     RemoveSceneObject,
+    SelectSceneObject,
 )
 from linkwright.planning.page.scene_edits import describe_objects, make_moved_object
 from linkwright.rviz.displays.moveit.scene import Scene
@@ -384,3 +385,56 @@ def test_pose_of_object_includes_that_of_its_shape():
     assert description.position == [1.0, 0.0, 0.5]
     moved = make_moved_object(MoveSceneObject("", "lamp", [0.0, 0.0, 2.0], [0.0, 0.0, 0.0]), scene)
     assert moved.world.collision_objects[0].pose.position.z == 1.5
+
+
+async def test_selected_object_is_dragged_by_its_handle():
+    async with open_bench() as bench:
+        identity, handle = bench.display.id, "object mug"
+        bench.display.receive(AddSceneObject(identity, "mug", "cylinder", [0.1, 0.03]))
+        await bench.until(lambda: bench.panel()["objects"])
+        assert f"marker {handle}" not in bench.contents()
+        bench.display.receive(SelectSceneObject(identity, "mug"))
+        await bench.until(lambda: f"marker {handle}" in bench.contents())
+        assert bench.handle_pose(handle)[:3] == pytest.approx(bench.panel()["objects"][0]["position"])
+        for step in range(5):  # Poses that wait are left out, except the last one.
+            bench.drag([0.1 * step, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0], handle=handle)
+        bench.drag([0.4, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0], "mouse_up", handle)
+        await bench.until(lambda: bench.panel()["objects"][0]["position"] == pytest.approx([0.4, 0.2, 0.3]))
+        await bench.until(lambda: bench.handle_pose(handle)[:3] == pytest.approx([0.4, 0.2, 0.3]))
+        bench.drag([float("nan"), 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], handle=handle)
+        bench.display.receive(AttachSceneObject(identity, "mug", "tool"))  # It then moves with the link.
+        await bench.until(lambda: f"marker {handle}" not in bench.contents())
+        bench.display.receive(AttachSceneObject(identity, "mug", ""))
+        await bench.until(lambda: f"marker {handle}" in bench.contents())
+        bench.display.receive(SelectSceneObject(identity, ""))
+        await bench.until(lambda: f"marker {handle}" not in bench.contents())
+
+
+async def test_handle_returns_to_an_object_that_is_not_moved(monkeypatch):
+    async with open_bench() as bench:
+        identity, handle = bench.display.id, "object mug"
+        bench.display.receive(AddSceneObject(identity, "mug", "sphere", [0.1]))
+        bench.display.receive(SelectSceneObject(identity, "mug"))
+        await bench.until(lambda: f"marker {handle}" in bench.contents())
+        place = bench.handle_pose(handle)
+
+        async def refuse(_difference: object) -> bool:
+            return False
+
+        monkeypatch.setattr(bench.session.client, "apply_scene", refuse)
+        bench.drag([2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], handle=handle)
+        bench.drag([2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], "mouse_up", handle)
+        await bench.until(lambda: f"pose {handle}" in bench.contents())
+        assert bench.handle_pose(handle) == place
+        assert bench.panel()["refused"]
+
+
+async def test_panel_tells_whether_the_goal_state_has_a_handle():
+    async with open_bench() as bench:
+        assert bench.panel()["draggable"]
+        bench.display.set_property(("Planning Request", "Query Goal State"), False)
+        await bench.until(lambda: not bench.panel()["draggable"])
+        bench.display.set_property(("Planning Request", "Query Goal State"), True)
+        await bench.until(lambda: bench.panel()["draggable"])
+        bench.display.set_property(("Planning Request", "Planning Group"), "gripper")  # It has no tip.
+        await bench.until(lambda: not bench.panel()["draggable"])

@@ -49,6 +49,24 @@ def test_gz_command_line_is_parsed(line, parameters):
     assert command.parameters == parameters
 
 
+@pytest.mark.parametrize(
+    ("panel", "flags", "pause"),
+    [
+        ('<plugin filename="WorldControl" name="c"><start_paused>false</start_paused></plugin>', "", False),
+        ('<plugin filename="WorldControl" name="c"><start_paused>false</start_paused></plugin>', "-s", True),
+        ('<plugin filename="WorldControl" name="c"><start_paused>true</start_paused></plugin>', "", True),
+        ('<plugin filename="Other"><start_paused>false</start_paused></plugin>', "", True),
+        ('<!-- <plugin filename="WorldControl"><start_paused>false</start_paused></plugin> -->', "", True),
+    ],
+)
+def test_window_configuration_can_start_simulation(tmp_path, panel, flags, pause):
+    config = tmp_path / "gui.config"
+    config.write_text(f'<?xml version="1.0"?>\n<window/>\n{panel}\n<plugin filename="WorldStats"></plugin>\n')
+    command = simulator_command(["gz", "sim", "--gui-config", str(config), "a.sdf", *flags.split()])
+    assert command is not None
+    assert command.parameters["pause"] is pause
+
+
 def test_gui_only_commands_start_gzclient():
     for line in ("gzclient --verbose", "gz sim -g", "ign gazebo -g -v 4"):
         command = simulator_command(line.split())

@@ -162,7 +162,6 @@ async def test_base_plugin_publishes_speeds_in_order_of_rotors():
 @pytest.mark.parametrize(
     ("library", "alternative", "text"),
     [
-        ("libAdvancedLiftDragPlugin.so", "LiftDragPlugin", "libLiftDragPlugin.so for each wing"),
         ("libgazebo_ros_realsense.so", "gazebo_ros_camera", "libgazebo_ros_camera.so in the <sensor>"),
         ("libuuv_gazebo_ros_camera_plugin.so", "gazebo_ros_camera", "libgazebo_ros_camera.so in the <sensor>"),
         ("librmagine_embree_ros_gzplugin.so", "gazebo_ros_ray_sensor", "libgazebo_ros_ray_sensor.so in a <sensor>"),

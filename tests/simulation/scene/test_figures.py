@@ -1,4 +1,4 @@
-"""Actors and roads: they are visible, and have no collisions."""
+"""Actors and roads: they are visible, and only actors with a plugin collide."""
 
 from __future__ import annotations
 
@@ -51,6 +51,24 @@ def test_actor_does_not_collide():
     simulation = make_simulation(GROUND, box("crate", pose="4 0 0.5 0 0 0"), ACTOR)
     simulation.advance(2 * SECOND_NS)
     assert simulation.link_pose("crate::link")[:2] == pytest.approx((4, 0), abs=1e-4)
+
+
+SKIN = "<skin><filename>walk.dae</filename></skin>"
+COLLISIONS = '<plugin name="collisions" filename="libActorCollisionsPlugin.so"/>'
+
+
+@pytest.mark.parametrize("parts", [LINK.replace("<visual", f'<collision name="c">{BALL}</collision><visual'), SKIN])
+def test_actor_with_collisions_pushes_what_is_in_its_way(parts):
+    walker, positions = ACTOR.replace(LINK, parts), []
+    for plugin in ("", COLLISIONS):
+        text = walker.replace("<script>", f"{plugin}<script>")
+        crate = box("crate", pose="4 0 0.8 0 0 0", size="0.8 0.8 1.6")
+        simulation = make_simulation(GROUND, crate, text)
+        assert not [name for name in find_unsimulated_elements(simulation.world) if "plugin" in name]
+        simulation.advance(SECOND_NS * 17 // 10)
+        positions.append(simulation.link_pose("crate::link")[0])
+    assert positions[0] == pytest.approx(4.0, abs=1e-3)
+    assert positions[1] > 5.0
 
 
 def test_rays_against_visuals_hit_actor():

@@ -6,6 +6,7 @@ import { strings } from "../../strings";
 import { formatFixed, parseNumber } from "../../tree/numbers";
 import { createSelect } from "../../widgets/controls";
 import { UnitSwitch } from "../../widgets/unit-switch";
+import { onVisibilityChange } from "../../widgets/visibility";
 import { ChoiceSetting } from "./setting-fields";
 import type { Tab } from "./tab";
 
@@ -36,6 +37,9 @@ export class ObjectsTab implements Tab {
   private readonly detachButton: HTMLButtonElement;
   private readonly problem = h("p", { class: "note wrong", role: "status" });
   private selectedName = "";
+  /** The object that has a handle in the scene. */
+  private handledName = "";
+  private isVisible = false;
   private shownObjects = "";
   private chosenLink = "";
   private state: MotionPlanningState | null = null;
@@ -77,6 +81,10 @@ export class ObjectsTab implements Tab {
       this.selectedBox,
     );
     angles.changed.on(() => this.showSelected());
+    onVisibilityChange(this.element, (isVisible) => {
+      this.isVisible = isVisible;
+      this.requestHandle();
+    });
     this.showSizes();
   }
 
@@ -159,8 +167,18 @@ export class ObjectsTab implements Tab {
     } else this.showSelected();
   }
 
+  /** Gives the selected object a handle in the scene, while the tab is visible. An attached object moves with its link. */
+  private requestHandle(): void {
+    const { selected } = this;
+    const name = this.isVisible && selected?.link === "" ? selected.name : "";
+    if (name === this.handledName) return;
+    this.handledName = name;
+    this.planning.send({ type: "select_scene_object", name });
+  }
+
   private showSelected(): void {
     const { selected } = this;
+    this.requestHandle();
     this.selectedBox.hidden = selected === undefined;
     if (!selected || !this.state) return;
     const isAttached = selected.link !== "";

@@ -125,7 +125,7 @@ function describeResult(state: MotionPlanningState): string {
   const reason = state.error in reasons ? `${reasons[state.error] ?? ""} (${state.error})` : state.error;
   switch (state.outcome) {
     case "none":
-      return texts.ready;
+      return state.draggable ? texts.ready : texts.readyWithoutHandle;
     case "planned":
       return texts.planned(state.planning_time, state.duration);
     case "executed":

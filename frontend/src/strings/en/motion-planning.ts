@@ -53,6 +53,7 @@ export const motionPlanning = {
   },
   activities: { planning: "Planning…", executing: "Executing…" },
   ready: "Drag the handle, or choose a goal state.",
+  readyWithoutHandle: "Choose a goal state, or move its joints in the tab Joints.",
   planned: (seconds: number, duration: number): string => `Planned in ${seconds.toFixed(2)} s. The motion takes ${duration.toFixed(1)} s.`,
   executed: "The motion was executed.",
   stopped: "Stopped.",

@@ -55,6 +55,7 @@ export const motionPlanning: typeof english = {
   },
   activities: { planning: "正在规划…", executing: "正在执行…" },
   ready: "拖动手柄，或选择目标状态。",
+  readyWithoutHandle: "选择目标状态，或在“关节”标签页里移动它的关节。",
   planned: (seconds, duration) => `规划用了 ${seconds.toFixed(2)} 秒。运动需要 ${duration.toFixed(1)} 秒。`,
   executed: "运动已执行。",
   stopped: "已停止。",

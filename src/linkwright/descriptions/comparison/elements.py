@@ -19,6 +19,8 @@ from linkwright.xmltree import Element
 _ATTRIBUTES_WITHOUT_NUMBERS = frozenset({"name", "reference", "filename", "version"})
 _Rest = dict[str, list[tuple[str, Element]]]
 """Elements with their keys, by tag and name."""
+_PLUGIN_NAMESPACE = "ros namespace"
+"""The end of the path of the namespace of a plugin of gazebo_ros."""
 
 
 @dataclass(frozen=True)
@@ -112,14 +114,21 @@ class ElementComparison:
             ((key, _),) = new_rest.pop(new_lone[id(new_element)])
             yield key, old_element, new_element
 
-    def _content(self, element: Element, side: int) -> Hashable:
-        """Return the comparable content of an element of the old (0) or the new (1) version."""
+    def _content(self, element: Element, side: int, parent: str = "") -> Hashable:
+        """Return the comparable content of an element of the old (0) or the new (1) version.
+
+        Args:
+            element: the element.
+            side: 0 or 1.
+            parent: the tag of the element's parent.
+        """
         normalize = (self.normalize_old, self.normalize_new)[side]
         attributes = frozenset(
             (name, _to_comparable(name, normalize(value))) for name, value in element.attributes.items()
         )
-        children = tuple(self._content(child, side) for child in element.elements())
-        return element.tag, attributes, normalize_numbers(normalize(element.text())), children
+        children = tuple(self._content(child, side, element.tag) for child in element.elements())
+        text = _complete_namespace(f"{parent} {element.tag}", normalize(element.text()))
+        return element.tag, attributes, normalize_numbers(text), children
 
     def element_differences(self, name: str, path: str, old: Element, new: Element) -> Iterator[Difference]:
         """Yield the differences between two elements that belong together.
@@ -140,7 +149,7 @@ class ElementComparison:
                     "extension", name, "changed", f"{path} @{attribute}".strip(), old_value, new_value, "", *locations
                 )
         texts = " ".join(old.text().split()), " ".join(new.text().split())
-        if not self._same_text(*texts):
+        if not self._same_text(*(_complete_namespace(path, text) for text in texts)):
             yield Difference("extension", name, "changed", path, *texts, "", location_of(old), location_of(new))
         yield from self.child_differences(list(old.elements()), list(new.elements()), path, (name, old, new))
 
@@ -148,6 +157,18 @@ class ElementComparison:
         if old is None or new is None:
             return old is new
         return _to_comparable(attribute, self.normalize_old(old)) == _to_comparable(attribute, self.normalize_new(new))
+
+
+def _complete_namespace(path: str, text: str) -> str:
+    """Return the text of an element, with the slash that gazebo_ros adds in front of the namespace of a plugin.
+
+    Source: ``gazebo_ros::Node::Get`` of gazebo_ros_pkgs.
+
+    Args:
+        path: the tags of the element and its parents.
+        text: the text of the element.
+    """
+    return f"/{text.strip().removeprefix('/')}" if path.endswith(_PLUGIN_NAMESPACE) else text
 
 
 def _to_comparable(attribute: str, text: str) -> str:

@@ -36,9 +36,14 @@ def as_text(comparison: Comparison, label: Label) -> str:
     return "\n".join(lines) + "\n"
 
 
-def sentence(difference: Difference) -> Phrase:
-    """Return a description of a change in one line."""
-    subject, name = term(difference.subject), difference.name
+def sentence(difference: Difference, title: tuple[Phrase, str] | None = None) -> Phrase:
+    """Return a description of a change in one line.
+
+    Args:
+        difference: the change.
+        title: the kind and the name of the changed object; None for those of the difference.
+    """
+    subject, name = title or (term(difference.subject), difference.name)
     if difference.kind == "added":
         return phrase("{subject} '{name}' added", subject=subject, name=name)
     if difference.kind == "removed":

@@ -276,11 +276,14 @@ class TopicEndpoint(Endpoint, Generic[M]):
     def set_remote_count(self, count: int) -> None:
         """Set the number of matching endpoints in other processes, and report a change.
 
-        The transport calls this method. A change causes a QoS event.
+        The transport calls this method. A change causes a QoS event. The first match and the end of the last one wake
+        those that wait for a change of the graph, because discovery may report an endpoint before it matches.
         """
         previous_count, self._remote_count = self._remote_count, count
         if self.events is not None and count != previous_count:
             self.events.on_match_change(count - previous_count)
+        if bool(count) != bool(previous_count):
+            self.node.graph.notify_change()
 
 
 class ServiceEndpoint(Endpoint):

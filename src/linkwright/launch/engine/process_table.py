@@ -28,6 +28,7 @@ class ProcessTable:
         self._session = session
         self._running: set[RunningProcess] = set()
         self._remaining_groups: list[RunningProcess] = []
+        self._unfinished: dict[str, ProcessPlan] = {}
         self._ending = asyncio.Event()
         self._is_interrupted = False
         self._guardian = Guardian()
@@ -39,7 +40,12 @@ class ProcessTable:
 
     def start(self, plan: ProcessPlan, name: str) -> None:
         """Start a process, monitor it until it ends, and respawn it if the plan requests a respawn."""
+        self._unfinished[name] = plan
         self._session.spawn(self._run_process(plan, name))
+
+    def is_named(self, path: str) -> bool:
+        """Return whether a path is an argument of a process that has not ended, or not even started."""
+        return any(path in plan.command for plan in self._unfinished.values())
 
     def stop_matching(self, matcher: ProcessMatcher) -> None:
         """Ask the processes with a matching action to end.
@@ -100,6 +106,12 @@ class ProcessTable:
         self._guardian.close()
 
     async def _run_process(self, plan: ProcessPlan, name: str) -> None:
+        try:
+            await self._run_with_respawns(plan, name)
+        finally:
+            del self._unfinished[name]
+
+    async def _run_with_respawns(self, plan: ProcessPlan, name: str) -> None:
         start_count = 0
         # As in ROS, if an action starts a process and a later action fails, the process still starts and is then asked
         # to end, because handlers wait for its exit. After an interrupt, it does not start.

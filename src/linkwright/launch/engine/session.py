@@ -17,6 +17,7 @@ from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, Xacro
 from linkwright.launch.engine.omissions import Omissions
 from linkwright.launch.engine.process_table import ProcessTable
 from linkwright.launch.engine.supervisor import SessionOptions
+from linkwright.launch.engine.unwritten_files import find_unwritten_file, wait_until_written
 from linkwright.launch.errors.locations import with_location
 from linkwright.launch.errors.user_code import MAX_NESTING_DEPTH, endless_nesting_error, explain
 from linkwright.launch.log.loggers import launch_config
@@ -59,6 +60,7 @@ class LaunchSession:
         self.is_ending = False
         self._failures: set[object] = set()
         self._is_visiting = False
+        self._is_shutdown_requested = False
         self._wake_event = asyncio.Event()
         self._queue.on_put = self._wake_event.set
         self._awaited_futures: set[asyncio.Future[Any]] = set()
@@ -251,6 +253,20 @@ class LaunchSession:
 
     # --- reports from the nodes of this process ---------------------------------------------------------------
 
+    def postpones(self, plan: HostedPlan) -> bool:
+        """Return whether a node waits for a file that a process is writing. Then the node is started later."""
+        path = find_unwritten_file(plan, self.processes)
+        if path is None:
+            return False
+        self.log.write_info(plan.process_name, f"waiting for '{path}', which another process may be writing")
+        self.spawn(self._start_when_written(plan, path))
+        return True
+
+    async def _start_when_written(self, plan: HostedPlan, path: str) -> None:
+        await wait_until_written(path, self.processes)
+        self.host.schedule_node(plan)
+        await self._start_hosted()
+
     def report_node_start(self, plan: HostedPlan) -> None:
         """Report that a node in the launcher's process is running."""
         plan.owner.process_details = plan.details
@@ -266,8 +282,13 @@ class LaunchSession:
     # --- shutdown -------------------------------------------------------------------------------------------
 
     def shut_down(self, reason: str) -> None:
-        """End the launch after the events that are already queued have been handled."""
-        self.emit(events.Shutdown(reason=reason))
+        """End the launch after the events that are already queued have been handled.
+
+        Only the first request has an effect: a handler of the shutdown that fails must not cause another shutdown.
+        """
+        if not self._is_shutdown_requested:
+            self._is_shutdown_requested = True
+            self.emit(events.Shutdown(reason=reason))
 
     def interrupt(self, reason: str) -> None:
         """End the launch because the user interrupted it.
@@ -367,6 +388,7 @@ class LaunchSession:
     def _handle(self, event: events.Event) -> None:
         self.log.write_debug("launch", f"processing event: '{event.name}'")
         context = self.context
+        self._is_shutdown_requested |= isinstance(event, events.Shutdown)
         context.push_locals()
         try:
             entities: list[LaunchDescriptionEntity] = []

@@ -49,6 +49,9 @@ class NodeHosting(Protocol):
         This method has no effect while the launch is ending.
         """
 
+    def find_node(self, full_name: str) -> Node | None:
+        """Return the node with a full name in the launcher's process, or None."""
+
     def use_simulated_time(self, value: bool) -> None:
         """Set whether the launcher's own node follows ``/clock`` or wall time."""
 

@@ -28,6 +28,7 @@ from linkwright.hosting.plans import VIEWER, opens_page
 from linkwright.hosting.rqt_programs import PANEL_PROGRAMS, find_replacement
 from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.errors.unavailable import mark_unavailable
+from linkwright.launch.ros.alternatives import find_alternative
 from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed, is_substitute
 from linkwright.packages.programs.child_python import python_command
 
@@ -255,6 +256,14 @@ def _missing_package_error(
     if instead is not None:
         message = phrase("the page has no panel that replaces '{name}'; {instead}", name=name, instead=instead)
         hint = error.diagnostics[0].hint
+    alternative = find_alternative(package)
+    if alternative is not None:
+        message = phrase(
+            "package '{package}' of node executable '{name}' was not found; {instead}",
+            package=package,
+            name=name,
+            instead=alternative,
+        )
     diagnostic = Diagnostic("LAUNCH131", message, notes=error.diagnostics[0].notes, hint=hint)
     launch_error = as_ros_error(KeyError(message), diagnostic)
     return (

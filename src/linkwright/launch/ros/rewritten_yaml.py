@@ -100,8 +100,8 @@ class RewrittenYaml(_YamlFileSubstitution):
         super().__init__(source_file)
         self._values = _normalize_rewrites(param_rewrites)
         self._root_key = None if root_key is None else normalize_to_list_of_substitutions(root_key)
-        self._key_rewrites = _normalize_rewrites(key_rewrites or {})
-        self._text_rewrites = _normalize_rewrites(value_rewrites or {})
+        self._key_rewrites = _normalize_rewrites(key_rewrites)
+        self._text_rewrites = _normalize_rewrites(value_rewrites)
         self._convert_types = convert_types
 
     def perform(self, context: LaunchContext) -> str:
@@ -333,7 +333,9 @@ class ParseMultiRobotPose(Substitution):
         return robots
 
 
-def _normalize_rewrites(rewrites: Mapping[str, SomeSubstitutionsType]) -> dict[str, list[Substitution]]:
+def _normalize_rewrites(rewrites: Mapping[str, SomeSubstitutionsType] | None) -> dict[str, list[Substitution]]:
+    if not rewrites:  # as in nav2_common, an empty text is also valid
+        return {}
     return {str(key): normalize_to_list_of_substitutions(_as_text(value)) for key, value in rewrites.items()}
 
 

@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from importlib.machinery import ModuleSpec, PathFinder
+from importlib.util import spec_from_file_location
 from itertools import chain
 from pathlib import Path
 
+from linkwright.diagnostics import SourceText
 from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
 from linkwright.packages.programs.source_programs import NON_PROGRAM_MODULES, find_python_root
 from linkwright.packages.programs.workspace_environment import find_python_folders
+from linkwright.packages.readers.entry_points import read_text
 
 
 def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | None:
@@ -30,6 +33,8 @@ def find_module(finder: PackageFinder, name: str, near: Path) -> ModuleSpec | No
     package_folder = finder.find(name)
     if package_folder is not None:
         spec = _find_module(name, _list_module_folders(package_folder, name))
+        if spec is None:
+            spec = _find_renamed_package(package_folder, name)
         if spec is None and any((package_folder / name).glob("*.py")):
             spec = PathFinder.find_spec(name, [str(package_folder)])  # the package's module folder has no __init__.py
         if spec is not None:
@@ -49,6 +54,21 @@ def _list_module_folders(share: Path, package: str) -> Iterator[Path]:
     root = find_python_root(share, package)
     if root is not None:
         yield root
+
+
+def _find_renamed_package(share: Path, name: str) -> ModuleSpec | None:
+    """Return the spec of a Python package that ``CMakeLists.txt`` installs from a folder with another name."""
+    build_file = share / "CMakeLists.txt"
+    if is_installed(share) or "PACKAGE_DIR" not in read_text(build_file):
+        return None
+    from linkwright.packages.readers.cmake import read_cmake
+
+    folder = read_cmake(SourceText(str(build_file), read_text(build_file)), share).python_packages.get(name)
+    if folder is None or not (share / folder / "__init__.py").is_file():
+        return None
+    return spec_from_file_location(
+        name, share / folder / "__init__.py", submodule_search_locations=[str(share / folder)]
+    )
 
 
 def _find_module(name: str, folders: Iterable[Path]) -> ModuleSpec | None:

@@ -144,8 +144,10 @@ class CMakeFile:
         project: the name of the project, or None.
         copies: the install rules that copy files.
         targets: the names of the programs that are built or installed as targets.
+        output_names: the file names of targets whose files have another name.
         interfaces: the interface files for which code is generated, relative to the package.
         modules: the installed Python packages and modules, as folders and files relative to the package.
+        python_packages: the folders of the installed Python packages by name, relative to the package.
         hooks: the installed files that set environment variables, relative to the prefix.
         compiled: the compiled targets.
         foreign: the commands of other packages, which may install additional files.
@@ -157,8 +159,10 @@ class CMakeFile:
     project: Argument | None = None
     copies: list[CopyRule] = field(default_factory=list)
     targets: set[str] = field(default_factory=set)
+    output_names: dict[str, str] = field(default_factory=dict)
     interfaces: list[str] = field(default_factory=list)
     modules: list[str] = field(default_factory=list)
+    python_packages: dict[str, str] = field(default_factory=dict)
     hooks: list[str] = field(default_factory=list)
     compiled: list[str] = field(default_factory=list)
     foreign: list[str] = field(default_factory=list)
@@ -200,7 +204,7 @@ class CMakeFile:
     @property
     def executables(self) -> set[str]:
         """The names of all programs that are built or installed."""
-        return self.targets | set(self.programs)
+        return {self.output_names.get(target, target) for target in self.targets} | set(self.programs)
 
     def span(self, argument: Argument) -> Span:
         """Return the location of an argument."""
@@ -321,6 +325,10 @@ def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> N
         executable = _find_argument_after(words, "EXECUTABLE")
         if executable is not None and not is_open(executable):
             file.targets.add(executable)
+    elif name in ("set_target_properties", "set_property"):
+        _read_output_name(file, name, words)
+    elif name == "externalproject_add":
+        file.unknown.append(f"the effect of its command {name}() is not known here")
     elif name == "configure_file" and len(words) > 1 and not is_open(words[0]):
         source = to_package_path(words[0], command.folder)
         file._generated[_resolve_build_path(words[1], program)] = InstalledFile(source, "", dict(program.variables))
@@ -336,7 +344,9 @@ def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> N
             to_package_path(word, command.folder) for word in words if word.endswith(_INTERFACE_SUFFIXES)
         ]
     elif name == "ament_python_install_package" and words:
-        file.modules.append(to_package_path(_find_argument_after(words, "PACKAGE_DIR") or words[0], command.folder))
+        folder = to_package_path(_find_argument_after(words, "PACKAGE_DIR") or words[0], command.folder)
+        file.modules.append(folder)
+        file.python_packages[words[0]] = folder
     elif name == "ament_python_install_module" and words:
         file.modules.append(to_package_path(words[0], command.folder))
     elif name == "ament_environment_hooks":
@@ -350,6 +360,16 @@ def _read_command(file: CMakeFile, command: Command, program: CMakeProgram) -> N
         if "INSTALL_TO_SHARE" in words:
             share = f"share/{file.project.text if file.project else ''}"
             _add_rule(file, CopyRule("DIRECTORY", arguments[words.index("INSTALL_TO_SHARE") + 1 :], share), command)
+
+
+def _read_output_name(file: CMakeFile, command: str, words: Sequence[str]) -> None:
+    """Record the file names that a command gives to targets."""
+    end, start = ("PROPERTIES", 0) if command == "set_target_properties" else ("PROPERTY", 1)
+    if end not in words or (command == "set_property" and words[0] != "TARGET"):
+        return
+    output_name = _find_argument_after(words, "OUTPUT_NAME") or _find_argument_after(words, "RUNTIME_OUTPUT_NAME")
+    if output_name is not None and not is_open(output_name):
+        file.output_names.update(dict.fromkeys(words[start : words.index(end)], output_name))
 
 
 def _resolve_build_path(word: str, program: CMakeProgram) -> str:

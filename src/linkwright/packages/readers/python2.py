@@ -9,7 +9,7 @@ from linkwright.loading.deferred import lazy_pattern
 _TOKEN = lazy_pattern(
     r"""(?P<text>[rRbBuU]{0,2}(?:'{3}.*?(?<!\\)'{3}|\"{3}.*?(?<!\\)\"{3}|'(?:\\.|[^'\\\n])*'|\"(?:\\.|[^\"\\\n])*\"))
     |(?P<comment>\#[^\n]*)|(?P<line>\\\n)|(?P<end>\n)|(?P<word>[A-Za-z_]\w*)
-    |(?P<number>\.?\d[\w.]*)|(?P<unequal><>)|(?P<quote>`)|(?P<other>.)""",
+    |(?P<number>0[xX]\w+|\.?\d(?:[eE][+-]?(?=\d)|[\w.])*)|(?P<unequal><>)|(?P<quote>`)|(?P<other>.)""",
     re.VERBOSE | re.DOTALL,
 )
 _OCTAL = lazy_pattern(r"0[0-7]+[lL]?")

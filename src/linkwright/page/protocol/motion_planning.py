@@ -81,6 +81,13 @@ class MoveSceneObject(PageMessage):
     rpy: list[float]
 
 
+class SelectSceneObject(PageMessage):
+    """The object of the planning scene that gets a handle; an empty name takes the handle away."""
+
+    display: str
+    name: str
+
+
 class RemoveSceneObject(PageMessage):
     """The removal of an object from the planning scene."""
 
@@ -153,6 +160,7 @@ class MotionPlanningState(DataContent):
         pipeline: the chosen pipeline; empty for the default.
         planner: the chosen planner; empty for the default.
         settings: the settings of requests.
+        draggable: whether the goal state has a handle.
         joints: the joints of the group with their positions in the goal state.
         unreachable: the names of the handles at poses that cannot be reached.
         colliding: the links of the goal state that collide.
@@ -178,6 +186,7 @@ class MotionPlanningState(DataContent):
     pipeline: str
     planner: str
     settings: PlanningSettings
+    draggable: bool
     joints: list[PlannedJoint]
     unreachable: list[str]
     colliding: list[str]

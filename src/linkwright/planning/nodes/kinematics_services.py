@@ -25,8 +25,9 @@ from linkwright.planning.nodes.conversions import (
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
-from linkwright.planning.nodes.worker import MustStop, PlanningWorker
+from linkwright.planning.nodes.worker import PlanningWorker
 from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
+from linkwright.planning.planner_process import MustStop
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.timing import Trajectory
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND

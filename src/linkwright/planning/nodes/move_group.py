@@ -15,6 +15,7 @@ from linkwright.graph.actions.goal import CancelResponse
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_action, get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
+from linkwright.planning.nodes.awaited_descriptions import AwaitedDescriptions
 from linkwright.planning.nodes.conversions import (
     RequestError,
     trajectory_message,
@@ -23,7 +24,7 @@ from linkwright.planning.nodes.execution import TrajectoryExecution, check_start
 from linkwright.planning.nodes.kinematics_services import KinematicsServices
 from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.planning_services import PlanningServices
-from linkwright.planning.nodes.robot_context import RobotContext, read_description
+from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.sequence_services import SequenceServices
 
@@ -36,7 +37,7 @@ class MoveGroup(SingleNode):
     """The node move_group.
 
     Raises:
-        LinkwrightError: ARM104, a parameter with a description is missing; or the description has errors.
+        LinkwrightError: a description in a parameter has errors.
     """
 
     DEFAULT_NAME = "move_group"
@@ -47,21 +48,19 @@ class MoveGroup(SingleNode):
             self._parameters = {
                 name: parameter.value for name, parameter in self._node.get_parameters_by_prefix("").items()
             }
-            self._start()
+            self._is_started = False
+            AwaitedDescriptions(self._node, self._parameters, self._start)
 
     def close(self) -> None:
         """Stop the planning and the execution, and destroy the node."""
-        self._planning.stop()
-        self._kinematics.stop()
-        self._execution.stop()
+        if self._is_started:
+            self._planning.stop()
+            self._kinematics.stop()
+            self._execution.stop()
         super().close()
 
-    def _start(self) -> None:
+    def _start(self, urdf: str, srdf: str) -> None:
         node, parameters = self._node, self._parameters
-        urdf, srdf = (
-            read_description(parameters, name, self.DEFAULT_NAME)
-            for name in ("robot_description", "robot_description_semantic")
-        )
         self._robot = RobotContext(node, urdf, srdf, parameters)
         controllers, problems = read_controllers(parameters)
         for problem in problems:
@@ -98,6 +97,7 @@ class MoveGroup(SingleNode):
         node.create_subscription("std_msgs/msg/String", "trajectory_execution_event", self._on_event, 10)
         if parameters.get("publish_robot_description_semantic", False):
             self._publish_semantics(srdf)
+        self._is_started = True
         node.get_logger().info("You can start planning now!")
 
     def _publish_semantics(self, srdf: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from time import perf_counter
 from typing import Any
 
@@ -20,8 +21,9 @@ from linkwright.planning.nodes.pipelines import Pipelines
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
-from linkwright.planning.nodes.worker import MustStop, PlanningWorker, Result, never
+from linkwright.planning.nodes.worker import PlanningWorker, never
 from linkwright.planning.planner import MotionPlanner, PlanError, PlanRequest
+from linkwright.planning.planner_process import MustStop, Result, Work
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.timing import Trajectory
 
@@ -31,7 +33,7 @@ _DEFAULT_PLANNING_TIME_S = 5.0
 class PlanningServices:
     """The services that plan motions and list planners, and the planning of actions.
 
-    One motion is planned at a time, in another thread.
+    One motion is planned at a time, in another process.
 
     Args:
         node: the node that offers the services.
@@ -51,7 +53,7 @@ class PlanningServices:
     ) -> None:
         self._node, self._robot, self._monitor, self._pipelines = node, robot, monitor, pipelines
         self._default_scale = default_scale
-        self._worker = PlanningWorker(robot, monitor, is_lockstep=node.graph.timebase.is_lockstep)
+        self._worker = PlanningWorker(robot, monitor, is_lockstep=node.graph.timebase.is_lockstep, has_process=True)
         self._error_codes = get_message("moveit_msgs/msg/MoveItErrorCodes")
         self._path_publisher: Publisher[Any] = node.create_publisher(
             "moveit_msgs/msg/DisplayTrajectory", "display_planned_path", 10
@@ -92,13 +94,13 @@ class PlanningServices:
         Args:
             request: a moveit_msgs/msg/MotionPlanRequest.
             scene: the scene.
-            is_canceled: returns whether the planning must stop; it is also called in other threads.
+            is_canceled: returns whether the planning must stop; it is called in another thread.
 
         Raises:
             RequestError: there is no plan, or the planning was canceled.
         """
         plan_request, scene = self.prepare(request, scene, self._robot.positions)
-        trajectory = await self.run(scene, lambda planner: planner.plan(plan_request), is_canceled)
+        trajectory = await self.run(scene, partial(_plan, plan_request), is_canceled)
         self.publish_path(plan_request.start, [(plan_request.group, trajectory)])
         return plan_request.start, trajectory, plan_request.group.joint_names
 
@@ -126,25 +128,19 @@ class PlanningServices:
         scene = self._monitor.scene_with(request.start_state, start, scene)
         return self._make_request(request, group, start), scene
 
-    async def run(
-        self, scene: SceneState, work: Callable[[MotionPlanner], Result], is_canceled: MustStop = never
-    ) -> Result:
-        """Return what a function computes with a planner in another thread, after other plans.
+    async def run(self, scene: SceneState, work: Work[Result], is_canceled: MustStop = never) -> Result:
+        """Return what a function computes in another process, after other plans.
 
         Args:
-            scene: the scene of the planner.
-            work: the function.
-            is_canceled: returns whether the planning must stop; it is also called in the other thread.
+            scene: the scene.
+            work: the function of a module, or a `functools.partial` of one.
+            is_canceled: returns whether the planning must stop; it is called in another thread.
 
         Raises:
             RequestError: there is no plan, or the planning was canceled.
         """
-
-        def compute(model: RobotModel, collisions: CollisionScene, must_stop: MustStop) -> Result:
-            return work(MotionPlanner(model, collisions, must_stop))
-
         try:
-            return await self._worker.run(scene, compute, is_canceled)
+            return await self._worker.run(scene, work, is_canceled)
         except PlanError as error:
             raise RequestError(error.failure.name, self._explain(error)) from None
         except LinkwrightError as error:  # OMPL is not installed.
@@ -206,3 +202,7 @@ class PlanningServices:
             trajectory_message(group.joint_names, trajectory, self._robot.frame) for group, trajectory in motions
         ]
         self._path_publisher.publish(message)
+
+
+def _plan(request: PlanRequest, model: RobotModel, scene: CollisionScene, must_stop: MustStop) -> Trajectory:
+    return MotionPlanner(model, scene, must_stop).plan(request)

@@ -5,7 +5,7 @@ They have the interfaces, error codes and texts of the capabilities of Pilz' ind
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from functools import partial
 from itertools import pairwise
 from time import perf_counter
@@ -15,13 +15,15 @@ from linkwright.graph import ActionServer, Node
 from linkwright.graph.actions.goal import CancelResponse
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_action, get_message, get_service
+from linkwright.planning.collision_scene import CollisionScene
 from linkwright.planning.nodes.conversions import RequestError, trajectory_message, update_positions
 from linkwright.planning.nodes.planning_services import PlanningServices
 from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
-from linkwright.planning.nodes.worker import MustStop, never
+from linkwright.planning.nodes.worker import never
 from linkwright.planning.planner import MotionPlanner, Plan, PlanError, PlanRequest
+from linkwright.planning.planner_process import MustStop
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.sequences import Command, SequenceMotion, check_radii, join_commands
 
@@ -138,9 +140,7 @@ class SequenceServices:
             end = get_message("sensor_msgs/msg/JointState")()
             end.name, end.position = list(request.group.joint_names), plan.path[-1].tolist()
             positions = update_positions(self._robot.model.joint_names, plan.start, end)
-        return await self._planning.run(
-            scene, lambda planner: join_commands(planner, RobotModel(self._robot.robot), commands), is_canceled
-        )
+        return await self._planning.run(scene, partial(_join, commands), is_canceled)
 
     def _read_radii(self, items: Any) -> list[float]:
         """Return the blend radii of a sequence; a motion that cannot be blended stops at its goal, with a warning."""
@@ -176,8 +176,14 @@ class SequenceServices:
         return ""
 
 
-def _plan_path(request: PlanRequest, planner: MotionPlanner) -> Plan:
-    return planner.plan_path(request)
+def _plan_path(request: PlanRequest, model: RobotModel, scene: CollisionScene, must_stop: MustStop) -> Plan:
+    return MotionPlanner(model, scene, must_stop).plan_path(request)
+
+
+def _join(
+    commands: Sequence[Command], model: RobotModel, scene: CollisionScene, must_stop: MustStop
+) -> list[SequenceMotion]:
+    return join_commands(MotionPlanner(model, scene, must_stop), model, commands)
 
 
 def _check_start_states(items: Any) -> None:

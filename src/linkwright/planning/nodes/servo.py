@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase
 from linkwright.geometry.arrays import Array, compose, quaternion_inverse, quaternion_multiply, rotate
@@ -64,6 +65,7 @@ class ServoNode(SingleNode):
         self._is_paused = self._is_humble
         self._commands: dict[int, Any] = {}
         self._remaining_halts = 0
+        self._controlled_dimensions: NDArray[np.bool_] = np.ones(6, dtype=bool)
         self._set_up_scene()
         self._set_up_interfaces()
 
@@ -105,6 +107,9 @@ class ServoNode(SingleNode):
         if self._is_humble:
             node.create_service(trigger, "~/pause_servo", self._pause)
             node.create_service(trigger, "~/unpause_servo", self._unpause)
+            for what, change in (("Drift", self._change_drift), ("Control", self._change_control)):
+                kind = f"moveit_msgs/srv/Change{what}Dimensions"
+                node.create_service(get_service(kind), f"~/change_{what.lower()}_dimensions", change)
         else:
             node.create_service(get_service("std_srvs/srv/SetBool"), "~/pause_servo", self._set_pause)
         node.create_service(
@@ -143,6 +148,16 @@ class ServoNode(SingleNode):
             self._mode = request.command_type
         else:
             self._node.get_logger().warning(f"Unknown command type {request.command_type} requested")
+        return response
+
+    def _change_drift(self, request: Any, response: Any) -> Any:
+        self._servo.drifts = _read_dimensions(request, "drift")
+        response.success = True
+        return response
+
+    def _change_control(self, request: Any, response: Any) -> Any:
+        self._controlled_dimensions = _read_dimensions(request, "control")
+        response.success = True
         return response
 
     def _on_command(self, mode: int, message: Any) -> None:
@@ -247,6 +262,7 @@ class ServoNode(SingleNode):
             np.array((vector.x, vector.y, vector.z)) for vector in (command.twist.linear, command.twist.angular)
         )
         self._check_range(np.concatenate((linear, angular)))
+        linear, angular = (linear, angular) * self._controlled_dimensions.reshape(2, 3)
         if self._is_unitless:
             linear, angular = linear * self._parameters.linear_scale, angular * self._parameters.rotational_scale
         frame = self._robot.frame_pose(
@@ -321,3 +337,9 @@ class ServoNode(SingleNode):
             self._status_publisher.publish(get_message("std_msgs/msg/Int8")(data=_HUMBLE_CODES.get(condition, code)))
         else:
             self._status_publisher.publish(status(code=code, message=condition.value))
+
+
+def _read_dimensions(request: Any, word: str) -> NDArray[np.bool_]:
+    """Return which dimensions a request names: linear and angular along and about x, y and z, shape (6,)."""
+    names = [f"{word}_{axis}_{kind}" for kind in ("translation", "rotation") for axis in "xyz"]
+    return np.array([getattr(request, name) for name in names], dtype=bool)

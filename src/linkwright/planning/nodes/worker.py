@@ -1,11 +1,9 @@
-"""Computations of move_group in another thread, so that they do not block controllers on the event loop."""
+"""Computations of move_group beside the event loop, so that they do not block controllers there."""
 
 from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Callable
-from typing import TypeVar
 
 from linkwright.planning.collision_scene import CollisionScene
 from linkwright.planning.effort import counted_effort
@@ -14,12 +12,8 @@ from linkwright.planning.nodes.robot_context import RobotContext
 from linkwright.planning.nodes.scene_monitor import SceneMonitor
 from linkwright.planning.nodes.scene_state import SceneState
 from linkwright.planning.planner import Failure
+from linkwright.planning.planner_process import IS_POSSIBLE, MustStop, PlannerProcess, Result, SceneContent, Work
 from linkwright.planning.robot_model import RobotModel
-
-Result = TypeVar("Result")
-MustStop = Callable[[], bool]
-Work = Callable[[RobotModel, CollisionScene, MustStop], Result]
-"""A computation with a robot and a scene, which it may move; the function tells it to stop."""
 
 _POLL_S = 0.02
 """The time in s between two checks of whether a computation that waits for others is canceled."""
@@ -43,10 +37,19 @@ class PlanningWorker:
         robot: the robot.
         monitor: the planning scene, which compiles scenes.
         is_lockstep: whether the graph is in lockstep.
+        has_process: whether computations run in a process of their own where this is possible. The other thread
+            waits for it.
     """
 
-    def __init__(self, robot: RobotContext, monitor: SceneMonitor, *, is_lockstep: bool) -> None:
+    def __init__(
+        self, robot: RobotContext, monitor: SceneMonitor, *, is_lockstep: bool, has_process: bool = False
+    ) -> None:
         self._robot, self._monitor, self._is_lockstep = robot, monitor, is_lockstep
+        has_process = has_process and IS_POSSIBLE and not is_lockstep
+        self._process = PlannerProcess(robot.robot, robot.shapes) if has_process else None
+        self._content: tuple[SceneState, SceneContent] | None = None
+        if self._process is not None:
+            self._process.start()
         self._turns = asyncio.Lock()
         self._is_stopped = threading.Event()
         self._model: RobotModel | None = None
@@ -56,13 +59,15 @@ class PlanningWorker:
     def stop(self) -> None:
         """Cancel the current computation and those that wait."""
         self._is_stopped.set()
+        if self._process is not None:
+            self._process.close()
 
     async def run(self, scene: SceneState | None, work: Work[Result], is_canceled: MustStop = never) -> Result:
         """Return what a function computes in the other thread.
 
         Args:
             scene: the scene, as it is when the function starts; None for the robot without shapes.
-            work: the function.
+            work: the function. Those for a process are pickled, and have a scene.
             is_canceled: returns whether the computation must stop; it is also called in the other thread.
 
         Raises:
@@ -96,6 +101,11 @@ class PlanningWorker:
         return not turn.cancel()
 
     def _compute(self, scene: SceneState | None, work: Work[Result], must_stop: MustStop) -> Result:
+        if self._process is not None:
+            assert scene is not None, "only planning has a process"
+            if self._content is None or not scene.collides_like(self._content[0]):
+                self._content = scene, SceneContent(scene.scene_objects(), scene.allowed, scene.margins)
+            return self._process.run(self._content[1], work, must_stop)
         if self._model is None:
             self._model = RobotModel(self._robot.robot)
         return work(self._model, self._compile(scene), must_stop)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Sequence
+from math import isfinite
 from typing import Any, ClassVar
 
 from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.geometry.single import Transform
 from linkwright.graph import QoSProfile
 from linkwright.page.outbox import Payload
 from linkwright.page.protocol.markers import InteractiveMarkerMoved, MarkerFeedback, MarkerShape
@@ -14,11 +17,18 @@ from linkwright.page.protocol.motion_planning import (
     ChooseQueryState,
     CommandMotion,
     QueryName,
+    SelectSceneObject,
     SetQueryJoint,
 )
 from linkwright.planning.known_names import leave_out_unknown_names
-from linkwright.planning.page.groups import PlanningGroup, Tip, read_groups
-from linkwright.planning.page.handles import choose_size, describe_place, make_handle, name_handle
+from linkwright.planning.page.groups import PlanningGroup, read_groups
+from linkwright.planning.page.handles import (
+    choose_size,
+    describe_place,
+    make_handle,
+    name_handle,
+    name_object_handle,
+)
 from linkwright.planning.page.move_group import MoveGroupClient
 from linkwright.planning.page.panel_state import make_panel_state
 from linkwright.planning.page.properties import (
@@ -33,7 +43,13 @@ from linkwright.planning.page.properties import (
     read_workspace,
     request_spec,
 )
-from linkwright.planning.page.scene_edits import SCENE_REQUESTS, SceneRequest, make_differences
+from linkwright.planning.page.scene_edits import (
+    SCENE_REQUESTS,
+    SceneRequest,
+    find_object_pose,
+    make_differences,
+    place_object,
+)
 from linkwright.planning.page.semantic_source import SemanticSource
 from linkwright.planning.page.session import QUERIES, PlanningSession
 from linkwright.planning.semantics import Semantics, read_semantics
@@ -49,7 +65,7 @@ from linkwright.rviz.displays.moveit.properties import (
     parse_rgb,
     path_specs,
 )
-from linkwright.rviz.displays.moveit.robot import Appearance, JointPositions
+from linkwright.rviz.displays.moveit.robot import Appearance
 from linkwright.rviz.displays.moveit.solids import Color
 from linkwright.rviz.displays.moveit.trajectory import MotionPlayer
 from linkwright.rviz.markers.shapes import make_marker
@@ -59,6 +75,7 @@ _SEMANTICS_ROW = "SRDF"
 _REACH_ROW = "Inverse Kinematics"
 _MOVE_GROUP_ROW = "move_group"
 _WORKSPACE_COLOR: Color = (0.0, 0.0, 0.6, 0.3)
+_OBJECT_HANDLE_COLOR = (0.2, 0.6, 1.0)
 _TITLES: dict[QueryName, str] = {"start": "Start", "goal": "Goal"}
 
 
@@ -93,6 +110,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
             self._on_released,
         )
         self._sent_handles: dict[str, tuple[object, list[float]]] = {}
+        self._selected_object = ""
         self._sent_state: object = None
         self._update_handle: asyncio.Handle | None = None
 
@@ -191,6 +209,9 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         elif isinstance(message, ChoosePlanner):
             self._session.pipeline, self._session.planner = message.pipeline, message.planner
             self._schedule_update()
+        elif isinstance(message, SelectSceneObject):
+            self._selected_object = message.name
+            self._schedule_update()
         elif isinstance(message, SCENE_REQUESTS):
             self._edit_scene(message)
         else:
@@ -204,16 +225,29 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
                 self._session.apply_scene(difference)
 
     def _drag(self, feedback: MarkerFeedback) -> None:
-        group = self._session.group
+        group, handle = self._session.group, feedback.marker
+        pose: Transform | None = None
+        if feedback.event == "pose_update" and len(feedback.pose) == 7 and all(map(isfinite, feedback.pose)):
+            x, y, z, qx, qy, qz, qw = feedback.pose
+            pose = (x, y, z, qx, qy, qz, qw)
+        if handle == name_object_handle(self._selected_object):
+            self._drag_object(handle, pose, is_released=feedback.event == "mouse_up")
+            return
         for query in QUERIES:
             for tip in group.tips if group else ():
-                if name_handle(query, tip) != feedback.marker:
+                if name_handle(query, tip) != handle:
                     continue
-                if feedback.event == "pose_update" and len(feedback.pose) == 7:
-                    x, y, z, qx, qy, qz, qw = feedback.pose
-                    self._session.drag(query, tip, (x, y, z, qx, qy, qz, qw), feedback.marker)
+                if pose is not None:
+                    self._session.drag(query, tip, pose, handle)
                 elif feedback.event == "mouse_up":
-                    self._session.release(feedback.marker)
+                    self._session.release(handle)
+
+    def _drag_object(self, handle: str, pose: Transform | None, *, is_released: bool) -> None:
+        selected = self.scene.objects.get(self._selected_object)
+        if selected is not None and pose is not None:
+            self._session.apply_scene(place_object(selected, pose), handle)
+        elif is_released:
+            self._session.release_object(handle)
 
     def _on_released(self, handle: str) -> None:
         """Move a handle that the user released to the link in the state that was found."""
@@ -321,7 +355,14 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         self._send_handles()
         self._report_planning()
         groups, settings = tuple(self._groups_by_name), read_settings(self.properties)
-        state = make_panel_state(self._session, self.scene, groups, settings, has_state=self._has_state)
+        state = make_panel_state(
+            self._session,
+            self.scene,
+            groups,
+            settings,
+            has_state=self._has_state,
+            shows_goal=self._is_query_shown("goal"),
+        )
         if state != self._sent_state:
             self._sent_state = state
             self.send(state, key=_PANEL_KEY)
@@ -377,23 +418,30 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
             if group is None or robot is None or not self._has_state or not self._is_query_shown(name):
                 continue
             state = self._session.state(name)
+            color = parse_rgb(self.properties.text(REQUEST, f"{_TITLES[name]} State Color"))
             for tip in group.tips:
-                shown.add(name_handle(name, tip))
-                self._send_handle(name, tip, state)
+                handle = name_handle(name, tip)
+                shown.add(handle)
+                self._send_handle(handle, *describe_place(robot, state, tip), tip.link, color)
+        selected = self.scene.objects.get(self._selected_object)
+        if selected is not None and robot is not None:
+            handle = name_object_handle(selected.id)
+            shown.add(handle)
+            tips = group.tips if group is not None else ()
+            frame = selected.frame or robot.frame_of(self.scene.state)
+            link = tips[0].link if tips else robot.link_names[-1]
+            self._send_handle(handle, frame, find_object_pose(selected), link, _OBJECT_HANDLE_COLOR)
         for handle in self._sent_handles.keys() - shown:
             del self._sent_handles[handle]
             self.remove_content(f"marker {handle}")
             self.remove_content(f"pose {handle}")
 
-    def _send_handle(self, name: QueryName, tip: Tip, state: JointPositions) -> None:
-        robot = self.robot
-        assert robot is not None
-        handle = name_handle(name, tip)
-        frame, pose = describe_place(robot, state, tip)
-        size = choose_size(robot, tip, self.properties.number(REQUEST, MARKER_SIZE))
-        color = parse_rgb(self.properties.text(REQUEST, f"{_TITLES[name]} State Color"))
+    def _send_handle(self, handle: str, frame: str, pose: Transform, link: str, color: Sequence[float]) -> None:
+        """Send a handle if it changed; `link` is the tip of the arm that determines its size."""
+        assert self.robot is not None
+        size = choose_size(self.robot, link, self.properties.number(REQUEST, MARKER_SIZE))
         sent_key, sent_pose = self._sent_handles.get(handle, (None, []))
-        key = (frame, size, color)
+        key = (frame, size, tuple(color))
         if key != sent_key:
             self.remove_content(f"pose {handle}")
             self.send(make_handle(handle, frame, pose, size, color, self._meshes), key=f"marker {handle}", frame=frame)

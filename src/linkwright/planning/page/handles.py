@@ -1,4 +1,4 @@
-"""The handles with which the page drags the tips of a planning group."""
+"""The handles with which the page drags the tips of a planning group, and an object of the planning scene."""
 
 from __future__ import annotations
 
@@ -33,17 +33,22 @@ def name_handle(query: str, tip: Tip) -> str:
     return f"{query} {tip.link}"
 
 
-def choose_size(robot: PosableRobot, tip: Tip, size: float) -> float:
+def name_object_handle(name: str) -> str:
+    """Return the name of the handle of an object of the planning scene."""
+    return f"object {name}"
+
+
+def choose_size(robot: PosableRobot, link: str, size: float) -> float:
     """Return the size of a handle in meters.
 
     Args:
         robot: the robot.
-        tip: the link of the handle.
+        link: the tip of the arm.
         size: the size that the user chose; 0 for a fifth of the arm's reach.
     """
     if size > 0.0:
         return size
-    return min(max(_SHARE_OF_REACH * robot.compute_reach(tip.link), _MIN_SIZE_M), _MAX_SIZE_M)
+    return min(max(_SHARE_OF_REACH * robot.compute_reach(link), _MIN_SIZE_M), _MAX_SIZE_M)
 
 
 def make_handle(

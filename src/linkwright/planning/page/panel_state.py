@@ -14,7 +14,13 @@ from linkwright.rviz.displays.moveit.scene import Scene
 
 
 def make_panel_state(
-    session: PlanningSession, scene: Scene, groups: tuple[str, ...], settings: PlanningSettings, *, has_state: bool
+    session: PlanningSession,
+    scene: Scene,
+    groups: tuple[str, ...],
+    settings: PlanningSettings,
+    *,
+    has_state: bool,
+    shows_goal: bool,
 ) -> MotionPlanningState:
     """Return the content for the panel.
 
@@ -24,6 +30,7 @@ def make_panel_state(
         groups: the names of the planning groups.
         settings: the settings of requests.
         has_state: whether the state of the robot is known.
+        shows_goal: whether the goal state is drawn.
     """
     group, goal = session.group, session.state("goal")
     return MotionPlanningState(
@@ -37,6 +44,7 @@ def make_panel_state(
         pipeline=session.pipeline,
         planner=session.planner,
         settings=settings,
+        draggable=shows_goal and group is not None and bool(group.tips),
         joints=[
             PlannedJoint(joint.name, joint.kind, joint.lower, joint.upper, goal.values.get(joint.name, 0.0))
             for joint in (group.joints if group else ())

@@ -93,10 +93,19 @@ def make_moved_object(request: MoveSceneObject, scene: Scene) -> Any:
     if scene_object is None or len(request.position) != 3 or len(numbers) != 6 or not all(map(math.isfinite, numbers)):
         return None
     x, y, z, roll, pitch, yaw = numbers
-    target: Transform = (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
-    moved = _make_object(request.name, scene_object.frame, _MOVE)
+    return place_object(scene_object, (x, y, z, *quaternion_from_rpy((roll, pitch, yaw))))
+
+
+def place_object(scene_object: SceneObject, target: Transform) -> Any:
+    """Return the scene difference that moves an object so that its first shape has a pose in its frame."""
+    moved = _make_object(scene_object.id, scene_object.frame, _MOVE)
     moved.pose = make_pose(compose(target, invert(_find_offset(scene_object))))
     return _make_difference(moved)
+
+
+def find_object_pose(scene_object: SceneObject) -> Transform:
+    """Return the pose of the first shape of an object in the frame of the object."""
+    return compose(_to_transform(scene_object.pose), _find_offset(scene_object))
 
 
 def make_removed_object(name: str, scene: Scene) -> list[Any]:
@@ -142,7 +151,7 @@ def find_links_around(robot: Robot, link: str, separating_joints: Iterable[str])
 
 
 def _describe(name: str, link: str, scene_object: SceneObject) -> PlanningObject:
-    x, y, z, *rotation = compose(_to_transform(scene_object.pose), _find_offset(scene_object))
+    x, y, z, *rotation = find_object_pose(scene_object)
     qx, qy, qz, qw = rotation
     roll, pitch, yaw = rpy_from_quaternion((qx, qy, qz, qw))
     return PlanningObject(name, link, scene_object.frame or link, [x, y, z], [roll, pitch, yaw])

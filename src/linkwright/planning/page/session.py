@@ -103,8 +103,10 @@ class PlanningSession:
         self._random = random or Random()  # noqa: S311  # not for secrets
         self._ik = LatestJob(self._end_drags)
         self._released: set[str] = set()
-        self._sampling, self._motion, self._listing, self._editing = (LatestJob() for _ in range(4))
-        self._differences: deque[Any] = deque()
+        self._sampling, self._motion, self._listing = (LatestJob() for _ in range(3))
+        self._editing = LatestJob(self._end_object_drags)
+        self._released_objects: set[str] = set()
+        self._differences: deque[tuple[Any, str]] = deque()
         self.is_refused = False
         self._validity: dict[QueryName, LatestJob] = {"start": LatestJob(), "goal": LatestJob()}
         self.robot: PosableRobot | None = None
@@ -315,15 +317,35 @@ class PlanningSession:
 
     # --- planning scene ----------------------------------------------------------------------------------------
 
-    def apply_scene(self, difference: Any) -> None:
-        """Apply a difference to the planning scene of move_group, after the differences before it."""
-        self._differences.append(difference)
+    def apply_scene(self, difference: Any, handle: str = "") -> None:
+        """Apply a difference to the planning scene of move_group, after the differences before it.
+
+        Args:
+            difference: the moveit_msgs/msg/PlanningScene.
+            handle: the handle that is dragged. The difference replaces an earlier one of this handle that still waits.
+        """
+        if handle and self._differences and self._differences[-1][1] == handle:
+            self._differences.pop()
+        self._differences.append((difference, handle))
         self._editing.request(self._apply_differences)
+
+    def release_object(self, handle: str) -> None:
+        """End the drag of an object's handle, which returns to the object if move_group did not move it."""
+        self._released_objects.add(handle)
+        if not self._editing.is_running:
+            self._end_object_drags()
 
     async def _apply_differences(self) -> None:
         while self._differences and self.client is not None:
-            self.is_refused = not await self.client.apply_scene(self._differences.popleft())
+            difference, _ = self._differences.popleft()
+            self.is_refused = not await self.client.apply_scene(difference)
             self._on_changed()
+
+    def _end_object_drags(self) -> None:
+        released, self._released_objects = self._released_objects, set()
+        if self.is_refused:
+            for handle in released:
+                self._on_released(handle)
 
     # --- motions -----------------------------------------------------------------------------------------------
 

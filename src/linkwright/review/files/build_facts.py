@@ -12,6 +12,7 @@ from linkwright.diagnostics import Phrase, Span, joined, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_commands import compare_other_commands
+from linkwright.review.files.cmake_branches import is_test_condition
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
@@ -248,7 +249,7 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new))
         if kind is FactKind.STOP:
             _report_reworded_errors(pair, removed, added)
-        _report_unpaired(pair, kind, removed, added)
+        _report_unpaired(pair, kind, removed, added, is_replaced=_exports_folders_otherwise(kind, new))
     _report_conditions(pair, conditions)
     _report_repeated_exports(pair, old, new)
     _compare_files(pair, old, new)
@@ -322,8 +323,15 @@ def _compare_values(pair: FilePair, old: tuple[BuildFacts, Fact], new: tuple[Bui
     pair.add(text, pair.location(new_fact.span), reason)
 
 
-def _report_unpaired(pair: FilePair, kind: FactKind, removed: Sequence[Fact], added: Sequence[Fact]) -> None:
-    """Report the facts of a kind that only one version has."""
+def _exports_folders_otherwise(kind: FactKind, new: BuildFacts) -> bool:
+    """Return whether exported targets bring folders of headers with them."""
+    return kind is FactKind.EXPORTED_FOLDER and any(name == "ament_export_targets" for name, _ in new.other_commands)
+
+
+def _report_unpaired(
+    pair: FilePair, kind: FactKind, removed: Sequence[Fact], added: Sequence[Fact], *, is_replaced: bool
+) -> None:
+    """Report the facts of a kind that only one version has. Removed facts that others replace are not breaking."""
     if added:
         reason = None
         if kind is FactKind.STOP:
@@ -331,7 +339,9 @@ def _report_unpaired(pair: FilePair, kind: FactKind, removed: Sequence[Fact], ad
         pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
     if removed:
         location = pair.location(removed[0].span, is_old=True)
-        pair.add(_format_facts(kind, removed, is_added=False), location, kind.reason)
+        is_harmless = is_replaced or all(is_test_condition(fact.condition) for fact in removed)
+        reason = None if is_harmless else kind.reason
+        pair.add(_format_facts(kind, removed, is_added=False), location, reason)
 
 
 def _report_repeated_exports(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
@@ -373,7 +383,7 @@ def _report_renamed(
             removed.remove(old)
             added.remove(new)
             text = phrase("{kind}: '{old}' renamed to '{new}'", kind=kind.title, old=old.name, new=new.name)
-            pair.add(text, pair.location(new.span), kind.reason)
+            pair.add(text, pair.location(new.span), None if is_test_condition(old.condition) else kind.reason)
 
 
 def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import SourceText
@@ -65,3 +66,8 @@ def _walk_branches(
             earlier.append(text)
             texts = [text]
         yield from _walk_block(branch, (*enclosing_conditions, *texts), depth)
+
+
+def is_test_condition(condition: str) -> bool:
+    """Return whether something is built or installed only for tests."""
+    return re.search(r"(?<!NOT )\b(?:BUILD_TESTING|CATKIN_ENABLE_TESTING)\b", condition) is not None

@@ -44,8 +44,8 @@ def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
         parts.is_test |= is_test
         parts.is_test_program |= is_test_program
         for argument in arguments:
-            if argument.text.isupper():
-                continue  # a keyword, such as PUBLIC
+            if argument.text.isupper() or not re.search(r"\w", argument.text):
+                continue  # a keyword, such as PUBLIC, or an unknown variable
             if command.name in _LINK_COMMANDS:
                 parts.libraries.setdefault(_get_library_name(argument.text, command.name), _get_span(argument))
             elif not is_open(argument.text) and (not is_test or _TEST_SOURCE.fullmatch(argument.text)):

@@ -26,6 +26,8 @@ _SEPARATOR = "---"
 _IDL = ".idl"
 _MIN_RENUMBERED = 3
 """The minimum number of changed constants that share a line. An inserted constant can renumber those below it."""
+_MIN_LISTED_FIELDS = 3
+"""The minimum number of added or removed fields that share a line."""
 _ROS2_TYPE = re.compile(r"^builtin_interfaces/(?:msg/)?(Time|Duration)\b")
 """A type of ROS 2 that is built in in ROS 1."""
 _PART_PREFIXES = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
@@ -47,8 +49,11 @@ def compare_interfaces(pair: FilePair) -> None:
         _compare(pair, *definitions)
     if definitions is not None and is_foreign:
         _report_ros1_types(pair, *definitions)
-    if not pair.is_lost and (is_foreign or is_unbuilt(pair.versions.old, pair.old_path)):
+    was_unbuilt = is_unbuilt(pair.versions.old, pair.old_path)
+    if not pair.is_lost and (is_foreign or was_unbuilt):
         pair.changes = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
+    if pair.old_path != pair.new_path and not was_unbuilt and is_unbuilt(pair.versions.new, pair.new_path):
+        pair.add(phrase("CMakeLists.txt does not build it"), Location(pair.new_path, 1, 1), _make_use_reason())
 
 
 def _read_ros1_definition(pair: FilePair) -> tuple[Mapping[str, Structure], Mapping[str, Structure]] | None:
@@ -96,7 +101,8 @@ def _compare(pair: FilePair, old: Mapping[str, Structure], new: Mapping[str, Str
         elif name not in old and new_part.fields:
             pair.add(phrase("structure '{name}' added", name=new_part.type_name), locations.new_start)
             continue
-        _compare_fields(pair, old_part.fields, new_part.fields, name, locations)
+        packages = [structure.type_name.partition("/")[0] for structure in (old_part, new_part)]
+        _compare_fields(pair, old_part.fields, new_part.fields, name, locations, packages)
         _compare_constants(pair, old_part.constants, new_part.constants, name, locations, is_ros1=is_ros1)
     for name in [name for name in old if name not in new and name not in renamed.values()]:
         text = phrase("structure '{name}' removed", name=old[name].type_name)
@@ -246,8 +252,23 @@ def _read_numbered_lines(file: Path, index: int, name: str) -> list[tuple[int, s
 
 
 def _compare_fields(
-    pair: FilePair, old: Sequence[Field], new: Sequence[Field], part: str, locations: _Locations
+    pair: FilePair,
+    old: Sequence[Field],
+    new: Sequence[Field],
+    part: str,
+    locations: _Locations,
+    packages: Sequence[str],
 ) -> None:
+    """Report the changes to the fields of a structure.
+
+    Args:
+        pair: both versions of the file.
+        old: the fields in the old version.
+        new: the fields in the new version.
+        part: the prefix of the names of the fields.
+        locations: the locations of the fields.
+        packages: the packages of the interface in both versions.
+    """
     reason = _make_exchange_reason()
     renamed = find_renamed_fields(old, new)
     for old_field, new_field in renamed:
@@ -255,15 +276,18 @@ def _compare_fields(
         pair.add(text, locations.find(new_field.name), reason)
     names = {field.name for fields in renamed for field in fields}
     old_fields, new_fields = ({field.name: field for field in items if field.name not in names} for items in (old, new))
+    listed = _list_fields(pair, old_fields, new_fields, part, locations)
     for name in dict.fromkeys([*new_fields, *old_fields]):
         before, after = old_fields.get(name), new_fields.get(name)
+        if name in listed:
+            continue
         if before is None and after is not None:
             text = phrase("field '{name}' of type {type} added", name=part + name, type=after.type.to_msg_text())
             pair.add(text, locations.find(name), reason)
         elif after is None:
             text = phrase("field '{name}' removed", name=part + name)
             pair.add(text, locations.find(name, is_old=True), reason)
-        elif before is not None and before.type != after.type:
+        elif before is not None and not _have_same_type(before, after, packages):
             text = phrase(
                 "field '{name}': {old} -> {new}",
                 name=part + name,
@@ -282,6 +306,30 @@ def _compare_fields(
     common = [name for name in new_fields if name in old_fields]
     if common != [name for name in old_fields if name in new_fields]:
         pair.add(phrase("order of the fields changed"), locations.find(common[0]), reason)
+
+
+def _have_same_type(old: Field, new: Field, packages: Sequence[str]) -> bool:
+    """Return whether two fields have the same type, which may be of the package of the interface in each version."""
+    texts = old.type.to_msg_text(), new.type.to_msg_text()
+    is_moved = len(set(packages)) > 1 and texts[0].startswith(f"{packages[0]}/")
+    return old.type == new.type or (is_moved and texts[0].replace(packages[0], packages[1], 1) == texts[1])
+
+
+def _list_fields(
+    pair: FilePair, old: Mapping[str, Field], new: Mapping[str, Field], part: str, locations: _Locations
+) -> set[str]:
+    """Report several added or removed fields in one line each, and return the names of these fields."""
+    listed: set[str] = set()
+    for own, other, is_old in ((new, old, False), (old, new, True)):
+        names = [name for name in own if name not in other]
+        if len(names) >= _MIN_LISTED_FIELDS:
+            items = [f"{own[name].type.to_msg_text()} {part}{name}" for name in names]
+            text = phrase("fields added: {names}", names=joined_first(items, MAX_NAMES))
+            if is_old:
+                text = phrase("fields removed: {names}", names=joined_first(items, MAX_NAMES))
+            pair.add(text, locations.find(names[0], is_old=is_old), _make_exchange_reason())
+            listed.update(names)
+    return listed
 
 
 def _make_exchange_reason() -> Phrase:

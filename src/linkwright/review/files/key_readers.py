@@ -11,6 +11,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.list_changes import EMPTY, list_items
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -19,6 +20,8 @@ _SOURCE_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
 _COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
 _NAME_PARAMETER = re.compile(r"(^|[._])names?$")
 """The keys of lists of names. Other lists, such as modes, contain words that many programs use."""
+_PLACEHOLDER = re.compile(r"[A-Z][A-Z0-9_]*|<\w+>|\$\{?\w+\}?")
+"""A value that another one can replace."""
 _NAME = re.compile(r"[A-Za-z_][\w/.-]{3,}")
 
 
@@ -68,6 +71,13 @@ class KeyReaders:
             if reader is not None:
                 return phrase("'{file}' still uses the name '{name}'", file=reader, name=name)
         return None
+
+    def is_replaced(self, value: str) -> bool:
+        """Return whether a launch file replaces a value, such as ``KEEPOUT_ENABLED``, before it loads the file."""
+        if not _PLACEHOLDER.fullmatch(value):
+            return False
+        texts = map(self.versions.new.text, find_launch_files(self.versions.new))
+        return any(f'"{value}"' in text or f"'{value}'" in text for text in texts)
 
     def have_stopped_reading(self, group: str) -> bool:
         """Return whether the sources that named a group of parameters changed, and no source names it any more.

@@ -12,6 +12,7 @@ from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.excerpts import shorten
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.bridges import compare_bridges, read_bridges
+from linkwright.review.files.generated_parameters import compare_generated_parameters, is_parameter_description
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.lost_groups import find_group_reason
 from linkwright.review.files.moveit_names import MoveItRules
@@ -54,6 +55,9 @@ def compare_parameter_files(pair: FilePair) -> None:
         return
     old, new = roots
     if old is not None and new is not None:
+        if is_parameter_description(old) and is_parameter_description(new):
+            compare_generated_parameters(pair, old, new)
+            return
         old, new = resolve_includes(pair, old, new)
     pair.changes += merge_values(_find_changes(pair, old, new))
 

@@ -31,7 +31,7 @@ _CLAIM = re.compile(r"(?:[^.]+\.)*(?P<controller>[^.]+)\.ros__parameters\.(comma
 """The parameters that only controllers have."""
 _JOINT_PARAMETER = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
 """The parameters that name joints of a controller. Other nodes only use the joints."""
-_CONTROLLER_TYPE = re.compile(r"(?:[^.]+\.)?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
+_CONTROLLER_TYPE = re.compile(r"(?:[^.]*[./])?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
 _OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
 _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|controller_list)$")
 """The parameters that name controllers which a program loads or commands."""
@@ -42,6 +42,8 @@ _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
 _STAMPED_BY_DEFAULT = "use_stamped_vel"
 """The parameter of diff_drive_controller and its relatives, which is true by default."""
+_CLOCK_PARAMETER = "use_sim_time"
+"""The parameter of all nodes that launch files give, too."""
 _NUMBER_OR_BOOLEAN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
 _PLUGIN_LIST = re.compile(r"(^|[._])(plugins|plugin_names|plugin_ids)$")
 """The parameters that list plugin names, which behavior trees and goals use."""
@@ -68,7 +70,9 @@ class NameRules:
         self._added_nodes = self._new_nodes - {find_node_name(name) for name in old}
         self._controllers = {*find_controllers(old), *find_controllers(new)}
         self._controllers |= {match["controller"] for name in old if (match := _CLAIM.fullmatch(name)) is not None}
-        self._new = new
+        self._old, self._new = old, new
+        self._clock_nodes = {node for name in old if (node := find_node_name(name)) and name.endswith(_CLOCK_PARAMETER)}
+        self._clock_nodes -= {find_node_name(name) for name in old if not name.endswith(f".{_CLOCK_PARAMETER}")}
         self._new_controllers = set(find_controllers(new))
         self._new_parts = {part for name in new for part in list_part_paths(name)}
         self._topics = CostmapTopics(old, new)
@@ -103,11 +107,14 @@ class NameRules:
         if removed and is_offered:
             return name_reason(", ".join(sorted(removed)))
         if removed and _PLUGIN_LIST.search(parameter):
-            return _make_plugin_reason(removed)
+            lost = removed - self._find_plugins(parameter)
+            return _make_plugin_reason(lost) if lost else None
         if removed and old_value.is_list and _CONTROLLER_LIST.search(parameter):
             return make_controller_reason(", ".join(sorted(removed)))
         reason = self._topics.find_reason(parameter)
-        return find_type_reason(old_value, new_value) if reason is None and is_parameter(parameter) else reason
+        if reason is not None or not is_parameter(parameter) or self._readers.is_replaced(new):
+            return reason
+        return find_type_reason(old_value, new_value)
 
     def find_removal_reason(self, parameter: str, old: str) -> Phrase | None:
         """Return the reason why removing a parameter is breaking, or None if it is not.
@@ -121,11 +128,12 @@ class NameRules:
             return make_controller_reason(controller["controller"])
         node = _NODE.match(parameter)
         if node is not None and not self._has_node(parameter):
-            if self._readers.have_renamed_node(node["node"], self._added_nodes):
+            if node["node"] in self._clock_nodes or self._readers.have_renamed_node(node["node"], self._added_nodes):
                 return None
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
-        if _PLUGIN_LIST.search(parameter) and _find_name_items(old):
-            return _make_plugin_reason(_find_name_items(old))
+        lost = _find_name_items(old) - self._find_plugins(parameter) if _PLUGIN_LIST.search(parameter) else set[str]()
+        if lost:
+            return _make_plugin_reason(lost)
         topic_reason = self._topics.find_reason(parameter)
         if topic_reason is not None:
             return topic_reason
@@ -133,6 +141,17 @@ class NameRules:
             return phrase("the node '{name}' starts without these parameters", name=node["node"])
         ros1_controller = next(_find_ros1_controllers({parameter: old}), None)
         return None if ros1_controller is None else make_controller_reason(_separate_by_slashes(ros1_controller))
+
+    def _find_plugins(self, parameter: str) -> set[str]:
+        """Return the plugins that other lists of the node of a parameter newly have."""
+        node = find_node_name(parameter)
+        names = [name for name in self._new if _PLUGIN_LIST.search(name) and find_node_name(name) == node]
+        return {
+            item
+            for name in names
+            for item in _find_name_items(self._new[name].text)
+            if name not in self._old or item not in _find_name_items(self._old[name].text)
+        }
 
     def _is_in_lost_group(self, parameter: str, root: str) -> bool:
         """Return whether the group of a parameter was removed, and a program may still read it.

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined_first, phrase, quoted_names, term
+from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined, joined_first, phrase, quoted_names, term
 from linkwright.lint.targets import find_files_and_packages
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
@@ -18,6 +18,8 @@ from linkwright.xmltree import Element
 
 _NAMED_TAGS = ("group", "group_state", "end_effector", "virtual_joint", "passive_joint")
 _PAIR_TAGS = ("disable_collisions", "enable_collisions")
+_MAX_PAIRS = 20
+"""The maximum number of pairs of links that are listed one by one."""
 _JOINT_PREFIX = "joint "
 """The start of a member of a group that is a joint."""
 _JOINT_TAG = re.compile(r"<joint\s[^<>]*>")
@@ -62,7 +64,8 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
         if key in old:
             _compare_entries(pair, old[key], entry, passive_joints)
         elif key not in renamed.values():
-            pair.add(phrase("{entry} added", entry=_format_title(entry)), pair.location(entry.element.span()))
+            text = phrase("{entry} added", entry=_format_title(entry))
+            pair.add(_add_values(text, entry), pair.location(entry.element.span()))
     for key, entry in old.items():
         if key in renamed:
             text = phrase("{entry} renamed to '{name}'", entry=_format_title(entry), name=new[renamed[key]].name)
@@ -71,7 +74,8 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
         elif key not in new:
             location = pair.location(entry.element.span(), is_old=True)
             reason = find_removal_reason(entry.tag, entry.name) or _find_planning_frame_reason(entry, new.values())
-            pair.add(phrase("{entry} removed", entry=_format_title(entry)), location, reason)
+            text = phrase("{entry} removed", entry=_format_title(entry))
+            pair.add(_add_values(text, entry), location, reason)
     for tag in _PAIR_TAGS:
         _compare_pairs(pair, tag, *(_group_by_pair(root, tag) for root in (old_root, new_root)))
 
@@ -149,6 +153,12 @@ def _have_equal_values(old: _Entry, new: _Entry) -> bool:
 
 def _format_title(entry: _Entry) -> Phrase:
     return phrase("{tag} '{name}'", tag=term(entry.tag), name=entry.name)
+
+
+def _add_values(text: Phrase, entry: _Entry) -> Phrase:
+    """Return the line about an added or removed element, with its parts."""
+    values = [f"{name} {value}".strip() for name, value in entry.values.items()]
+    return phrase("{change}: {items}", change=text, items=joined_first(values, MAX_NAMES)) if values else text
 
 
 def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive_joints: Collection[str]) -> None:
@@ -256,12 +266,28 @@ def _compare_pairs(
     if added:
         text = counted(
             "{tag}: {count} pair added: {pairs}", "{tag}: {count} pairs added: {pairs}", len(added), tag=term(tag),
-            pairs=joined_first(map(" - ".join, added), MAX_NAMES),
+            pairs=_summarize_pairs(added, old),
         )  # fmt: skip
         pair.add(text, pair.location(new[added[0]].span()))
     if removed:
         text = counted(
             "{tag}: {count} pair removed: {pairs}", "{tag}: {count} pairs removed: {pairs}", len(removed),
-            tag=term(tag), pairs=joined_first(map(" - ".join, removed), MAX_NAMES),
+            tag=term(tag), pairs=_summarize_pairs(removed, new),
         )  # fmt: skip
         pair.add(text, pair.location(old[removed[0]].span(), is_old=True))
+
+
+def _summarize_pairs(pairs: Sequence[tuple[str, ...]], others: Collection[tuple[str, ...]]) -> Phrase:
+    """Return pairs of links in one line. Of many pairs, those of a link that the other version lacks are summarized.
+
+    Args:
+        pairs: the pairs that only one version has.
+        others: the pairs of the other version.
+    """
+    if len(pairs) <= _MAX_PAIRS:
+        return joined_first(list(map(" - ".join, pairs)), MAX_NAMES)
+    other_links = {link for other in others for link in other}
+    links = list(dict.fromkeys(link for names in pairs for link in names if link not in other_links))
+    rest = [" - ".join(names) for names in pairs if other_links.issuperset(names)]
+    parts = [phrase("all pairs with {links}", links=joined_first(links, MAX_NAMES))] if links else []
+    return joined([*parts, *([joined_first(rest, _MAX_PAIRS)] if rest else [])])

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.review.files.template_macros import find_macro_names, read_call
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
@@ -18,6 +19,9 @@ _MACRO = re.compile(r"\{%[-+]?\s*macro\s+(?P<name>\w+)\s*\((?P<parameters>.*)\)\
 _END_OF_MACRO = re.compile(r"\{%[-+]?\s*endmacro\b[^%]*%\}")
 _ANY_MACRO = re.compile(r"\{%[-+]?\s*macro\b")
 _EXPRESSION = re.compile(r"\{\{(?P<content>.*?)\}\}", re.DOTALL)
+_CALL = re.compile(r"(?<=>)(?P<before>\s*)\{\{-?(?P<content>[^{}]*?)-?\}\}(?=\s*(?:<|\{\{|\Z))", re.DOTALL)
+"""An expression between tags, which may call a macro."""
+_OPENING_TAG = re.compile(r"<(?!macro\b)(?P<name>[\w.-]+)[^<>]*(?<!/)>")
 _DECLARATION = re.compile(r"<\?xml\b[^>]*>")
 _STRING = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?P<text>[^\"'\\]*)\"")
 _ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"}
@@ -34,14 +38,17 @@ def read_template(file: str) -> list[Element]:
     """Return the elements of a template. Expressions remain as text.
 
     The result has the elements of all branches. A macro is an element ``<macro name="..." parameters="...">`` around
-    its elements, and a variable that a statement sets is an element ``<set name="...">`` with the value. The other
-    statements and the XML declaration are left out. Line numbers match the file.
+    its elements, and a variable that a statement sets is an element ``<set name="...">`` with the value. A call of a
+    macro is an element ``<call name="...">`` with the arguments as children. The other statements and the XML
+    declaration are left out. Line numbers match the file.
 
     Raises:
         LinkwrightError: the template is not XML without its statements, or the file cannot be read.
     """
     text = read_bytes(file).decode("utf-8", errors="replace")
-    text = _EXPRESSION.sub(_escape_expression, _DECLARATION.sub(_blank_out, _replace_statements(text)))
+    macro_names = find_macro_names(text)
+    text = _replace_calls(_DECLARATION.sub(_blank_out, _replace_statements(text)), macro_names)
+    text = _EXPRESSION.sub(_escape_expression, text)
     try:
         roots = list(parse_as_gazebo(f"<template>{text}</template>", file)[0].root.elements())
     except LinkwrightError:
@@ -83,6 +90,32 @@ def _replace_statements(text: str) -> str:
         return result + "\n" * (statement.count("\n") - result.count("\n")) if result else _blank_out(match)
 
     return _STATEMENT.sub(replace_statement, text)
+
+
+def _replace_calls(text: str, macro_names: Collection[str]) -> str:
+    """Return a template with elements in place of calls of macros between tags, also after another call."""
+    previous = ""
+    while text != previous:
+        previous, text = text, _CALL.sub(lambda match: _replace_call(match, macro_names), text)
+    return text
+
+
+def _replace_call(match: re.Match[str], macro_names: Collection[str]) -> str:
+    """Return an expression alone between tags as an element, if it calls a macro.
+
+    The whole content of an element is its value.
+    """
+    tag = _OPENING_TAG.match(match.string, match.string.rfind("<", 0, match.start()))
+    is_value = tag is not None and match.string[match.end() : match.end() + 200].lstrip().startswith(
+        f"</{tag['name']}>"
+    )
+    call = None if is_value else read_call(_use_single_quotes(match["content"]), macro_names)
+    if call is None:
+        return match[0]
+    name, arguments = call
+    values = "".join(f"<{parameter}>{_escape(value)}</{parameter}>" for parameter, value in arguments)
+    lines = "\n" * (match[0].count("\n") - match["before"].count("\n"))
+    return f'{match["before"]}<call name="{name}">{values}</call>{lines}'
 
 
 def _use_single_quotes(expression: str) -> str:

@@ -14,8 +14,12 @@ from linkwright.review.merging import merge_reasons, name_edit
 
 _ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
 """The path of a list item without a name."""
+_INDEX = re.compile(r"\[(\d+)\]")
+_NUMBER = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?")
 _NAME = re.compile(r"[~/]?[A-Za-z_][\w./:-]*")
 """A value that is the name of a topic, a frame or a file, for example."""
+_MAX_COMPONENT_NAME = 3
+"""The maximum length of the name of a component, such as ``x``, ``ixx`` or ``p``."""
 _MIN_SIBLINGS = 4
 """The minimum number of sibling parts that gain or lose values with the same name in one line."""
 _MAX_ITEM_CHANGES = 6
@@ -102,7 +106,11 @@ def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
     sibling_groups: dict[Hashable, list[ValueChange]] = {}
     for group in groups.values():
         sibling_groups.setdefault(group[0].sibling_key, []).extend(group)
+    components = _find_components(groups.values())
     for group in groups.values():
+        if (vector := components.get(group[0].name)) is not None:
+            yield from [_join_components(vector)] if group[0] is vector[0] else []
+            continue
         siblings = sibling_groups[group[0].sibling_key]
         if group[0].sibling_key is None or len({change.key for change in siblings}) < _MIN_SIBLINGS:
             yield _merge_group(group)
@@ -114,6 +122,25 @@ def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
             if len(group) <= _MAX_ITEM_CHANGES
             else [_summarize_list(name, group)]
         )
+
+
+def _find_components(groups: Iterable[Sequence[ValueChange]]) -> dict[str, list[ValueChange]]:
+    """Return the changes to numbers of one vector, matrix or controller, by the name of each."""
+    vectors: dict[str, list[ValueChange]] = {}
+    for change, *others in groups:
+        parent, _, name = change.name.rpartition(".")
+        is_number = change.kind == "changed" and all(map(_NUMBER.fullmatch, change.values))
+        if parent and is_number and not others and change.reason is None and len(name) <= _MAX_COMPONENT_NAME:
+            vectors.setdefault(parent, []).append(change)
+    return {change.name: vector for vector in vectors.values() if len(vector) > 1 for change in vector}
+
+
+def _join_components(vector: Sequence[ValueChange]) -> Change:
+    texts = [str(replace(change, name=change.name.rpartition(".")[2]).sentence) for change in vector]
+    parent = vector[0].name.rpartition(".")[0]
+    return Change(
+        phrase("{parameter}: {changes}", parameter=parent, changes=joined(texts)), location=vector[0].location
+    )
 
 
 def _merge_group(group: Sequence[ValueChange]) -> Change:
@@ -144,9 +171,36 @@ def _summarize_list(name: str, group: Sequence[ValueChange]) -> Change:
         counted("{count} part removed", "{count} parts removed", counts[2]),
     )
     counts_text = joined([text for text, count in zip(texts, counts, strict=True) if count])
-    items = [str(replace(change, name=change.name.removeprefix(name)).sentence) for change in group]
+    items = [str(change.sentence) for change in _merge_items(name, group)]
     items_text = joined(items[:MAX_NAMES], "; ")
     if len(items) > MAX_NAMES:
         items_text = phrase("{names} and {count} more", names=items_text, count=len(items) - MAX_NAMES)
     text = phrase("list {name}: {changes}: {items}", name=name, changes=counts_text, items=items_text)
     return Change(text, location=group[0].location)
+
+
+def _merge_items(name: str, group: Sequence[ValueChange]) -> list[ValueChange]:
+    """Return the changes with the path in the list as their name, and equal changes of several items merged."""
+    merged: dict[Hashable, list[tuple[int, ValueChange]]] = {}
+    for number, change in enumerate(group):
+        own = replace(change, name=change.name.removeprefix(name))
+        index = _INDEX.match(own.name)
+        key = number if index is None else (own.name[index.end() :], own.kind, own.values)
+        merged.setdefault(key, []).append((-1 if index is None else int(index[1]), own))
+    result = []
+    for indexes, changes in (zip(*items, strict=True) for items in merged.values()):
+        rest = changes[0].name.partition("]")[2]
+        name = changes[0].name if len(changes) == 1 else f"[{_format_indexes(indexes)}]{rest}"
+        result.append(replace(changes[0], name=name))
+    return result
+
+
+def _format_indexes(indexes: Iterable[int]) -> str:
+    """Return numbers in a short form, such as ``0..3, 7``."""
+    runs: list[list[int]] = []
+    for index in sorted(indexes):
+        if runs and index == runs[-1][-1] + 1:
+            runs[-1].append(index)
+        else:
+            runs.append([index])
+    return ", ".join(str(run[0]) if len(run) == 1 else f"{run[0]}..{run[-1]}" for run in runs)

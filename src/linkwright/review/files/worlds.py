@@ -13,6 +13,7 @@ from linkwright.review.breaking import find_plugin_name_reason, world_reason
 from linkwright.review.changes import Change, Location
 from linkwright.review.drawings.scene_images import build_world_scenes, read_worlds, render_worlds
 from linkwright.review.element_values import format_own_content
+from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.merged_paths import MergedPaths, to_path_pattern, trim_common_words
 from linkwright.review.files.sdf_contents import (
@@ -28,6 +29,7 @@ from linkwright.review.files.sdf_numbers import (
     drop_rounding,
     join_inertials,
 )
+from linkwright.review.files.template_macros import PARAMETERS, find_parameters_reason
 from linkwright.review.files.templates import is_template, may_be_equal, read_template
 from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.left_names import find_left_names
@@ -55,6 +57,8 @@ _JOINT_LIMIT = re.compile(r"\bjoint (?P<name>\S+) axis2? limit (?P<side>lower|up
 """The path of a position limit of a joint."""
 _SET_VARIABLE = re.compile(r"(?:^|.* )set [\w.]+(?: \d+)?")
 """The path of a variable that a template sets. Its name does not show the use of the value."""
+_TEMPLATE_VALUE = re.compile(r"\{\{[^{}]*\}\}")
+"""A value that a template computes. The names that it gives are unknown."""
 _INVISIBLE_TAGS = frozenset(
     {"collision", "inertial", "plugin", "sensor", "physics", "axis", "light", "gravity", "scene", "gui", "static"}
 )
@@ -235,9 +239,8 @@ def _describe_difference(difference: Difference, name: str) -> Phrase:
         return phrase("{element} added", element=f"{name} {difference.new or ''}".strip())
     if not is_removed(difference):
         empty = phrase("(empty)")
-        return phrase(
-            "{element}: {old} -> {new}", element=name, old=difference.old or empty, new=difference.new or empty
-        )
+        old, new = differing_excerpts(difference.old or "", difference.new or "")
+        return phrase("{element}: {old} -> {new}", element=name, old=old or empty, new=new or empty)
     content = difference.old if difference.element is None else format_own_content(difference.element)
     text = phrase("{element} removed", element=f"{name} {content or ''}".strip())
     contents = None if difference.element is None else format_contents(difference.element)
@@ -253,8 +256,15 @@ def _find_breaking_reason(difference: Difference, added: frozenset[str], element
         elements: the elements of the new version.
     """
     path = f"{difference.name} {difference.property}".strip()
+    if PARAMETERS.fullmatch(path):
+        return find_parameters_reason(difference.old or "", difference.new or "")
     is_macro = difference.element is not None and difference.element.tag == "macro"
-    if is_macro or _SET_VARIABLE.fullmatch(path) or may_be_equal(difference.old, difference.new):
+    if (
+        is_macro
+        or _TEMPLATE_VALUE.fullmatch(difference.old or "")
+        or _SET_VARIABLE.fullmatch(path)
+        or may_be_equal(difference.old, difference.new)
+    ):
         return None
     named = _find_lost_name(difference, path)
     if named is not None and not (named[0] == "include" and "/" in named[1]):

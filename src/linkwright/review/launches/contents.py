@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, Entry
+from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, TEST, Entry
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import format_settings, format_title
 from linkwright.review.versions import Version
 
 _SHOWN_KINDS = (
-    "node", "process", "action", "include", "parameters", "parameter", SERVER_PARAMETER, "remapping", "environment",
+    "node", TEST, "process", "action", "include", "parameters", "parameter", SERVER_PARAMETER, "remapping",
+    "environment",
     READING, "handler", "argument",
 )  # fmt: skip
 _MAX_SETTINGS = 8

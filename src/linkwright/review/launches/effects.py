@@ -69,7 +69,7 @@ _PUBLISHED_TOPIC = re.compile(
 )
 """The parameters that, judging by their name, contain the name of a published topic."""
 _TOPIC = re.compile(r"[~/\w]+")
-_FRAME_PREFIX = f"{PARAMETER}frame_prefix"
+_FRAME_PREFIXES = (f"{PARAMETER}frame_prefix", f"{PARAMETER}tf_prefix")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
 _DISABLED_NAMESPACE = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
@@ -119,6 +119,8 @@ def find_removal_reason(
         return phrase("its nodes no longer start") if stops_nodes else None
     if any(_starts_same_node(entry, other, old, new) for other in new.entries):
         return None
+    if any(other.name == entry.name and _has_computed_names(other) for other in new.entries):
+        return None  # an action of a loop, which may start this node, too
     if entry.name.startswith(_JOINT_STATE_PREFIX) and any(
         other.name.startswith(_JOINT_STATE_PREFIX) for other in new.entries
     ):
@@ -148,9 +150,17 @@ def _spawns_as_many(old: LaunchOutline, new: LaunchOutline) -> bool:
     A new include that may create them is also enough.
     """
     counts = [sum(map(_is_spawner, outline.entries)) for outline in (old, new)]
+    if any(_is_spawner(entry) and _has_computed_names(entry) for entry in new.entries):
+        return True  # a loop may create any number
     known = {entry.name for entry in old.entries}
     may_include = any(_SPAWN_FILE_NAME.search(entry.name) and entry.name not in known for entry in new.entries)
     return counts[1] >= counts[0] or may_include
+
+
+def _has_computed_names(entry: Entry) -> bool:
+    """Return whether the names of a node are computed, such as from the variable of a loop."""
+    names = (entry.settings.get(setting, "") for setting in ("name", NAMESPACE, "arguments"))
+    return entry.kind == "node" and any(_EXPRESSION in name for name in names)
 
 
 def _publishes_joint_states(outline: LaunchOutline) -> bool:
@@ -245,7 +255,8 @@ def find_setting_reason(
     if setting == "arguments":
         old_names = _find_names_in_arguments(entry, old, old_outline)
         new_names = _find_names_in_arguments(entry, new, new_outline)
-        removed = [name for name in old_names if name not in new_names]
+        kept = {name.strip("/") for name in new_names}
+        removed = [name for name in old_names if name.strip("/") not in kept]
         is_unknown = any(_EXPRESSION in name for name in new_names)
         return _find_served_name_reason(entry, removed, new_outline) if removed and not is_unknown else None
     return _find_parameter_reason(setting, old, new, old_outline, new_outline)
@@ -277,7 +288,7 @@ def _find_parameter_reason(
 
     It may name a shared frame or topic, or have a different type.
     """
-    if setting == _FRAME_PREFIX:
+    if setting in _FRAME_PREFIXES:
         old_prefix, new_prefix = old_outline.resolve(old or ""), new_outline.resolve(new or "")
         is_unknown = any(
             _CALL_IN_NAME.search(prefix) or setting.endswith(f" {prefix}") for prefix in (old_prefix, new_prefix)
@@ -351,18 +362,31 @@ def _find_default_reason(
         return phrase("callers that pass '{value}' fail", value=old_value)
     uses = list(_find_breaking_uses(argument.name, old_outline, new_outline))
     stopped = list(
-        dict.fromkeys(format_title(use.entry) for use in _sort_by_importance(uses) if use.setting == CONDITION)
+        dict.fromkeys(
+            format_title(use.entry)
+            for use in _sort_by_importance(uses)
+            if use.setting == CONDITION and not _starts_elsewhere(use.entry, new_outline)
+        )
     )
     if len(stopped) > 1:
         return phrase("by default, {entries} no longer start", entries=joined_first(stopped, MAX_NAMES))
     if stopped:
         return phrase("by default, {entry} no longer starts", entry=stopped[0])
-    reason = next((use.reason for use in uses), None)
+    reason = next((use.reason for use in uses if use.setting != CONDITION), None)
     old_name, new_name = (value.strip("\"'") for value in (old_value, new_value))  # '""' is an empty name for xacro
     is_name = bool(old_name) and old_name != new_name and "/" not in f"{old_name}{new_name}"
     if reason is None and is_name and _NAME_ARGUMENT.search(argument.name):
         return name_reason(old_name)
     return reason
+
+
+def _starts_elsewhere(entry: Entry, outline: LaunchOutline) -> bool:
+    """Return whether another action starts the same program or includes the same file by default."""
+    return any(
+        (other.kind, other.name, other.settings.get("name")) == (entry.kind, entry.name, entry.settings.get("name"))
+        and evaluate_condition(_resolve_condition(other, outline)) is not False
+        for other in outline.entries
+    )
 
 
 def _sort_by_importance(uses: list[_BreakingUse]) -> list[_BreakingUse]:
@@ -406,8 +430,8 @@ def _find_served_name_reason(entry: Entry, names: list[str], new: LaunchOutline)
     """
     is_transform = entry.name.startswith(TRANSFORM_PUBLISHERS)
     others = [other for other in new.entries if other.name.startswith(TRANSFORM_PUBLISHERS) == is_transform]
-    served = {name for other in others for name in _find_resolved_served_names(other, new)}
-    names = [name for name in names if name not in served]
+    served = {name.strip("/") for other in others for name in _find_resolved_served_names(other, new)}
+    names = [name for name in names if name.strip("/") not in served]
     same = [other for other in others if other.name == entry.name]
     if not names or any(_EXPRESSION in name for other in same for name in _find_resolved_served_names(other, new)):
         return None

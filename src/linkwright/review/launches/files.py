@@ -6,6 +6,7 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from difflib import SequenceMatcher
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.breaking import name_reason
-from linkwright.review.changes import MAX_NAMES
+from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.effects import find_addition_reason, find_removal_reason
@@ -41,7 +42,7 @@ from linkwright.review.launches.titles import (
 )
 from linkwright.review.launches.transforms import find_other_publisher
 from linkwright.review.launches.undefined import report_undefined_names
-from linkwright.review.launches.unused_arguments import report_unused_arguments
+from linkwright.review.launches.unused_arguments import report_unused_arguments, uses_argument
 from linkwright.review.sources.names import PYTHON_SUFFIX
 
 _MAX_STATEMENT_CHARACTERS = 120
@@ -67,7 +68,7 @@ def compare_launch_files(pair: FilePair) -> None:
         IncludedActions(pair.versions.old, pair.old_path, old),
         IncludedActions(pair.versions.new, pair.new_path, new),
     )
-    settings = SettingChanges(pair, old, new, renamed, included[1])
+    settings = SettingChanges(pair, old, new, renamed, included)
     choices = FileChoices(pair, old, new)
     settings.report_renamed()
     removed: list[Entry] = []
@@ -104,6 +105,13 @@ def compare_launch_files(pair: FilePair) -> None:
         if pair.new_file.suffix == PYTHON_SUFFIX:
             compare_imports(pair)
         report_undefined_names(pair)
+
+
+def compare_launch_tests(pair: FilePair) -> None:
+    """Compare two versions of a test of ROS 1, whose names no other program uses."""
+    compare_launch_files(pair)
+    if not pair.is_lost:
+        pair.changes[:] = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
 
 
 def _report_undeclared(pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry]) -> None:
@@ -184,6 +192,9 @@ def _report_unpaired_entries(
                 location,
             )
             continue
+        if _is_unused_argument(pair, entry, old_included.outline):
+            pair.add(phrase("{change}; the file did not use it", change=text), location)
+            continue
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         pair.add(
             text,
@@ -191,6 +202,15 @@ def _report_unpaired_entries(
             find_removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes),
         )
     _report_moved(pair, moved)
+
+
+def _is_unused_argument(pair: FilePair, entry: Entry, old: LaunchOutline) -> bool:
+    """Return whether a removed action declares an argument of ROS 2 that the old file did not use.
+
+    Included files get a value that a caller passes with or without a declaration. ROS 1 refuses undeclared arguments.
+    """
+    is_argument = entry.kind == "argument" and "value" not in entry.settings
+    return is_argument and not old.is_ros1 and not uses_argument(pair.old_file, entry.name, old.entries)
 
 
 def _report_changed_move(pair: FilePair, entry: Entry, file: str, changed: Entry, lost: Sequence[str]) -> None:

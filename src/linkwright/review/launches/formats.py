@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 
 from linkwright.files.git_repository import ChangedFile
-from linkwright.packages.launch_files import is_launch_file_name
 
-_LAUNCH_ROOT_TAG = re.compile(rb"\s*(<\?[^>]*>\s*)?(<!--(?:[^-]|-(?!->))*-->\s*)*<launch[\s>]")
 _LAUNCH_SUFFIX = re.compile(r"[._]launch(\.(py|xml|ya?ml))?$")
 
 
@@ -45,30 +43,3 @@ def _name_without_format(path: str | None) -> tuple[str, str]:
     if not _LAUNCH_SUFFIX.search(pure_path.name):
         return "", ""
     return str(pure_path.parent), _LAUNCH_SUFFIX.sub("", pure_path.name)
-
-
-def is_launch_file(path: str) -> bool:
-    """Return whether a path is a launch file of ROS 1 or ROS 2."""
-    return path.endswith(".launch") or is_launch_file_name(path)
-
-
-def is_launch_xml(file: Path) -> bool:
-    """Return whether the root of an XML file is ``<launch>``.
-
-    Included files may have any name.
-    """
-    try:
-        return file.suffix == ".xml" and _LAUNCH_ROOT_TAG.match(file.read_bytes()) is not None
-    except OSError:
-        return False
-
-
-def is_launch_yaml(file: Path) -> bool:
-    """Return whether a YAML file has the top-level key ``launch``.
-
-    Included files may have any name.
-    """
-    try:
-        return re.search(rb"(?m)^launch[ \t]*:", file.read_bytes()) is not None
-    except OSError:
-        return False

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import offers_nothing
-from linkwright.review.launches.formats import is_launch_file
 from linkwright.review.launches.matching import get_launch_file_stem
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline

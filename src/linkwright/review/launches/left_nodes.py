@@ -13,7 +13,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.parameter_names import find_node_name
 from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
-from linkwright.review.launches.formats import is_launch_file
+from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.programs import list_nodes, read_launch_files, try_read_outline
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind

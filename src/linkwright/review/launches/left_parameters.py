@@ -16,7 +16,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.parameter_names import find_node_name
 from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
-from linkwright.review.launches.outlines import PARAMETER, Entry, LaunchOutline, without_condition
+from linkwright.review.launches.outlines import PARAMETER, PROGRAM_KINDS, Entry, LaunchOutline, without_condition
 from linkwright.review.launches.programs import SourcePrograms, list_nodes, read_launch_files
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX, NameKind, SourceNames
 from linkwright.review.sources.reading import read_source_names
@@ -133,7 +133,7 @@ class _Lost:
             and not entry.has_value
         ]
         return bool(users) and all(
-            entry.kind == "node"
+            entry.kind in PROGRAM_KINDS
             and self.programs.runs(entry.name)
             and f"{name} (" not in entry.settings.get("parameters", "")
             for _, entry in users

@@ -4,19 +4,32 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
-from linkwright.review.launches.text import ExpressionTexts
+from linkwright.review.launches.text import ExpressionTexts, format_branches
 
 _CONSTANTS = {"True": True, "False": False}
-_Condition = tuple[ast.expr, bool]
-"""The test of an ``if`` statement, and whether it holds in the branch."""
+_Condition = tuple[ast.If, bool]
+"""An ``if`` statement, and whether its test holds in the branch."""
 
 
-def find_added_items(python: PythonFile, name: ast.Name, texts: ExpressionTexts) -> list[str]:
-    """Return the texts of the items added to a list before a use of its name.
+class AddedItem(NamedTuple):
+    """An item that a statement adds to a list.
 
-    Items that are added under unknown conditions are left out.
+    Attributes:
+        text: the text of the item, with the conditions under which it is added if they are unknown.
+        call: the call that adds it.
+        branches: the ``if`` statements whose conditions the text shows.
+    """
+
+    text: str
+    call: ast.Call
+    branches: Sequence[ast.If] = ()
+
+
+def find_added_items(python: PythonFile, name: ast.Name, texts: ExpressionTexts) -> list[AddedItem]:
+    """Return the items added to a list before a use of its name, without those that are certainly not added.
 
     Args:
         python: the parsed file.
@@ -30,32 +43,38 @@ def find_added_items(python: PythonFile, name: ast.Name, texts: ExpressionTexts)
         if isinstance(node, ast.FunctionDef) and node.lineno <= name.lineno <= (node.end_lineno or 0)
     ]
     body = max(functions, key=lambda node: node.lineno).body if functions else python.tree.body
-    items = []
-    for node, conditions in _find_additions(body, name.id, ()):
-        if value.lineno < node.lineno < name.lineno:
-            known = [_CONSTANTS.get(texts.text(test)) for test, _ in conditions]
-            expected = [is_true for _, is_true in conditions]
-            if known == expected:
-                items.append(texts.format_joined(node))
+    items: list[AddedItem] = []
+    for node, call, conditions in _find_additions(body, name.id, ()):
+        if not value.lineno < node.lineno < name.lineno:
+            continue
+        known = [_CONSTANTS.get(texts.text(branch.test)) for branch, _ in conditions]
+        if any(value is (not expected) for value, (_, expected) in zip(known, conditions, strict=True)):
+            continue
+        unknown = [condition for condition, value in zip(conditions, known, strict=True) if value is None]
+        words = [format_branches(branch.test)[0 if is_true else 1] for branch, is_true in unknown]
+        text = texts.format_joined(node)
+        branches = [branch for branch, _ in unknown]
+        items.append(AddedItem(f"{text} ({' and '.join(words)})" if words else text, call, branches))
     return items
 
 
 def _find_additions(
     body: Sequence[ast.stmt], name: str, conditions: tuple[_Condition, ...]
-) -> Iterator[tuple[ast.expr, tuple[_Condition, ...]]]:
-    """Yield the items that statements add to a list, each with the conditions around it."""
+) -> Iterator[tuple[ast.expr, ast.Call, tuple[_Condition, ...]]]:
+    """Yield the items that statements add to a list, each with the call and the conditions around it."""
     for statement in body:
         if isinstance(statement, ast.If):
-            yield from _find_additions(statement.body, name, (*conditions, (statement.test, True)))
-            yield from _find_additions(statement.orelse, name, (*conditions, (statement.test, False)))
-        for item in _get_added_items(statement, name):
-            yield item, conditions
+            yield from _find_additions(statement.body, name, (*conditions, (statement, True)))
+            yield from _find_additions(statement.orelse, name, (*conditions, (statement, False)))
+        call = statement.value if isinstance(statement, ast.Expr) else None
+        if isinstance(call, ast.Call):
+            for item in _get_added_items(call, name):
+                yield item, call, conditions
 
 
-def _get_added_items(statement: ast.stmt, name: str) -> Sequence[ast.expr]:
-    """Return the items that a statement adds to a list by ``append`` or ``extend``."""
-    call = statement.value if isinstance(statement, ast.Expr) else None
-    if not isinstance(call, ast.Call) or len(call.args) != 1:
+def _get_added_items(call: ast.Call, name: str) -> Sequence[ast.expr]:
+    """Return the items that a call of ``append`` or ``extend`` adds to a list."""
+    if len(call.args) != 1:
         return []
     if called_name(call) == f"{name}.append":
         return call.args

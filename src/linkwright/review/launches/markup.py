@@ -21,8 +21,10 @@ from linkwright.review.launches.outlines import (
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PARAMETER,
+    PROGRAM_KINDS,
     REMAPPING,
     SERVER_PARAMETER,
+    TEST,
     CodePart,
     Entry,
     LaunchOutline,
@@ -83,7 +85,7 @@ def _is_ros1(tag: LaunchTag) -> bool:
 
     Such actions are nodes with ``type``, server parameters and paths with ``find``.
     """
-    is_node = tag.name == "node" and "type" in tag.attributes
+    is_node = tag.name in PROGRAM_KINDS and "type" in tag.attributes
     return is_node or tag.name == _ROSPARAM_TAG or any("$(find " in value for value in tag.attributes.values())
 
 
@@ -232,6 +234,8 @@ def _read_entry(tag: LaunchTag) -> Entry | None:
         kind, name, settings = "node", _format_node_name(attributes), _read_node_settings(tag)
         if tag.name == "lifecycle_node":
             settings["lifecycle"] = "true"
+    elif tag.name == TEST:
+        kind, name, settings = TEST, _format_node_name(attributes), _read_node_settings(tag)
     elif tag.name == "executable":
         kind, name, settings = (
             "process",

@@ -51,7 +51,36 @@ def find_replacements(
     for score, i, k in sorted(scores, key=lambda item: (-item[0], item[1], item[2])):
         if score and i not in pairs and k not in pairs.values():
             pairs[i] = k
+    pairs |= _match_lone_includes(
+        {i: entry for i, entry in enumerate(removed) if i not in pairs},
+        {k: entry for k, entry in enumerate(added) if k not in pairs.values()},
+    )
     return [(removed[i], added[k]) for i, k in sorted(pairs.items(), key=lambda pair: pair[1])]
+
+
+def _match_lone_includes(removed: Mapping[int, Entry], added: Mapping[int, Entry]) -> dict[int, int]:
+    """Return the pairs of the only removed and the only added include of files of a package in the same context.
+
+    The names of both files begin with the same word, such as ``rs_camera.launch`` and ``rs_rgbd.launch``.
+    """
+    groups = [_group_includes(entries) for entries in (removed, added)]
+    return {
+        numbers[0]: groups[1][key][0]
+        for key, numbers in groups[0].items()
+        if len(numbers) == len(groups[1].get(key, ())) == 1
+    }
+
+
+def _group_includes(entries: Mapping[int, Entry]) -> dict[tuple[str | None, ...], list[int]]:
+    """Return the numbers of the includes of files of packages, by the package and the context of the include."""
+    groups: dict[tuple[str | None, ...], list[int]] = {}
+    for number, entry in entries.items():
+        package = _PACKAGE_FOLDER.match(entry.name) if entry.kind == "include" else None
+        if package is not None:
+            context = (entry.settings.get(name) for name in sorted(_CONTEXT_SETTINGS))
+            first_word = _SEPARATORS.split(get_launch_file_stem(entry.name).lower())[0]
+            groups.setdefault((package[0], first_word, *context), []).append(number)
+    return groups
 
 
 def _compute_replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> float:

@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
@@ -18,9 +18,9 @@ from linkwright.review.changes import Change, Effect, Location, Subject
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.build_facts import BuildFacts, FactKind
 from linkwright.review.installed_paths import read_package_facts
-from linkwright.review.launches.outlines import Entry
+from linkwright.review.launch_paths import find_launch_files
+from linkwright.review.launches.outlines import PROGRAM_KINDS, Entry
 from linkwright.review.launches.reading import read_outline
-from linkwright.review.launches.script_options import LAUNCH_SUFFIXES
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 from linkwright.xacro.cache import read_document
 
@@ -45,7 +45,7 @@ _SUBMODULE = re.compile(r"^\s*path\s*=\s*(?P<path>\S+)", re.MULTILINE)
 
 
 @dataclass(frozen=True)
-class _Package:
+class RepositoryPackage:
     """The programs of a package in one version.
 
     Args:
@@ -95,11 +95,11 @@ class _Package:
     def _may_have_script(self, name: str, installed: Mapping[str, str]) -> bool:
         source = PurePosixPath(installed.get(name, name)).name
         is_built = self.facts is not None and (name in self.facts.targets or "entry_points" in self.build_text)
-        return source in self.names or is_built or self._may_generate
+        return source in self.names or is_built or self.may_generate
 
     @cached_property
-    def _may_generate(self) -> bool:
-        """Whether the build can make scripts, or a part of the package is in another repository."""
+    def may_generate(self) -> bool:
+        """Whether the build can make files, or a part of the package is in another repository."""
         submodules = (PurePosixPath(match["path"]) for match in _SUBMODULE.finditer(self.version.text(".gitmodules")))
         commands = _COMMENT.sub("", self.build_text)  # the comments of catkin's template tell how to rename a program
         return _GENERATION.search(commands) is not None or any(path.is_relative_to(self.folder) for path in submodules)
@@ -115,7 +115,7 @@ class _Package:
 
     def lacks(self, name: str) -> bool:
         """Return whether launch files certainly do not find a program."""
-        if self.has(name) or self._may_generate or self.facts is None:
+        if self.has(name) or self.may_generate or self.facts is None:
             return False
         if name.endswith(_SCRIPT_SUFFIXES):
             if name in self.names and (self.facts.unknown or PurePosixPath(name).stem in self.build_text):
@@ -133,7 +133,7 @@ def find_missing_programs(versions: Versions, changed_files: Sequence[ChangedFil
     packages = _find_shared_packages(versions)
     folders = {versions.old.package_of(file.old_path) for file in changed_files if file.old_path}
     changed_packages = {name for name, (old, _) in packages.items() if old.folder in folders}
-    for path in versions.new.paths(LAUNCH_SUFFIXES):
+    for path in find_launch_files(versions.new):
         text = versions.new.text(path)
         if not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
             continue
@@ -183,18 +183,20 @@ def _make_removal_change(package: str, name: str, *, is_left: bool) -> Phrase:
     return phrase("starts '{name}' of '{package}', which no longer exists", name=name, package=package)
 
 
-def _find_shared_packages(versions: Versions) -> dict[str, tuple[_Package, _Package]]:
+def _find_shared_packages(versions: Versions) -> dict[str, tuple[RepositoryPackage, RepositoryPackage]]:
     """Return the packages that both versions have exactly once, by name."""
-    old, new = _find_packages(versions.old), _find_packages(versions.new)
+    old, new = find_packages(versions.old), find_packages(versions.new)
     return {name: (old[name], new[name]) for name in old if name in new}
 
 
-def _find_packages(version: Version) -> dict[str, _Package]:
-    found: dict[str, list[_Package]] = {}
+@lru_cache(maxsize=8)
+def find_packages(version: Version) -> dict[str, RepositoryPackage]:
+    """Return the packages that a version has exactly once, by name."""
+    found: dict[str, list[RepositoryPackage]] = {}
     for folder in find_targets([version.root]).packages:
         name, path = package_name(folder), version.relative(folder)
         if name is not None and path is not None:
-            found.setdefault(name, []).append(_Package(version, "" if path == "." else path))
+            found.setdefault(name, []).append(RepositoryPackage(version, "" if path == "." else path))
     return {name: packages[0] for name, packages in found.items() if len(packages) == 1}
 
 
@@ -204,4 +206,4 @@ def _read_nodes(version: Version, path: str) -> list[Entry]:
         outline = read_outline(version.file(path), version.root)
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
         return []
-    return [entry for entry in outline.entries if entry.kind == "node"]
+    return [entry for entry in outline.entries if entry.kind in PROGRAM_KINDS]

@@ -11,6 +11,10 @@ from pathlib import Path
 from linkwright.diagnostics import Span
 from linkwright.review.launches.conditions import evaluate_condition
 
+TEST = "test"
+"""The kind of the nodes of ROS 1 that test others."""
+PROGRAM_KINDS = ("node", TEST)
+"""The kinds of actions that start a program of a package."""
 CONDITION = "condition"
 NAMESPACE = "namespace"
 NAMESPACE_OF_INCLUDED = "namespace of its nodes"
@@ -65,7 +69,7 @@ class Entry:
 
     def is_identity_remapping(self, setting: str, old: str | None, new: str | None) -> bool:
         """Return whether a changed setting only adds or removes a remapping of a name to itself."""
-        if self.kind == "node" and setting.startswith(REMAPPING):
+        if self.kind in PROGRAM_KINDS and setting.startswith(REMAPPING):
             source = without_condition(setting).removeprefix(REMAPPING)
         elif self.kind == "remapping" and setting == "to":
             source = self.name
@@ -247,8 +251,8 @@ class Scope:
         settings.pop(CONDITION, None)
         if conditions:
             settings[CONDITION] = " and ".join(dict.fromkeys(conditions))
-        key = NAMESPACE if kind == "node" else NAMESPACE_OF_INCLUDED
-        if self.namespaces and kind in ("node", "include"):
+        key = NAMESPACE if kind in PROGRAM_KINDS else NAMESPACE_OF_INCLUDED
+        if self.namespaces and kind in (*PROGRAM_KINDS, "include"):
             settings[key] = _NAMESPACE_SEPARATOR.join([*self.namespaces, *filter(None, [own_settings.get(key)])])
         return settings
 

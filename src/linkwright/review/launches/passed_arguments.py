@@ -10,11 +10,10 @@ from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.launches.formats import is_launch_file
+from linkwright.review.launch_paths import find_launch_files, is_launch_file
 from linkwright.review.launches.included import IncludedActions
 from linkwright.review.launches.outlines import CONDITION, LaunchOutline, without_condition
 from linkwright.review.launches.reading import read_outline
-from linkwright.review.launches.script_options import LAUNCH_SUFFIXES
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 
@@ -29,7 +28,7 @@ def find_passed_arguments(versions: Versions, changed_files: Sequence[ChangedFil
         if file.old_path and file.new_path and is_launch_file(file.path)
         if (names := _find_lost_arguments(versions, file.old_path, file.new_path))
     }
-    for path in versions.new.paths(LAUNCH_SUFFIXES) if lost else ():
+    for path in find_launch_files(versions.new) if lost else ():
         text = versions.new.text(path)
         if not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
             continue

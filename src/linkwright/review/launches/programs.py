@@ -11,7 +11,7 @@ from linkwright.packages.manifest import package_name
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.launches.default_names import find_script
-from linkwright.review.launches.outlines import Entry, LaunchOutline
+from linkwright.review.launches.outlines import PROGRAM_KINDS, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.script_options import LAUNCH_SUFFIXES
 from linkwright.review.sources.names import CPP_SUFFIXES
@@ -81,4 +81,4 @@ def try_read_outline(version: Version, path: str) -> LaunchOutline | None:
 
 def list_nodes(outline: LaunchOutline) -> list[Entry]:
     """Return the nodes that a launch file starts."""
-    return [entry for entry in outline.entries if entry.kind == "node"]
+    return [entry for entry in outline.entries if entry.kind in PROGRAM_KINDS]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
@@ -11,17 +11,15 @@ from linkwright.review.launches.helpers import Function, HelperFunctions, find_p
 from linkwright.review.launches.list_additions import find_added_items
 from linkwright.review.launches.literals import CoveredLiterals, Literals
 from linkwright.review.launches.names import is_chosen_value
+from linkwright.review.launches.node_settings import format_settings, split_choice, split_parameters, split_remappings
 from linkwright.review.launches.other_code import find_definitions, read_other_code
 from linkwright.review.launches.outlines import (
     CONDITION,
-    PARAMETER,
-    REMAPPING,
     Entry,
     LaunchOutline,
     Scope,
-    with_condition,
 )
-from linkwright.review.launches.text import BoundExpression, ExpressionTexts
+from linkwright.review.launches.text import BoundExpression, ExpressionTexts, format_branches
 
 _NODE_CLASSES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
 _PROCESS_CLASSES = ("ExecuteProcess", "ExecuteLocal")
@@ -38,12 +36,8 @@ _ACTION_LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
 _ADD_METHODS = ("add_action", "add_entity")
 _LIST_METHODS = ("append", "extend", "insert")
 _EMPTY_SCOPE = Scope()
-_INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
-"""The arguments that contain other actions. These actions have their own entries."""
-_ALIASES = {"node_executable": "executable", "node_name": "name", "node_namespace": "namespace"}
+_ALIASES = {f"node_{name}": name for name in ("executable", "plugin", "name", "namespace")}
 """The names of arguments of nodes before ROS 2 Foxy."""
-_IGNORED_ARGUMENTS = frozenset({"package", "executable", "plugin", "description", "cmd"})
-"""The arguments that name an action or are invisible to other programs."""
 _MAX_HELPER_DEPTH = 3
 _CallKey = tuple[int, tuple[int, ...]]
 """The identity of a call, and the numbers of the passes of the loops around it."""
@@ -220,7 +214,7 @@ class _Reader:
     ) -> None:
         """Find the actions of a loop over one of two lists, with the condition that chooses the list."""
         loops = self._passes
-        if_true, if_false = _format_conditions(choice.test)
+        if_true, if_false = format_branches(choice.test)
         for number, (condition, opposite, iterable) in enumerate(
             ((if_true, if_false, choice.body), (if_false, if_true, choice.orelse))
         ):
@@ -234,13 +228,13 @@ class _Reader:
         """Find the actions of the lists that a statement chooses. An action of both lists has no condition."""
         branches = [[part.node for part in self.texts.find_list_parts(value)] for value in (choice.body, choice.orelse)]
         common = {id(node) for node in branches[0]} & {id(node) for node in branches[1]}
-        for condition, nodes in zip(_format_conditions(choice.test), branches, strict=True):
+        for condition, nodes in zip(format_branches(choice.test), branches, strict=True):
             for node in nodes:
                 self.visit(node, scope if id(node) in common else scope.with_condition(condition))
 
     def _visit_branches(self, node: ast.If, scope: Scope) -> None:
         """Find the actions of both branches, with the condition of the statement."""
-        conditions = _format_conditions(node.test)
+        conditions = format_branches(node.test)
         for condition, body in zip(conditions, (node.body, node.orelse), strict=True):
             inner = scope.with_condition(condition)
             for statement in body:
@@ -254,7 +248,7 @@ class _Reader:
             scope = scope.with_namespace(self._find_pushed_namespace(_find_added_action(statement)))
             self.visit(statement, scope)
             if isinstance(statement, ast.If) and isinstance(statement.body[-1], ast.Return) and not statement.orelse:
-                scope = scope.with_condition(_format_conditions(statement.test)[1])  # the rest runs otherwise
+                scope = scope.with_condition(format_branches(statement.test)[1])  # the rest runs otherwise
 
     def visit_function(self, function: ast.FunctionDef) -> None:
         """Find the actions of a function."""
@@ -406,7 +400,7 @@ class _Reader:
             key = {"SetEnvironmentVariable": "value", "AppendEnvironmentVariable": "appended value"}.get(function)
             settings = {key: second_text} if key else {"unset": "true"}
         elif function in _PROCESS_CLASSES:
-            kind, name = "process", text(keywords.get("cmd"))
+            kind, name = "process", self._format_command(keywords.get("cmd"))
             settings = self._read_settings(keywords)
         elif function == "IncludeLaunchDescription":
             kind, name = "include", text(call.args[0] if call.args else keywords.get("launch_description_source"))
@@ -481,8 +475,23 @@ class _Reader:
         pairs = self.texts.find_pairs(node)
         return {"launch_arguments": self.texts.text(node)} if pairs is None else dict(pairs)
 
+    def _format_command(self, node: ast.expr | None) -> str:
+        """Return the command of a process, with the words that statements add to its list."""
+        value = None if node is None else self.texts.resolve(node)
+        added = [] if node is None else self._read_added_items(node)
+        if value is None or not isinstance(value.node, (ast.List, ast.Tuple)) or not added:
+            return self.texts.text(node)
+        return f"[{', '.join([*map(value.texts.text, value.node.elts), *added])}]"
+
+    def _read_added_items(self, node: ast.expr) -> list[str]:
+        """Return the texts of the items that statements add to the list of a name."""
+        added = find_added_items(self.python, node, self.texts) if isinstance(node, ast.Name) else []
+        self.covered.update(id(item.call) for item in added)
+        self.branches.update(id(branch) for item in added for branch in item.branches)
+        return [item.text for item in added]
+
     def _read_settings(self, keywords: Mapping[str, ast.expr]) -> dict[str, str]:
-        return _format_settings({key: BoundExpression(self.texts, value) for key, value in keywords.items()})
+        return format_settings({key: BoundExpression(self.texts, value) for key, value in keywords.items()})
 
     def _read_node_settings(
         self, keywords: Mapping[str, ast.expr], extra: Mapping[str, BoundExpression] | None = None
@@ -499,78 +508,15 @@ class _Reader:
         if arguments is not None and isinstance(arguments.texts.resolve(arguments.node).node, (ast.List, ast.Tuple)):
             words = arguments.texts.find_list_parts(arguments.node)
             texts = [word.texts.format_joined(word.node) for word in words]
-            if isinstance(arguments.node, ast.Name) and arguments.texts is self.texts:
-                texts += find_added_items(self.python, arguments.node, self.texts)
+            if arguments.texts is self.texts:
+                texts += self._read_added_items(arguments.node)
             parts["arguments"] = f"[{', '.join(texts)}]"
             del others["arguments"]
         if "remappings" in others:
-            parts |= _split_choice(others.pop("remappings"), _split_remappings)
+            parts |= split_choice(others.pop("remappings"), split_remappings)
         if "parameters" in others:
-            parts |= _split_choice(others.pop("parameters"), _split_parameters)
-        return {**_format_settings(others), **parts}
-
-
-def _format_settings(values: Mapping[str, BoundExpression]) -> dict[str, str]:
-    ignored = {*_IGNORED_ARGUMENTS, *_INNER_ACTIONS, CONDITION}
-    return {key: value.texts.text(value.node) for key, value in values.items() if key not in ignored}
-
-
-def _split_choice(value: BoundExpression, split: Callable[[BoundExpression], dict[str, str]]) -> dict[str, str]:
-    """Return the settings in a list, or in one of two lists that a condition chooses, with the condition."""
-    chosen = value.texts.resolve(value.node)
-    if not isinstance(chosen.node, ast.IfExp):
-        return split(value)
-    conditions = _format_conditions(chosen.node.test)
-    branches = [
-        _split_choice(BoundExpression(chosen.texts, node), split) for node in (chosen.node.body, chosen.node.orelse)
-    ]
-    common = {name: text for name, text in branches[0].items() if branches[1].get(name) == text}
-    for condition, settings in zip(conditions, branches, strict=True):
-        common |= {with_condition(name, condition): text for name, text in settings.items() if name not in common}
-    return common
-
-
-def _split_remappings(value: BoundExpression) -> dict[str, str]:
-    """Return each remapping of a list by name, and the unknown parts of the list."""
-    remappings: dict[str, str] = {}
-    others: list[BoundExpression] = []
-    for part in value.texts.find_list_parts(value.node):
-        pair = part.texts.find_pair(part.node)
-        pairs = [pair] if pair is not None else part.texts.find_pairs(part.node)
-        if pairs is None:
-            others.append(part)
-        else:
-            remappings |= {f"{REMAPPING}{source}": target for source, target in pairs}
-    return _format_unknown_parts("remappings", value, others) | remappings
-
-
-def _split_parameters(value: BoundExpression) -> dict[str, str]:
-    """Return each parameter of a list by name, and the files and other parts of the list."""
-    parameters: dict[str, str] = {}
-    others: list[BoundExpression] = []
-    for part in value.texts.find_list_parts(value.node):
-        is_mapping = isinstance(part.node, (ast.Dict, ast.Call))
-        pairs = part.texts.find_pairs(part.node, are_parameters=True) if is_mapping else None
-        if pairs is None:
-            others.append(part)
-        else:
-            parameters |= {f"{PARAMETER}{name}": text for name, text in pairs}
-    return _format_unknown_parts("parameters", value, others) | parameters
-
-
-def _format_unknown_parts(name: str, value: BoundExpression, parts: Sequence[BoundExpression]) -> dict[str, str]:
-    """Return the parts of a list as one setting, or the value itself if it is not a list."""
-    if not parts:
-        return {}
-    texts = [part.texts.text(part.node) for part in parts]
-    is_list = len(parts) > 1 or isinstance(value.texts.resolve(value.node).node, (ast.List, ast.Tuple))
-    return {name: f"[{', '.join(texts)}]" if is_list else texts[0]}
-
-
-def _format_conditions(test: ast.expr) -> tuple[str, str]:
-    """Return the conditions of both branches of a test."""
-    source = " ".join(ast.unparse(test).split())
-    return f"if `{source}`", f"unless `{source}`"
+            parts |= split_choice(others.pop("parameters"), split_parameters)
+        return {**format_settings(others), **parts}
 
 
 def _find_unused_values(tree: ast.AST) -> frozenset[int]:

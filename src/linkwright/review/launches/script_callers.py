@@ -11,8 +11,8 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.default_names import find_script
-from linkwright.review.launches.formats import is_launch_file
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.script_options import LAUNCH_SUFFIXES, accepts_option, read_accepted_options
 from linkwright.review.list_changes import list_items

@@ -14,9 +14,9 @@ from linkwright.packages.readers.python2 import as_python3
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.default_names import find_script
-from linkwright.review.launches.formats import is_launch_file
-from linkwright.review.launches.outlines import Entry, LaunchOutline
+from linkwright.review.launches.outlines import PROGRAM_KINDS, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.list_changes import list_items
 from linkwright.review.sources.reading import try_read_source
@@ -112,7 +112,7 @@ def _find_faults(version: Version, path: str) -> dict[_Fault, Entry]:
         return {}
     faults: dict[_Fault, Entry] = {}
     for entry in outline.entries:
-        script = find_script(version.root, entry.name) if entry.kind == "node" else None
+        script = find_script(version.root, entry.name) if entry.kind in PROGRAM_KINDS else None
         options = None if script is None else _read_options(script)
         if script is None or options is None:
             continue

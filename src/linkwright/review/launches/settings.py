@@ -11,7 +11,7 @@ from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.excerpts import LONG_VALUE, differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.conditional_settings import find_changed_settings
+from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings
 from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
 from linkwright.review.launches.included import IncludedActions, Program
@@ -36,6 +36,7 @@ _MIN_GROUP_SIZE = 3
 _MAX_VALUE_CHARACTERS = 60
 _TERM_END = re.compile(r" and (?=(?:if|unless|after) )")
 """The text between the terms of a condition."""
+_ARGUMENT = re.compile(r"\$\((?:var|arg) ")
 _PASSED_ARGUMENTS = "passed"
 """The group of arguments that an action passes to an included file."""
 
@@ -49,12 +50,15 @@ class _Setting:
         old: the old value; None if there was none.
         new: the new value; None if there is none.
         reason: why the change is breaking; None if it is not.
+        defaults: both values with the defaults of arguments if only one version uses arguments; None if they are
+            unknown.
     """
 
     name: str
     old: str | None
     new: str | None
     reason: Phrase | None
+    defaults: tuple[str, str] | None = None
 
     @property
     def edit(self) -> Hashable | None:
@@ -77,7 +81,14 @@ class _Setting:
             return phrase("{parameter} {value} removed", parameter=self.name, value=old)
         if self.name == CONDITION and max(len(old), len(new)) > LONG_VALUE:
             return _format_condition_change(old, new)
-        return change_text(self.name, old, new)
+        text = change_text(self.name, old, new)
+        if self.defaults is None:
+            return text
+        if self.defaults[0] == self.defaults[1]:
+            return phrase("{change} (the same by default)", change=text)
+        if _ARGUMENT.search(new):
+            return phrase("{change} ({value} by default)", change=text, value=self.defaults[1] or "''")
+        return phrase("{change} (before, {value} by default)", change=text, value=self.defaults[0] or "''")
 
 
 def _format_condition_change(old: str, new: str) -> Phrase:
@@ -104,7 +115,7 @@ class SettingChanges:
         old: the old outline, with the new names of arguments.
         new: the outline of the new file.
         renamed: the new names of arguments, by old name.
-        included: the new actions and the actions of the included files.
+        included: the actions of both versions with those of the included files.
     """
 
     def __init__(
@@ -113,10 +124,10 @@ class SettingChanges:
         old: LaunchOutline,
         new: LaunchOutline,
         renamed: Mapping[str, str],
-        included: IncludedActions,
+        included: tuple[IncludedActions, IncludedActions],
     ) -> None:
         self._pair = pair
-        self._included = included
+        self._old_included, self._included = included
         self._old = old
         self._new = new
         self._renamed = renamed
@@ -157,7 +168,7 @@ class SettingChanges:
             if transform is not None:
                 self._collect(new, transform, reason)
                 continue
-            setting = _Setting(pair.name, old_text, pair.new, reason)
+            setting = _Setting(pair.name, old_text, pair.new, reason, self._find_defaults(new, pair))
             if setting.edit is None:
                 settings.append(setting)
             else:
@@ -166,6 +177,18 @@ class SettingChanges:
         for text, reason, name in _group_settings(settings, is_include=new.kind == "include"):
             # A group may give a condition to actions that other programs need and to those of a user interface.
             self._collect(new, text, reason, separates_reasons=name != CONDITION)
+
+    def _find_defaults(self, entry: Entry, pair: SettingPair) -> tuple[str, str] | None:
+        """Return both values of a setting with the defaults of arguments, if only one version uses arguments."""
+        if entry.kind in ("argument", "variable", READING) or pair.name in (CONDITION, "parameters", "arguments"):
+            return None
+        if pair.old is None or pair.new is None or (pair.old, pair.new) != (pair.old_default, pair.new_default):
+            return None
+        if (_ARGUMENT.search(pair.old) is None) == (_ARGUMENT.search(pair.new) is None):
+            return None
+        values = self._old.resolve(pair.old), self._new.resolve(pair.new)
+        is_known = all("$(" not in value and len(value) <= _MAX_VALUE_CHARACTERS for value in values)
+        return values if is_known else None
 
     def _find_reason(self, entry: Entry, setting: str, old: str | None, new: str | None) -> Phrase | None:
         """Return the reason why a changed setting is breaking, or None if it is not.
@@ -178,10 +201,9 @@ class SettingChanges:
                 return reason if self._included.count_started_programs(entry) else None
             return reason or self._find_passed_value_reason(entry, setting, old)
         if entry.kind == "argument" and setting == "default" and reason is None and old is not None:
-            stopped = (
-                self._included.count_all_started_programs({entry.name: old})
-                - self._included.count_all_started_programs()
-            )
+            started = self._included.count_all_started_programs()
+            stopped = self._included.count_all_started_programs({entry.name: old}) - started
+            stopped &= self._old_included.count_all_started_programs() - started
             return _explain_stopped_programs(stopped) if stopped else None
         return reason
 

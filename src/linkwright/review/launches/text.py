@@ -14,6 +14,8 @@ from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS
 _MAX_DEPTH = 30
 _MAX_CHARACTERS = 10_000
 """The maximum number of characters kept of an expression. If names refer to names, the text can grow exponentially."""
+_CONFIGURATIONS = "launch_configurations"
+"""The attribute of a launch context with the values of the arguments."""
 _Formatter = Callable[[ast.expr | None], str]
 _COMPARISON_CONDITIONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
 _COMPARISON_SUBSTITUTIONS = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
@@ -252,6 +254,8 @@ class ExpressionTexts:
         if isinstance(node, ast.JoinedStr):
             return "".join(part(item.value if isinstance(item, ast.FormattedValue) else item) for item in node.values)
         if isinstance(node, ast.Subscript):
+            if self._is_configurations(node.value):
+                return f"$(var {part(node.slice)})"
             owner = self.resolve(node.value)
             if isinstance(owner.node, ast.Dict):
                 pairs = zip(owner.node.keys, owner.node.values, strict=True)
@@ -273,6 +277,8 @@ class ExpressionTexts:
         if function == "LaunchConfiguration":
             default = argument_of(node, "default")
             return f"$(var {part(first)})" if default is None else f"$(var {part(first)} {part(default)})"
+        if function == "get" and isinstance(node.func, ast.Attribute) and self._is_configurations(node.func.value):
+            return f"$(var {' '.join(map(part, arguments))})"
         if function in ("FindPackageShare", "get_package_share_directory", "get_package_share_path"):
             return f"$(find-pkg-share {part(first)})"
         if function == "ThisLaunchFileDir":
@@ -309,6 +315,11 @@ class ExpressionTexts:
             return "".join(map(part, self._split_pieces(first)))
         return None
 
+    def _is_configurations(self, node: ast.expr) -> bool:
+        """Return whether an expression holds the values of all arguments by name, as in ``OpaqueFunction``."""
+        owner = self._python.resolved(node)
+        return isinstance(owner, ast.Attribute) and owner.attr == _CONFIGURATIONS
+
     def _mark_substitutions(self, node: ast.expr | None) -> str:
         """Return the mark of a parameter file with substitutions, from the argument that allows them."""
         node = None if node is None else self._python.resolved(node)
@@ -338,6 +349,12 @@ class ExpressionTexts:
     def _split_pieces(self, node: ast.expr) -> list[ast.expr]:
         node = self._python.resolved(node)
         return node.elts if isinstance(node, (ast.List, ast.Tuple)) else [node]
+
+
+def format_branches(test: ast.expr) -> tuple[str, str]:
+    """Return the conditions of both branches of a test."""
+    source = " ".join(ast.unparse(test).split())
+    return f"if `{source}`", f"unless `{source}`"
 
 
 def shorten_text(text: str) -> str:

@@ -14,9 +14,11 @@ from linkwright.review.launches.outlines import (
     DELETION,
     ENVIRONMENT,
     NAMESPACE,
+    PROGRAM_KINDS,
     READING,
     REMAPPING,
     SERVER_PARAMETER,
+    TEST,
     Entry,
 )
 from linkwright.review.list_changes import EMPTY, list_items
@@ -50,6 +52,8 @@ def format_title(entry: Entry) -> Phrase:
         return phrase("variable '{name}'", name=name)
     if entry.kind == "node":
         return _format_node_title(entry, name)
+    if entry.kind == TEST:
+        return phrase("test '{name}'", name=name)
     if entry.kind == "process":
         return phrase("process '{command}'", command=name)
     if entry.kind == "include":
@@ -123,7 +127,7 @@ def format_distinct_title(entry: Entry, others: Sequence[Entry]) -> Phrase:
     """Return the title of an action, with its condition if another action sets the same name."""
     condition = entry.settings.get(CONDITION)
     count = sum((other.kind, other.name) == (entry.kind, entry.name) for other in others)
-    if entry.kind in ("node", "include", "process") or condition is None or count < 2:
+    if entry.kind in (*PROGRAM_KINDS, "include", "process") or condition is None or count < 2:
         return format_title(entry)
     return phrase("{entry} ({items})", entry=format_title(entry), items=condition)
 

@@ -14,6 +14,8 @@ from linkwright.review.launches.outlines import Entry, LaunchOutline
 _ARGUMENT_WITH_DEFAULT = re.compile(r"\$\(var ([\w.-]+) ")
 _USED_ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w./-]+)")
 _COMMENT = re.compile(r"<!--.*?-->|^\s*#[^\n]*", re.DOTALL | re.MULTILINE)
+_COMPUTED_USE = re.compile(r"\bLaunchConfiguration\(\s*(?![\"'\s])|\blaunch_configurations\b(?!\[[\"'])")
+"""A use of an argument whose name a Python file computes."""
 _PASSING_ATTRIBUTE = "pass_all_args"
 """The attribute with which an include of ROS 1 passes all arguments."""
 
@@ -41,6 +43,19 @@ def report_unused_arguments(
             text = phrase("argument '{name}' is no longer used", name=entry.name)
             reason = phrase("a value that a caller passes for '{name}' has no effect", name=entry.name)
             pair.add(text, pair.location(entry.span), reason)
+
+
+def uses_argument(file: Path, name: str, entries: Sequence[Entry]) -> bool:
+    """Return whether a launch file may use an argument that it declares, apart from the files that it includes.
+
+    Args:
+        file: the launch file.
+        name: the name of the argument.
+        entries: the actions of the launch file, also those that functions of other files make.
+    """
+    others = [entry for entry in entries if entry.kind != "argument" or entry.name != name]
+    text = _COMMENT.sub("", _read_text(file))
+    return _is_used(name, others) or _may_use(text, name) or _COMPUTED_USE.search(text) is not None
 
 
 def _may_use(text: str, name: str) -> bool:

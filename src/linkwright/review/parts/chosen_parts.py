@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, joined, phrase
@@ -16,6 +16,8 @@ _CONDITION = re.compile(
     r"|\$\(arg\s+(?P<argument>\w+)\s*\))"
 )
 """A condition on one property or argument: its truth, or a comparison with a text."""
+_REVERSED = re.compile(r"\$\{\s*(?P<literal>'[^']*'|\"[^\"]*\")\s*(?P<operator>==|!=)\s*(?P<variable>\w+)\s*\}")
+"""A comparison of a text with a property."""
 _TRUTHS = {"true": True, "1": True, "false": False, "0": False}
 
 
@@ -61,12 +63,7 @@ def compare_chosen_parts(old: Outline, new: Outline, argument: str, defaults: tu
 
 def _list_chosen(outline: Outline, argument: str, value: str) -> Iterator[str]:
     """Yield the keys of the parts under conditions on an argument that hold with a value."""
-    written = re.compile(rf"\$\(arg\s+{re.escape(argument)}\s*\)")
-    names = {
-        name
-        for name, element in iterate_properties(outline.root)
-        if written.fullmatch(element.attributes.get("value", "").strip())
-    }
+    names = _find_properties(outline, argument)
     for element in (outline.root, *(macro.element for macro in outline.macros.values())):
         for item in iterate_items(element):
             truths = [_evaluate(condition, argument, names, value) for condition in item.conditions]
@@ -74,9 +71,34 @@ def _list_chosen(outline: Outline, argument: str, value: str) -> Iterator[str]:
                 yield item.key
 
 
+def _find_properties(outline: Outline, argument: str) -> set[str]:
+    """Return the names of the properties whose value is an argument."""
+    written = re.compile(rf"\$\(arg\s+{re.escape(argument)}\s*\)")
+    return {
+        name
+        for name, element in iterate_properties(outline.root)
+        if written.fullmatch(element.attributes.get("value", "").strip())
+    }
+
+
+def find_left_out_reason(outline: Outline, conditions: Iterable[str]) -> Phrase | None:
+    """Return why further conditions of a part are breaking: the default of an argument leaves the part out.
+
+    Args:
+        outline: the outline of the new version of the file.
+        conditions: the conditions that only the new version has.
+    """
+    conditions = list(conditions)
+    for name, element in outline.arguments.items():
+        default, properties = element.attributes.get("default"), _find_properties(outline, name)
+        if default is not None and any(_evaluate(each, name, properties, default) is False for each in conditions):
+            return phrase("robots of callers that do not pass '{name}' lack the part", name=name)
+    return None
+
+
 def _evaluate(condition: str, argument: str, properties: Collection[str], value: str) -> bool | None:
     """Return whether a condition holds with the value of an argument; None if it depends on something else."""
-    match = _CONDITION.fullmatch(condition)
+    match = _CONDITION.fullmatch(_REVERSED.sub(r"${\g<variable> \g<operator> \g<literal>}", condition))
     if match is None or not (match["argument"] == argument or match["variable"] in properties):
         return None
     if match["operator"]:

@@ -6,7 +6,7 @@ from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from linkwright.descriptions.comparison import Difference
-from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.breaking import (
     MOVING_TYPES,
     call_reason,
@@ -22,8 +22,9 @@ from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.files.semantics import find_removal_reason
 from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.merging import merge_reasons, name_edit
-from linkwright.review.parts.chosen_parts import find_lost_choice_reason
+from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
+from linkwright.review.parts.include_arguments import find_lost_choices
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
@@ -99,7 +100,7 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
     if element.tag in (_INCLUDE, _INSERT):
-        return any(pair.is_read(is_old=is_old) for is_old in sides)
+        return not find_lost_choices(pair, difference) and any(pair.is_read(is_old=is_old) for is_old in sides)
     return any(pair.is_expanded(elements[0 if is_old else 1], is_old=is_old) for is_old in sides)
 
 
@@ -233,6 +234,8 @@ class _ReportedDifference:
             has_other_contents = self.shows_contents and str(self.contents) != str(first.contents)
             return f"{self.name}: {self.contents}" if has_other_contents and self.contents is not None else self.name
         difference = self.difference
+        if difference.path[-1] == _INCLUDE.removeprefix(_XACRO) and difference.value == "filename":
+            return difference.new
         value, first_value = (changed.new or changed.old or "" for changed in (difference, first.difference))
         return f"{self.element} {_truncate(value)}" if difference.is_whole and value != first_value else None
 
@@ -272,7 +275,10 @@ class _ReportedDifference:
         if old is None:
             return self._find_default_topic_reason()
         if difference.value == "conditions":
-            return find_lost_choice_reason(difference.old or "", difference.new or "")
+            return self._find_condition_reason(difference.old or "", difference.new or "")
+        lost_choices = find_lost_choices(self.pair, difference)
+        if lost_choices:
+            return phrase("callers that pass {names} get another file", names=quoted_names(lost_choices))
         is_removed = difference.is_whole or difference.value == "name"
         if len(difference.path) == 1 and old.tag in ("link", "joint"):
             name = old.attributes.get("name", "")
@@ -310,6 +316,17 @@ class _ReportedDifference:
         if tag != "joint" or old.tag not in ("joint", "limit") or not difference.old or not difference.new:
             return None
         return find_written_reason(name, difference.value, difference.old, difference.new)
+
+    def _find_condition_reason(self, old: str, new: str) -> Phrase | None:
+        """Return the reason why other conditions of an element are breaking, or None if they are not."""
+        old_conditions = old.split(CONDITION_SEPARATOR)
+        element = self.difference.new_element
+        if element is None or element.tag == PROPERTY:
+            return find_lost_choice_reason(old, new)
+        added = [condition for condition in new.split(CONDITION_SEPARATOR) if condition not in old_conditions]
+        is_further = len(added) == len(new.split(CONDITION_SEPARATOR)) - len(list(filter(None, old_conditions)))
+        reason = find_left_out_reason(self.pair.new, added) if is_further else None
+        return reason or find_lost_choice_reason(old, new)
 
     def _find_default_topic_reason(self) -> Phrase | None:
         """Return the reason why an added topic of a sensor is breaking; None for other additions."""

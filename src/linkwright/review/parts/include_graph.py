@@ -33,6 +33,20 @@ class IncludeGraph:
             reachable for reachable in self._find_reachable(path, self._includers) if not self._includers[reachable]
         ]
 
+    def find_outlines_of_robots(self, path: str) -> list[Outline] | None:
+        """Return the outlines of all files of the top-level files that include a file.
+
+        The result is None if one of them may include a file that is not in the repository.
+        """
+        robots = self.find_robots_with(path)
+        paths = {reachable for robot in robots for reachable in self._find_reachable(robot, self._included)}
+        has_unknown = any(
+            not inclusion.pattern and inclusion.name not in self._names
+            for reachable in paths
+            for inclusion in self._outlines[reachable].inclusions
+        )
+        return None if has_unknown else [self._outlines[reachable] for reachable in sorted(paths)]
+
     def find_files_with_macro(self, macro: str) -> list[str]:
         """Return the files that define a macro."""
         return [path for path, outline in self._outlines.items() if macro in outline.macros]
@@ -75,6 +89,11 @@ class IncludeGraph:
             if outline is not None and path is not None:
                 outlines[path] = outline
         return outlines
+
+    @cached_property
+    def _names(self) -> set[str]:
+        """The names of the descriptions that can be read."""
+        return {Path(path).name for path in self._outlines}
 
     @cached_property
     def _included(self) -> dict[str, set[str]]:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.list_changes import change_text
 from linkwright.review.parts.chosen_parts import compare_chosen_parts
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.outline import MacroOutline, Outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.renamed_names import find_renamed_names
+from linkwright.review.parts.undefined_names import find_undefined_names
+from linkwright.review.parts.unused_arguments import is_unused_argument
 from linkwright.xacro.macros import Parameter
 from linkwright.xmltree import Element
 
@@ -26,6 +28,7 @@ def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, 
     for name, macro in pair.new.macros.items():
         if name in pair.old.macros:
             _compare_parameters(pair, pair.old.macros[name], macro)
+            _report_undefined_names(pair, graphs.new, pair.old.macros[name], macro)
         elif name not in renamed.values() and not _declares_macro(graphs.old, pair.old_path, name):
             pair.add(phrase("macro '{name}' added", name=name), None, macro.element)
     for name, macro in pair.old.macros.items():
@@ -55,6 +58,14 @@ def make_macro_removal_reason() -> Phrase:
 
 def _declares_macro(graph: IncludeGraph, path: str, name: str) -> bool:
     return graph.declares(path, lambda outline: name in outline.macros)
+
+
+def _report_undefined_names(pair: PartPair, graph: IncludeGraph, old: MacroOutline, new: MacroOutline) -> None:
+    """Report the names that a macro newly uses although nothing defines them."""
+    names = find_undefined_names(graph, pair.new_path, old, new)
+    if names:
+        text = phrase("macro '{name}': uses {names}, which nothing defines", name=new.name, names=quoted_names(names))
+        pair.add(text, old.element, new.element, phrase("calls of the macro fail unless the caller defines the name"))
 
 
 def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) -> None:
@@ -170,11 +181,13 @@ def compare_arguments(pair: PartPair, graphs: IncludeGraphs) -> None:
         elif name in old_names:
             old_name = old_names[name]
             text = phrase("argument '{old}' renamed to '{name}'", old=old_name, name=name)
-            pair.add(text, removed.pop(old_name), element, _make_unused_value_reason(old_name))
+            pair.add(text, removed.pop(old_name), element, _find_lost_value_reason(pair, graphs.old, old_name))
         elif name in added:
             _report_added_argument(pair, name, element)
     for name, element in removed.items():
-        pair.add(phrase("argument '{name}' removed", name=name), element, None, _make_unused_value_reason(name))
+        reason = _find_lost_value_reason(pair, graphs.old, name)
+        text = phrase("argument '{name}' removed", name=name)
+        pair.add(text if reason else phrase("unused argument '{name}' removed", name=name), element, None, reason)
 
 
 def _report_added_argument(pair: PartPair, name: str, element: Element) -> None:
@@ -186,7 +199,10 @@ def _report_added_argument(pair: PartPair, name: str, element: Element) -> None:
     pair.add(phrase("argument '{name}' added, with the default '{value}'", name=name, value=default), None, element)
 
 
-def _make_unused_value_reason(name: str) -> Phrase:
+def _find_lost_value_reason(pair: PartPair, graph: IncludeGraph, name: str) -> Phrase | None:
+    """Return why removing an argument is breaking, or None if its values had no effect."""
+    if is_unused_argument(graph, pair.old_path, name):
+        return None
     return phrase("a value that a caller passes for '{name}' has no effect", name=name)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from linkwright.diagnostics import Diagnostic, Severity, Span, phrase, to_data
 from linkwright.review.changes import Change, Effect, Location, Review, Subject
 from linkwright.review.paths import PathComparison
-from linkwright.review.reports.sections import format_change
+from linkwright.review.reports.sentences import format_change
 
 BREAKING_CODE = "REV201"
 FAILURE_CODE = "REV202"

@@ -9,23 +9,31 @@ from html import escape
 from linkwright.diagnostics import Diagnostic, Phrase, phrase
 from linkwright.diagnostics.translation import language, localized
 from linkwright.review.changes import Change, Effect, Figure, Review, Subject, ViewImages
+from linkwright.review.excerpts import shorten
 from linkwright.review.reports.path_plots import PLOT_STYLE, draw_path_plot
 from linkwright.review.reports.scene_page import SCENE_STYLE, Scenes
 from linkwright.review.reports.sections import (
     Section,
     divide_report,
+    format_summary,
+    merge_breaking_changes,
+    separate_code,
+)
+from linkwright.review.reports.sentences import (
     format_alike,
     format_cases,
     format_change,
+    format_code_heading,
     format_location,
     format_paths,
     format_repeated,
-    format_summary,
     get_path_state,
     group_findings,
     list_other_files,
-    merge_breaking_changes,
 )
+
+_MAX_CHARACTERS = 400
+"""The maximum number of characters of a change that are shown without a click."""
 
 _STYLE = """
 :root { color-scheme: light dark; --ink: #1d2733; --soft: #5c6a7d; --line: #d8dee6; --back: #f6f8fa; --card: #fff;
@@ -41,7 +49,7 @@ section { background: var(--card); border: 1px solid var(--line); border-radius:
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: 8px 0; }
 th, td { padding: 3px 12px 3px 0; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { color: var(--soft); font-weight: 600; }
-ul { padding-left: 20px; } li { margin: 2px 0; }
+ul { margin: 8px 0 4px; padding-left: 20px; } li { margin: 2px 0; } summary { cursor: pointer; }
 .images { display: grid; grid-template-columns: repeat(auto-fit, minmax(440px, 1fr)); gap: 12px; margin: 12px 0; }
 figure { margin: 0; } figcaption { color: var(--soft); }
 .versions { position: relative; background: #fff; border: 1px solid var(--line); border-radius: 6px; overflow: hidden; }
@@ -75,10 +83,12 @@ def as_html(review: Review) -> str:
     new = review.new_name or localized(phrase("working tree"))
     title = phrase("Robot review: {old} to {new}", old=review.old_name, new=new)
     scenes = Scenes(review.subjects)
+    sections, code_sections = separate_code(divide_report(review))
     parts = [
         f"<h1>{_escape_text(title)}</h1><p class='soft'>{_escape_text(format_summary(review))}</p>",
         *_render_breaking_changes(review),
-        *(_render_section(section, scenes) for section in divide_report(review)),
+        *(_render_section(section, scenes) for section in sections),
+        *_render_list(format_code_heading(len(code_sections)), list(map(_render_code_section, code_sections))),
         *_render_findings(phrase("New findings"), review.new_findings),
         *_render_findings(phrase("Fixed findings"), review.fixed_findings),
         *_render_list(phrase("Other changed files"), [_render_path(*file) for file in list_other_files(review)]),
@@ -111,8 +121,10 @@ def _render_breaking_changes(review: Review) -> Iterator[str]:
 def _render_section(section: Section, scenes: Scenes) -> str:
     subject = section.subject
     items = [_render_change(change, subject) + _render_place(change, subject) for change in section.changes]
-    items += [_escape_text(format_repeated(path, count)) for path, count in section.repeated]
-    alike = format_alike(section)
+    items += [
+        _escape_text(format_repeated(path, count, is_shared=is_shared)) for path, count, is_shared in section.repeated
+    ]
+    alike = format_alike(section.alike)
     items += [] if alike is None else [_escape_text(alike)]
     items += [f"<span class='breaking'>{_escape_text(problem.text)}</span>" for problem in subject.problems]
     changes = f"<ul>{''.join(f'<li>{item}</li>' for item in items)}</ul>" if items else ""
@@ -123,8 +135,25 @@ def _render_section(section: Section, scenes: Scenes) -> str:
     )
 
 
+def _render_code_section(section: Section) -> str:
+    """Return the functions of a source with other code, in one item."""
+    subject = section.subject
+    changes = "; ".join(_render_change(change, subject) + _render_place(change, subject) for change in section.changes)
+    alike = format_alike(section.alike)
+    path = _render_path(subject.path, get_path_state(subject))
+    return f"{path}: {changes}{'' if alike is None else f'; {_escape_text(alike)}'}"
+
+
+def _render_long_text(text: str) -> str:
+    """Return a text. The rest of a long one appears with a click."""
+    start = shorten(text, _MAX_CHARACTERS)
+    if start == text:
+        return escape(text)
+    return f"<details class='long'><summary>{escape(start)}</summary>{escape(text)}</details>"
+
+
 def _render_change(change: Change, subject: Subject) -> str:
-    text = _escape_text(format_change(change))
+    text = _render_long_text(localized(format_change(change)))
     if change.effect is Effect.BREAKING:
         text = f"<strong class='breaking'>{text}</strong>"
     if change.reason is not None:

@@ -2,29 +2,49 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
-from linkwright.diagnostics import Diagnostic, Phrase, counted, joined_first, phrase, quoted_names
-from linkwright.diagnostics.phrase import as_phrase
-from linkwright.review.changes import Change, Effect, Location, Review, Subject, SubjectKind
-from linkwright.review.other_files import group_files
+from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
+from linkwright.review.merging import merge_reasons
+from linkwright.review.reports.sentences import format_change
 
-_MAX_NAMES = 24
-"""The maximum number of other links or joints that a line names."""
-_MAX_BREAKING_NAMES = 12
-"""The maximum number of other links or joints in a line about a breaking change. Users may search for them."""
-_MAX_PATHS = 4
-"""The maximum number of other files that a line names."""
-_MAX_NAMED_CASES = 1
-"""The maximum number of argument sets that a line names."""
+_ORDER = {
+    kind: number
+    for number, kind in enumerate(
+        (
+            *(SubjectKind.SCENARIO, SubjectKind.DESCRIPTION, SubjectKind.WORLD, SubjectKind.TEMPLATE),
+            *(SubjectKind.PART, SubjectKind.SEMANTICS, SubjectKind.MESH, SubjectKind.INTERFACE),
+            *(SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS, SubjectKind.MAP, SubjectKind.SOURCE),
+            *(SubjectKind.PLUGINS, SubjectKind.RVIZ, SubjectKind.BUILD, SubjectKind.MANIFEST),
+            SubjectKind.DEPENDENCIES,
+        )
+    )
+}
+"""The order of kinds in a report: robots first, then programs, then the files that build and install them."""
+_MIN_REPEATED = 2
+"""The minimum number of changes that a section replaces by the path of another section with the same changes."""
+_MIN_CODE_SECTIONS = 3
+"""The minimum number of sources with only other code that share a section."""
+_MIN_NAMES = 3
+"""The minimum number of sentences that differ only in a name and are merged."""
 
-_MAX_ARGUMENTS = 4
-"""The maximum number of arguments of an argument set that a line names."""
-_ARGUMENT = re.compile(r" (?=[\w.-]+:=)")
-"""The space between two arguments in the name of an argument set."""
+
+class Repeat(NamedTuple):
+    """Changes that an earlier section lists.
+
+    Attributes:
+        path: the path of the subject of that section.
+        change_count: the number of changes.
+        is_shared: whether they are changes to files that both subjects include.
+    """
+
+    path: str
+    change_count: int
+    is_shared: bool
 
 
 @dataclass(frozen=True)
@@ -34,18 +54,26 @@ class Section:
     Attributes:
         subject: the reviewed file.
         changes: its changes, breaking changes first, without the changes listed in an earlier section.
-        repeated: the number of changes that an earlier section lists, by the path of its subject.
+        repeated: the changes that earlier sections list.
         alike: the paths of other subjects of the same kind with the same changes. They have no section.
     """
 
     subject: Subject
     changes: Sequence[Change]
-    repeated: Sequence[tuple[str, int]]
+    repeated: Sequence[Repeat]
     alike: list[str] = field(default_factory=list)
+
+    @property
+    def has_only_code(self) -> bool:
+        """Whether the section only names functions with other code."""
+        subject = self.subject
+        return not (self.repeated or subject.figures or subject.problems) and all(
+            change.is_code for change in self.changes
+        )
 
 
 def divide_report(review: Review) -> list[Section]:
-    """Return the sections of a report.
+    """Return the sections of a report: robots first, and sources of which only the code changed last.
 
     A macro that several descriptions include causes the same change in each of them, perhaps with other names. An edit
     of many launch files, parameter files or manifests often causes the same changes in each of them.
@@ -58,7 +86,15 @@ def divide_report(review: Review) -> list[Section]:
             sections.append(section)
         else:
             first.alike.append(section.subject.path)
-    return sections
+    return sorted(_replace_repeated(sections), key=lambda section: section.has_only_code)
+
+
+def separate_code(sections: Sequence[Section]) -> tuple[list[Section], list[Section]]:
+    """Return the sections, and those that only name functions with other code if there are several."""
+    code = [section for section in sections if section.has_only_code]
+    if len(code) < _MIN_CODE_SECTIONS:
+        return list(sections), []
+    return [section for section in sections if not section.has_only_code], code
 
 
 def _make_comparison_key(section: Section) -> Hashable:
@@ -66,21 +102,19 @@ def _make_comparison_key(section: Section) -> Hashable:
     subject = section.subject
     if section.repeated or subject.problems or subject.images or subject.paths or subject.scene:
         return subject.path
-    if _has_contents(section):
+    if _has_contents(subject, section.changes):
         return subject.path
     figures = ((str(figure.name), figure.old, figure.new) for figure in subject.figures)
     return subject.kind, *(_make_text_key(change) for change in section.changes), *figures
 
 
-def _has_contents(section: Section) -> bool:
-    """Return whether a section summarizes a file that only one version has.
+def _has_contents(subject: Subject, changes: Sequence[Change]) -> bool:
+    """Return whether changes summarize a file that only one version has.
 
     Files with equal summaries may differ in what a summary omits.
     """
-    is_lone = None in (section.subject.old_path, section.subject.new_path)
-    return is_lone and (
-        len(section.changes) > 1 or any("items" in change.sentence.arguments for change in section.changes)
-    )
+    is_lone = None in (subject.old_path, subject.new_path)
+    return is_lone and (len(changes) > 1 or any("items" in change.sentence.arguments for change in changes))
 
 
 def _make_text_key(change: Change) -> Hashable:
@@ -89,7 +123,7 @@ def _make_text_key(change: Change) -> Hashable:
 
 def _make_sections(review: Review) -> Iterator[Section]:
     listed: dict[Hashable, str] = {}
-    for subject in review.subjects:
+    for subject in sorted(review.subjects, key=lambda subject: _ORDER[subject.kind]):
         changes = []
         repeated: Counter[str] = Counter()
         for change in subject.changes:
@@ -98,9 +132,30 @@ def _make_sections(review: Review) -> Iterator[Section]:
                 repeated[first] += 1
                 continue
             changes.append(change)
-        changes = _merge_locations(changes)
-        changes.sort(key=lambda change: change.effect is not Effect.BREAKING)
-        yield Section(subject, changes, list(repeated.items()))
+        changes = _merge_names(_merge_locations(changes))
+        changes.sort(key=lambda change: (change.effect is not Effect.BREAKING, change.is_code))
+        yield Section(subject, changes, [Repeat(path, count, True) for path, count in repeated.items()])
+
+
+def _replace_repeated(sections: Sequence[Section]) -> Iterator[Section]:
+    """Yield the sections. Changes that an earlier section about a file of the same kind lists are only counted.
+
+    Breaking changes are listed in each section, and so is a change that is the only one in common.
+    """
+    listed: dict[Hashable, str] = {}
+    for section in sections:
+        subject = section.subject
+        first_paths = [
+            None
+            if change.is_code or change.effect is Effect.BREAKING or _has_contents(subject, section.changes)
+            else listed.setdefault((subject.kind, _make_text_key(change)), subject.path)
+            for change in section.changes
+        ]
+        counts = Counter(path for path in first_paths if path not in {None, subject.path})
+        repeated = {path: count for path, count in counts.items() if path is not None and count >= _MIN_REPEATED}
+        changes = [change for change, path in zip(section.changes, first_paths, strict=True) if path not in repeated]
+        repeats = (Repeat(path, count, False) for path, count in repeated.items())
+        yield replace(section, changes=changes, repeated=[*section.repeated, *repeats])
 
 
 def _merge_locations(changes: Sequence[Change]) -> list[Change]:
@@ -116,145 +171,69 @@ def _join_locations(changes: Sequence[Change]) -> Change:
     return replace(changes[0], other_locations=(*changes[0].other_locations, *others)) if others else changes[0]
 
 
-def get_path_state(subject: Subject) -> Phrase | None:
-    """Return whether a source was added or removed; None for other files, whose changes tell it."""
-    if subject.kind is not SubjectKind.SOURCE or None not in (subject.old_path, subject.new_path):
+def _merge_names(changes: Sequence[Change]) -> list[Change]:
+    """Return the changes, with sentences that differ only in a name merged, such as those about removed arguments."""
+    groups: dict[Hashable, list[Change]] = {}
+    for number, change in enumerate(changes):
+        groups.setdefault(_make_name_key(change) or number, []).append(change)
+    merged: list[Change] = []
+    for group in groups.values():
+        merged += [_join_names(group)] if len(group) >= _MIN_NAMES else group
+    return merged
+
+
+def _make_name_key(change: Change) -> Hashable | None:
+    """Return a key that is equal for sentences that differ only in their name. None for sentences without a name."""
+    arguments = change.sentence.arguments
+    name = arguments.get("name")
+    if change.other_names or change.other_locations or not isinstance(name, str) or not name:
         return None
-    return phrase("added") if subject.old_path is None else phrase("removed")
+    others = tuple((key, str(value)) for key, value in arguments.items() if key != "name")
+    reason = None if change.reason is None else str(change.reason).replace(f"'{name}'", "''")
+    return change.effect, change.sentence.template, others, reason, change.cases
+
+
+def _join_names(changes: Sequence[Change]) -> Change:
+    names = tuple(str(change.sentence.arguments["name"]) for change in changes[1:])
+    locations = tuple(change.location for change in changes[1:] if change.location is not None)
+    reason = merge_reasons(change.reason for change in changes)
+    return replace(changes[0], other_names=names, other_locations=locations, reason=reason)
 
 
 def merge_breaking_changes(review: Review) -> list[tuple[list[str], Change]]:
-    """Return the breaking changes with the paths of their subjects.
+    """Return the breaking changes with the paths of their subjects, in the order of the sections.
 
-    Equal changes to several subjects are merged.
-    """
-    groups: dict[Hashable, tuple[dict[str, None], Change]] = {}
-    for subject, change in review.breaking_changes:
-        groups.setdefault(_make_text_key(change), ({}, change))[0][subject.path] = None
-    return [(list(paths), change) for paths, change in groups.values()]
-
-
-def format_change(change: Change) -> Phrase:
-    """Return a change in one line, with the other links or joints, or the number of locations."""
-    names = change.other_names
-    if not names and change.other_locations:
-        return _add_count(change.sentence, 1 + len(change.other_locations))
-    if not names:
-        return change.sentence
-    limit = _MAX_BREAKING_NAMES if change.effect is Effect.BREAKING else _MAX_NAMES
-    listed = quoted_names(names[:limit])
-    if len(names) <= limit:
-        return phrase("{change}; also {names}", change=change.sentence, names=listed)
-    more = len(names) - limit
-    return phrase("{change}; also {names} and {count} more", change=change.sentence, names=listed, count=more)
-
-
-def format_cases(change: Change, subject: Subject) -> Phrase | None:
-    """Return the argument sets with which a change occurs, or None for all argument sets."""
-    if not change.cases:
-        return None
-    cause = _find_common_cause(change.cases, subject.cases)
-    if cause is not None:
-        return cause
-    names = [_find_distinct_arguments(name, subject.cases or change.cases) for name in change.cases]
-    if names == [""]:
-        return phrase("with the default arguments")
-    if len(names) <= _MAX_NAMED_CASES:
-        return phrase("with {arguments}", arguments=", ".join(names))
-    return phrase("with {count} of {total} argument sets", count=len(names), total=len(subject.cases))
-
-
-def _find_common_cause(cases: Sequence[str], all_cases: Sequence[str]) -> Phrase | None:
-    """Return the argument that all sets with a change have and no other set has, or vice versa.
-
-    Returns None unless there is exactly one such argument. An argument is preferred that the other sets have with
+    Equal changes to several subjects are merged, also if they occur with different arguments, or remove a part with
     other values.
     """
-    words = [set(_ARGUMENT.split(case)) - {""} for case in cases]
-    others = [set(_ARGUMENT.split(case)) - {""} for case in all_cases if case not in cases]
-    if not others:
-        return None
-    cause = _find_common_argument(words, others)
-    if cause is not None:
-        return phrase("with {arguments}", arguments=cause)
-    cause = _find_common_argument(others, words)
-    return None if cause is None else phrase("without {arguments}", arguments=cause)
+    groups: dict[Hashable, tuple[dict[str, None], list[Change]]] = {}
+    for subject in sorted(review.subjects, key=lambda subject: _ORDER[subject.kind]):
+        breaking = [change for change in subject.changes if change.effect is Effect.BREAKING]
+        for change in _merge_names(_merge_locations(breaking)):
+            paths, changes = groups.setdefault(_make_breaking_key(change), ({}, []))
+            paths[subject.path] = None
+            changes.append(change)
+    return [(list(paths), _join_values(changes)) for paths, changes in groups.values()]
 
 
-def _find_common_argument(sets: Sequence[set[str]], others: Sequence[set[str]]) -> str | None:
-    """Return the only argument that all sets have and no other set has, or None."""
-    causes = sorted(set.intersection(*sets) - set().union(*others))
-    distinguishing = [cause for cause in causes if all(_has_argument(other, cause) for other in others)]
-    candidates = distinguishing or causes
-    return candidates[0] if len(candidates) == 1 else None
+def _make_breaking_key(change: Change) -> Hashable:
+    part = _find_removed_part(change)
+    return (str(format_change(change)) if part is None else f"{part} removed"), str(change.reason)
 
 
-def _has_argument(words: set[str], cause: str) -> bool:
-    return any(word.startswith(cause.partition(":=")[0] + ":=") for word in words)
+def _find_removed_part(change: Change) -> str | None:
+    """Return the name of a part that is removed with its values; None for other changes."""
+    is_part = change.sentence.template.startswith("{parameter} removed") and not change.other_names
+    return str(change.sentence.arguments["parameter"]) if is_part else None
 
 
-def _find_distinct_arguments(case_name: str, cases: Sequence[str]) -> str:
-    """Return the values that distinguish an argument set from the first set.
-
-    For the first set, they are the values that the other sets do not share.
-    """
-    words = [set(_ARGUMENT.split(case)) for case in cases]
-    shared = set.intersection(*words) if case_name == cases[0] else words[0]
-    distinct = [word for word in _ARGUMENT.split(case_name) if word not in shared]
-    return " ".join([*distinct[:_MAX_ARGUMENTS], *(["..."] if len(distinct) > _MAX_ARGUMENTS else [])]) or case_name
-
-
-def format_repeated(path: str, count: int) -> Phrase:
-    """Return the line for changes that an earlier section lists."""
-    return counted(
-        "the same change in a shared file as in {path}",
-        "the same {count} changes in shared files as in {path}",
-        count,
-        path=path,
-    )
-
-
-def group_findings(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Return the findings, with equal findings in a file merged.
-
-    The message contains their number.
-    """
-    groups: dict[Hashable, list[Diagnostic]] = {}
-    for finding in findings:
-        file = None if finding.span is None else finding.span.file
-        groups.setdefault((finding.code, file, str(finding.message)), []).append(finding)
-    return [
-        first if not others else first.with_changes(message=_add_count(as_phrase(first.message), 1 + len(others)))
-        for first, *others in groups.values()
-    ]
-
-
-def _add_count(text: Phrase, count: int) -> Phrase:
-    return phrase("{change} ({count} times)", change=text, count=count)
-
-
-def format_paths(paths: Sequence[str]) -> Phrase:
-    """Return paths in one line, with the number of the remaining ones."""
-    return joined_first(paths, _MAX_PATHS)
-
-
-def format_location(location: Location, path: str) -> Phrase | str:
-    """Return a place as the line of a file, or with its path if it is in another file than `path`."""
-    if location.file == path:
-        return phrase("line {line}", line=location.line)
-    return f"{location.file}:{location.line}"
-
-
-def format_alike(section: Section) -> Phrase | None:
-    """Return the line for other files with the same changes, or None if there are none."""
-    if not section.alike:
-        return None
-    return counted(
-        "the same in one more file: {paths}",
-        "the same in {count} more files: {paths}",
-        len(section.alike),
-        paths=format_paths(section.alike),
-    )
+def _join_values(changes: Sequence[Change]) -> Change:
+    """Return one change for equal changes. Values in which they differ are left out."""
+    first = changes[0]
+    part = _find_removed_part(first)
+    if part is None or len({str(change.sentence) for change in changes}) == 1:
+        return first
+    return replace(first, sentence=phrase("{parameter} removed", parameter=part))
 
 
 def format_summary(review: Review) -> Phrase:
@@ -262,8 +241,12 @@ def format_summary(review: Review) -> Phrase:
     breaking = total = 0
     for section in divide_report(review):
         count = 1 + len(section.alike)
-        total += count * len(section.changes)
+        repeated = sum(repeat.change_count for repeat in section.repeated if not repeat.is_shared)
+        total += count * (len(section.changes) + repeated)
         breaking += count * sum(change.effect is Effect.BREAKING for change in section.changes)
+    if not (total or review.new_findings or review.fixed_findings):
+        new = review.new_name or phrase("the working tree")
+        return phrase("nothing that a review compares changed from {old} to {new}", old=review.old_name, new=new)
     return phrase(
         "{breaking}, {changes}, {findings}, {fixed}",
         breaking=counted("{count} breaking change", "{count} breaking changes", breaking),
@@ -271,16 +254,3 @@ def format_summary(review: Review) -> Phrase:
         findings=counted("{count} new finding", "{count} new findings", len(review.new_findings)),
         fixed=counted("{count} fixed", "{count} fixed", len(review.fixed_findings)),
     )
-
-
-def list_other_files(review: Review) -> list[tuple[str, Phrase | None]]:
-    """Return the paths and states of the files that were not compared.
-
-    Several files of a folder are listed as one.
-    """
-    lines: list[tuple[str, Phrase | None]] = []
-    for path, count, state in group_files(review.other_files, review.file_states):
-        if count > 1 and state is not None:
-            state = phrase("{count} files, {state}", count=count, state=state)
-        lines.append((path, state))
-    return lines

@@ -8,14 +8,13 @@ from linkwright.diagnostics import Diagnostic, Phrase, counted, phrase
 from linkwright.diagnostics.render import make_printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Effect, Review
-from linkwright.review.reports.sections import (
-    Section,
-    divide_report,
+from linkwright.review.excerpts import shorten
+from linkwright.review.reports.sections import Section, divide_report, format_summary
+from linkwright.review.reports.sentences import (
     format_alike,
     format_cases,
     format_change,
     format_repeated,
-    format_summary,
     get_path_state,
     group_findings,
     list_other_files,
@@ -23,6 +22,8 @@ from linkwright.review.reports.sections import (
 
 _MAX_OTHER_FILES = 20
 """The maximum number of files that are listed although they were not compared."""
+_MAX_CHARACTERS = 600
+"""The maximum number of characters of a change or reason."""
 _NEWLINE = "\N{SYMBOL FOR NEWLINE}"
 """The character that replaces a newline in the name of a file."""
 
@@ -64,14 +65,15 @@ def _format_section(section: Section) -> Iterator[str]:
     for change in section.changes:
         mark = "!" if change.effect is Effect.BREAKING else "-"
         cases = format_cases(change, subject)
-        yield f"  {mark} {localized(format_change(change))}{f' ({localized(cases)})' if cases else ''}"
+        text = shorten(localized(format_change(change)), _MAX_CHARACTERS)
+        yield f"  {mark} {text}{f' ({localized(cases)})' if cases else ''}"
         if change.reason is not None:
-            yield f"    {localized(phrase('breaking: {reason}', reason=change.reason))}"
+            yield f"    {shorten(localized(phrase('breaking: {reason}', reason=change.reason)), _MAX_CHARACTERS)}"
         if change.location is not None:
             yield f"    {change.location.file}:{change.location.line}:{change.location.column}"
-    for path, count in section.repeated:
-        yield f"  - {localized(format_repeated(path, count))}"
-    alike = format_alike(section)
+    for path, count, is_shared in section.repeated:
+        yield f"  - {localized(format_repeated(path, count, is_shared=is_shared))}"
+    alike = format_alike(section.alike)
     if alike is not None:
         yield f"  = {localized(alike)}"
     for figure in subject.figures:

@@ -30,7 +30,7 @@ from linkwright.review.robots.added_links import AddedLinks
 from linkwright.review.robots.cases import Case, find_cases, find_switched_cases
 from linkwright.review.robots.collisions import compare_collisions, may_change_collisions
 from linkwright.review.robots.figures import RobotMeasures, compare_figures
-from linkwright.review.robots.omitted_calls import find_lost_call_reason
+from linkwright.review.robots.omitted_calls import find_lost_call_reason, find_passed_name_reason, find_title
 from linkwright.review.robots.joined_values import JoinedDifferences, join_value_differences
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
@@ -142,6 +142,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             or find_missing_topics_reason(difference, added_names)
             or find_default_topic_reason(difference, new.extensions)
             or find_lost_call_reason(difference, comparison.differences)
+            or find_passed_name_reason(difference)
             or _find_expression_reason(difference)
             or find_limits_reason(difference.values if isinstance(difference, JoinedDifferences) else (difference,), new)
         )
@@ -222,7 +223,7 @@ def format_difference(difference: Difference) -> Phrase:
     if isinstance(difference, PluginReplacement):
         name = f"{term(difference.subject)} '{difference.name}'"
         return phrase("{entry}: {change}", entry=name, change=difference.text)
-    text = sentence(difference)
+    text = sentence(difference, find_title(difference))
     old_path = find_old_path(difference, difference.property)
     if old_path is not None:
         return phrase(
@@ -268,7 +269,7 @@ def _format_known_value(difference: Difference) -> str:
 
 def _format_presence(difference: Difference, value: str | None) -> Phrase:
     """Return the line about an added or removed property or part, with its value."""
-    subject, name, part = term(difference.subject), difference.name, difference.property
+    (subject, name), part = find_title(difference), difference.property
     if difference.new is not None and not value:
         return phrase("{subject} '{name}': {property} added", subject=subject, name=name, property=part)
     if difference.new is not None:

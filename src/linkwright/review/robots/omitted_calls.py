@@ -1,14 +1,34 @@
-"""Decide whether a removed call of a macro whose file is missing is breaking."""
+"""Describe calls of macros whose files are missing, and decide whether their changes are breaking."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 from linkwright.descriptions.comparison import Difference
-from linkwright.diagnostics import Phrase
+from linkwright.diagnostics import Phrase, phrase, term
 from linkwright.review.breaking import call_reason
 
 _XACRO = "xacro:"
+_NAME_PARAMETER = re.compile(r"@((\w+_)?topic(_name)?|(\w+_)?namespace|(\w+_)?frame(_id|_prefix)?)", re.IGNORECASE)
+"""An attribute that gives a name in the graph or in tf to a macro."""
+
+
+def find_title(difference: Difference) -> tuple[Phrase, str]:
+    """Return the kind and the name of the changed object."""
+    if difference.subject == "extension" and difference.name.startswith(_XACRO):
+        return phrase("call of macro"), difference.name.removeprefix(_XACRO)
+    return term(difference.subject), difference.name
+
+
+def find_passed_name_reason(difference: Difference) -> Phrase | None:
+    """Return why a name that a call of an unknown macro newly passes is breaking, or None for other differences."""
+    is_added = difference.kind == "changed" and difference.old is None and difference.new is not None
+    if not is_added or difference.subject != "extension" or not difference.name.startswith(_XACRO):
+        return None
+    if _NAME_PARAMETER.fullmatch(difference.property) is None:
+        return None
+    return phrase("if the macro has another default, programs that use the default name do not find it")
 
 
 def find_lost_call_reason(difference: Difference, differences: Iterable[Difference]) -> Phrase | None:

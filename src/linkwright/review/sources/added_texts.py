@@ -208,9 +208,14 @@ def _is_key(tokens: Sequence[Token], literal: Literal) -> bool:
 
 
 def _find_constants(scopes: Mapping[str, Sequence[Statement]]) -> Iterator[OneSidedText]:
-    """Yield the statements outside of functions and classes that assign a literal to a name, which keeps it."""
+    """Yield the statements that assign a literal to a name, which keeps it.
+
+    They are outside of functions and classes, or say that the name is constant.
+    """
     counts = Counter(name for statements in scopes.values() for item in statements for name in _list_assigned(item))
-    for statement in scopes.get("", ()):
+    found = ((scope, statement) for scope, statements in scopes.items() for statement in statements)
+    constant = (statement for scope, statement in found if not scope or _is_constant(statement))
+    for statement in constant:
         tokens = [token for token in statement.tokens if token.text != ";"]
         sign = next((index for index, token in enumerate(tokens) if token.text == "="), 0)
         literals = parse_statement(tokens).literals
@@ -222,6 +227,11 @@ def _find_constants(scopes: Mapping[str, Sequence[Statement]]) -> Iterator[OneSi
         if name is not None and is_whole_value and counts[name.text] <= 1:
             value = shorten_middle(statement.get_text(literal.first, literal.last), _MAX_TEXT_LENGTH)
             yield OneSidedText(f"{name.text} = {value}", name.text, name)
+
+
+def _is_constant(statement: Statement) -> bool:
+    words = {token.text for token in statement.tokens}
+    return "constexpr" in words or {"static", "const"} <= words
 
 
 def _list_assigned(statement: Statement) -> Iterator[str]:

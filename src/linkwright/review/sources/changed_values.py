@@ -9,8 +9,10 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
+from linkwright.review.sources.argument_changes import find_argument_difference
 from linkwright.review.sources.cpp_statements import read_cpp_statements
 from linkwright.review.sources.names import CPP_SUFFIXES
+from linkwright.review.sources.operator_changes import find_operator_change
 from linkwright.review.sources.python_statements import read_python_statements
 from linkwright.review.sources.reading import try_read_source
 from linkwright.review.sources.statements import (
@@ -19,8 +21,9 @@ from linkwright.review.sources.statements import (
     Statement,
     find_expression_difference,
     find_literal_differences,
+    normalize_number,
 )
-from linkwright.review.sources.tokens import TokenKind
+from linkwright.review.sources.tokens import Token, TokenKind
 
 _DEFINITION = re.compile(r"\b([A-Z]\w+)(?=\s*(?:=(?!=)|[{\[,]))|define\s+(\w+)")
 _QUOTED = re.compile("\"[^\"]*\"|'[^']*'")
@@ -67,7 +70,9 @@ def find_value_changes(old_path: Path, new_path: Path, reported: Sequence[str]) 
             item
             for pair in _pair_statements(old.get(name, []), statements, masks)
             for item in (
-                find_literal_differences(*pair) if _have_same_shape(*pair, masks) else _find_value_change(*pair)
+                find_literal_differences(*pair)
+                if _have_same_shape(*pair, masks)
+                else _find_value_change(*pair, is_cpp=is_cpp)
             )
             if not _is_reported(item, reported) and not _is_renamed(item, old_source.text, new_source.text)
         ]
@@ -104,7 +109,8 @@ def _pair_statements(
     """Yield pairs of statements of a function that differ only in literals and renamed variables, or are similar.
 
     Between equal statements, the statements of the same shape are paired if both versions have the
-    same number. So are the remaining statements.
+    same number. So are the remaining statements. If only the number of all statements is equal, the others are paired
+    by their order.
     """
     if len(old) * len(new) > _MAX_COMPARED_PAIRS:
         return
@@ -126,6 +132,13 @@ def _pair_statements(
         )
         if len(unpaired[0]) == len(unpaired[1]):
             yield from zip(*unpaired, strict=True)
+        elif len(before) != len(after):
+            yield from _pair_by_argument(unpaired[0], after)
+        settled = {key for key in keys[1] if keys[0].count(key) == keys[1].count(key)}
+        if len(before) == len(after) and len(unpaired[0]) != len(unpaired[1]):  # statement by statement
+            for old_item, new_item, *own in zip(before, after, *keys, strict=True):
+                if not settled.issuperset(own) and (own[0] != own[1] or _are_versions(old_item, new_item)):
+                    yield old_item, new_item
         for key in dict.fromkeys(keys[1]):
             same = [
                 [item for item, own in zip(items, own_keys, strict=True) if own == key]
@@ -136,10 +149,24 @@ def _pair_statements(
                 yield from (pair for pair in pairs if _are_versions(*pair))
 
 
-def _find_value_change(old: Statement, new: Statement) -> Iterator[Difference]:
-    """Yield the assigned expression, or else the number, that differs between two statements of other shapes."""
-    differences = list(find_expression_difference(old, new))
-    yield from differences or _find_number_change(old, new)
+def _pair_by_argument(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator[tuple[Statement, Statement]]:
+    """Yield pairs of statements that differ only in an argument, each with the first such statement."""
+    remaining = list(new)
+    for statement in old:
+        match = next((other for other in remaining if any(find_argument_difference(statement, other))), None)
+        if match is not None:
+            remaining.remove(match)
+            yield statement, match
+
+
+def _find_value_change(old: Statement, new: Statement, *, is_cpp: bool) -> Iterator[Difference]:
+    """Yield the assigned expression, the operator, or else the number that differs between two statements.
+
+    Of sources in Python, an argument that differs is yielded, too.
+    """
+    differences = [*find_expression_difference(old, new)] or [*find_operator_change(old, new)]
+    differences = differences or [*_find_number_change(old, new)]
+    yield from differences or ([] if is_cpp else find_argument_difference(old, new))
 
 
 def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
@@ -152,16 +179,32 @@ def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
         for statement in (old, new)
     ]
     texts = [[token.text for token in tokens] for tokens in numbers]
-    pairs = {(before, after) for before, after in zip(*texts, strict=False) if before != after}
+    pairs = {(before, after) for before, after in zip(*texts, strict=False) if not _is_same_number(before, after)}
     if len(texts[0]) != len(texts[1]) or len(pairs) != 1:
         return
     ((before, after),) = pairs
+    if not any(_are_in_same_place(old.tokens, new.tokens, *pair) for pair in pairs):
+        return
     old_words, new_words = (
         [token.text for token in statement.tokens if token.kind is not TokenKind.NUMBER] for statement in (old, new)
     )
     if SequenceMatcher(None, old_words, new_words, autojunk=False).ratio() >= _MIN_SIMILARITY:
         token = next(token for token in numbers[1] if token.text == after)
         yield Difference(f"{before} -> {after}", before, after, token)
+
+
+def _are_in_same_place(old: Sequence[Token], new: Sequence[Token], before: str, after: str) -> bool:
+    """Return whether two numbers follow the same token, so that one can replace the other."""
+    places = []
+    for tokens, text in ((old, before), (new, after)):
+        index = next(index for index, token in enumerate(tokens) if token.text == text)
+        places.append(tokens[index - 1].text if index else "")
+    return places[0] == places[1]
+
+
+def _is_same_number(old: str, new: str) -> bool:
+    """Return whether two numbers have the same value and kind, such as ``0x0B`` and ``0x0b``."""
+    return normalize_number(old, is_divided=True) == normalize_number(new, is_divided=True)
 
 
 def _find_changed_literals(old: Statement, new: Statement) -> list[tuple[Literal, Literal]]:
@@ -189,6 +232,8 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
         before, arrow, after = line.partition(" -> ")
         if arrow and _has_word(before, old) and _has_word(after, new):
             return True
+        if all(re.search(rf"= {re.escape(text)}(?![\w.])", line) for text in (item.old, item.new)):
+            return True  # a removed and an added constant
     if item.new.endswith(("]", ")", "}")):
         texts = set(_QUOTED.findall(item.old)) ^ set(_QUOTED.findall(item.new))
         words = [text[1:-1].rpartition(":=")[2] for text in texts]  # without the old name of a remapping

@@ -11,14 +11,17 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change
+from linkwright.review.sources.class_members import format_changed_class
 from linkwright.review.sources.code import Code, Part
 from linkwright.review.sources.names import SourceNames
-from linkwright.review.sources.statements import parse_statement
+from linkwright.review.sources.operator_changes import differ_by_operator
+from linkwright.review.sources.statements import normalize_number, parse_statement
 from linkwright.review.sources.tokens import tokenize_cpp
 
 _QUOTED = re.compile(r"'([^']+)'")
 _LITERAL = re.compile("\"((?:\\\\.|[^\"\\\\])*)\"|'((?:\\\\.|[^'\\\\])*)'")
 _CALL = re.compile(r"(\w+)\s*\(")
+_NUMBER_PAIR = re.compile(r"(?<![\w.])(-?\.?\d[\w.]*) -> (-?\.?\d[\w.]*)(?![\w.])")
 _SPACE = re.compile(r"[^\S\n]")
 _ASSIGNMENT = re.compile(r"(\w+)\s*=\s*([^=;].*?)\s*;?\s*\Z", re.DOTALL)
 _PLAIN_CODE = re.compile(r"[\W\d]*\w+ = [^(]*|[\W\d]*(?:if|try|with|else)\b.*", re.DOTALL)
@@ -197,7 +200,13 @@ def _find_outside_change(old: Code, new: Code) -> CodeChange | None:
             if name in names and name and _get_texts(old.outside.get(name, ())) != _get_texts(new.outside.get(name, ()))
         ]
         if changed:
-            texts.append(text.with_arguments(names=_join_names(f"'{name}'" for name in changed)))
+            formatted = [
+                format_changed_class(name, *(_get_texts(side.outside.get(name, ())) for side in (old, new)))
+                if name in old.outside.keys() & new.outside.keys()
+                else f"'{name}'"
+                for name in changed
+            ]
+            texts.append(text.with_arguments(names=joined_first(formatted, MAX_NAMES)))
             other = old if code is new else new
             lines.append(
                 (
@@ -319,6 +328,10 @@ class _ReportedLines:
         self._names = {part for name in names for part in (name, *_list_parts(name))}
         self._text = "\n".join(str(change.sentence) for change in changes)
         self._compact_text = _SPACE.sub("", self._text).replace("'", '"')
+        self._number_pairs = {
+            (normalize_number(old, is_divided=False), normalize_number(new, is_divided=False))
+            for old, new in _NUMBER_PAIR.findall(self._text)
+        }
         self._functions = {
             str(change.sentence.arguments["name"]) for change in changes if change.sentence.template == _VALUES
         }
@@ -370,9 +383,13 @@ class _ReportedLines:
             literals = [text for match in _LITERAL.finditer(part.text) for text in match.groups() if text]
             if not self._names.isdisjoint([*literals, *(text.rpartition(":=")[2].strip("/") for text in literals)]):
                 return True
-        if old is not None and new is not None and self._shows_values(old, new):
+        if old is not None and new is not None and (self._shows_values(old, new) or self._shows_literals(old, new)):
             return True
-        return has_values and old is not None and new is not None and _get_shape(old.text) == _get_shape(new.text)
+        if not has_values or old is None or new is None:
+            return False
+        return _get_shape(old.text) == _get_shape(new.text) or differ_by_operator(
+            tokenize_cpp(old.text), tokenize_cpp(new.text)
+        )
 
     def _shows_constant(self, part: Part) -> bool:
         """Return whether a line shows an assignment with its value, such as an added constant."""
@@ -386,6 +403,15 @@ class _ReportedLines:
         """Return whether a line shows the old and the new value of an assignment, such as the QoS of a topic."""
         values = [_SPACE.sub("", part.text).partition("=")[2].rstrip(";") for part in (old, new)]
         return all(values) and f"{values[0]}->{values[1]}".replace("'", '"') in self._compact_text
+
+    def _shows_literals(self, old: Part, new: Part) -> bool:
+        """Return whether lines show the old and new number of all literals that differ, such as of a default."""
+        statements = [parse_statement(tokenize_cpp(part.text)) for part in (old, new)]
+        if statements[0].shape != statements[1].shape:
+            return False
+        pairs = zip(*(statement.literals for statement in statements), strict=True)
+        changed = {(before.value, after.value) for before, after in pairs if before.differs_from(after)}
+        return bool(changed) and changed <= self._number_pairs
 
 
 def _get_constructor_class(name: str) -> str:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
@@ -24,19 +26,21 @@ from linkwright.review.sources.details import (
     format_rename,
 )
 from linkwright.review.sources.enumerators import compare_enumerations
-from linkwright.review.sources.name_patterns import extract_pattern
+from linkwright.review.sources.name_patterns import can_make, extract_pattern
 from linkwright.review.sources.names import (
+    HEADER_SUFFIXES,
     PYTHON_SUFFIX,
     DefaultName,
     NameKind,
     SourceName,
     SourceNames,
 )
-from linkwright.review.sources.namespaces import compare_namespaces
+from linkwright.review.sources.namespaces import compare_namespaces, has_namespace
 from linkwright.review.sources.other_nodes import find_other_node_reason, has_only_in_other_nodes
 from linkwright.review.sources.package_imports import (
     drop_defined_imports,
     find_failing_imports,
+    is_certainly_uninstalled,
     is_installed_module,
     is_installed_package,
 )
@@ -59,6 +63,7 @@ from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.used_packages import compare_usage
 from linkwright.review.versions import Versions
 
+_HEADER_FOLDER = "include"
 _MAX_FUNCTION_CHANGES = 3
 """The maximum number of functions with changed arguments in a file that have lines of their own."""
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
@@ -102,7 +107,8 @@ class _SourcePair:
     def find_changes(self) -> Iterator[Change]:
         """Yield the differences."""
         old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
-        changes = [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
+        changes = list(self._find_added_header())
+        changes += [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
         changes += self._compare_rates(old_names, new_names)
         for change in compare_conditions(old_names, new_names):
             path = (self.file.old_path if change.is_old else self.file.new_path) or self.file.path
@@ -115,14 +121,17 @@ class _SourcePair:
         yield from changes
 
     def find_problems(self) -> Iterator[Problem]:
-        """Yield the reason why the names of only one version are unknown."""
+        """Yield the reason why the names of a version are unknown."""
         lines = [
             self.old.get_names(self.file.old_path).error_line,
             self.new.get_names(self.file.new_path).error_line,
         ]
-        if None in (self.file.old_path, self.file.new_path) or bool(lines[0]) == bool(lines[1]):
+        if None in (self.file.old_path, self.file.new_path) or not any(lines):
             return
-        if lines[0]:
+        if all(lines):
+            reason = phrase("line {line} has a syntax error", line=lines[1])
+            yield Problem(phrase("neither version can be read: {reason}", reason=reason), is_of_both=True)
+        elif lines[0]:
             text = phrase("the old version has a syntax error in line {line}; its names are not known", line=lines[0])
             yield Problem(text, is_of_old=True)
         else:
@@ -133,7 +142,8 @@ class _SourcePair:
     def find_parse_failure(self) -> Iterator[Change]:
         """Yield a change if no version of Python can parse the new source."""
         names = self.new.get_names(self.file.new_path)
-        if names.error_line and names.is_error_certain:
+        could_be_parsed = not self.old.get_names(self.file.old_path).error_line
+        if names.error_line and names.is_error_certain and could_be_parsed:
             text = phrase("can no longer be parsed")
             reason = phrase("programs that run or import the file fail")
             yield Change(text, Effect.BREAKING, reason, Location(self.file.path, names.error_line, 1))
@@ -142,15 +152,18 @@ class _SourcePair:
         """Yield the changes to the names of a kind."""
         before = {get_comparison_name(item): item for item in old_names.of_kind(kind)}
         after = {get_comparison_name(item): item for item in new_names.of_kind(kind)}
+        scoped = self._find_scoped(before, after, old_names, new_names) if kind is NameKind.PARAMETER else []
+        shown = {get_comparison_name(item): item.type for _, item in scoped}  # the lines of these have their defaults
         changed = [
             (item, *detail)
             for name, item in after.items()
             if name in before and not has_same_types(before[name], item, old_names, new_names)
-            for detail in compare_details(before[name], item)
+            for detail in compare_details(replace(before[name], type=shown.get(name, before[name].type)), item)
         ]
         yield from self._report_details(kind, changed, old_names)
-        if kind is NameKind.PARAMETER:
-            yield from self._compare_scopes(before, after, old_names, new_names)
+        for old, new in scoped:
+            reason = self._find_removal_reason([old], old_names)
+            yield self._make_change(format_rename(old, new), new.span, self.new, reason)
         if not self._is_reported(kind):
             return
         path, old_path = self.file.path, self.file.old_path or self.file.path
@@ -192,25 +205,27 @@ class _SourcePair:
         yield from self._compare_expressions(kind, removed, added)
         yield from self._report_unpaired(kind, removed, added, old_names)
 
-    def _compare_scopes(
-        self,
+    @staticmethod
+    def _find_scoped(
         before: Mapping[str, SourceName],
         after: Mapping[str, SourceName],
         old_names: SourceNames,
         new_names: SourceNames,
-    ) -> Iterator[Change]:
-        """Yield the parameters of ROS 1 that become private, or no longer are."""
+    ) -> list[tuple[SourceName, SourceName]]:
+        """Return the parameters of ROS 1 that become private, or no longer are, each in both versions."""
         unknown = old_names.unknown_scopes | new_names.unknown_scopes
         known = [
             {item.name.lstrip("/") for item in names.of_kind(NameKind.PARAMETER)} for names in (old_names, new_names)
         ]
-        for name, item in after.items():
-            old = before.get(name)
-            if old is None or name in unknown or old.name.startswith("~") == item.name.startswith("~"):
-                continue
-            if old.name.lstrip("/") not in known[1] and item.name.lstrip("/") not in known[0]:
-                reason = self._find_removal_reason([old], old_names)
-                yield self._make_change(format_rename(old, item), item.span, self.new, reason)
+        return [
+            (before[name], item)
+            for name, item in after.items()
+            if name in before
+            and name not in unknown
+            and before[name].name.startswith("~") != item.name.startswith("~")
+            and before[name].name.lstrip("/") not in known[1]
+            and item.name.lstrip("/") not in known[0]
+        ]
 
     def _is_reported(self, kind: NameKind) -> bool:
         """Return whether removed and added names of a kind matter outside of the file."""
@@ -348,10 +363,12 @@ class _SourcePair:
 
         That is, whether it is a module of a package or an installed header.
         """
-        package = self.old.find_package(path)
+        side = self.new if self.file.old_path is None else self.old
+        package = side.find_package(path)
         if path.endswith(PYTHON_SUFFIX):
-            return package is not None and (self.old.version.file(path).parent / "__init__.py").is_file()
-        return package is not None and is_exported_header(self.old.version, package, path)
+            is_module = package is not None and (side.version.file(path).parent / "__init__.py").is_file()
+            return is_module and not is_certainly_uninstalled(side.version, package or "", path)
+        return package is not None and is_exported_header(side.version, package, path)
 
     def _report_unpaired(
         self, kind: NameKind, removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames
@@ -431,6 +448,8 @@ class _SourcePair:
                 "{kind} {name} has a computed name now: {new}", kind=kind.title, name=format_name(item), new=other.name
             )
             reason = self._find_default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
+            if reason is None and not can_make(other.name, item.name):
+                reason = self._find_removal_reason([item], old_names)
             yield self._make_change(text, other.span, self.new, reason)
         for item, other in take_pairs(added, removed_expressions):
             text = phrase(
@@ -546,6 +565,14 @@ class _SourcePair:
                 text = phrase("calls its method '{name}', which is no longer defined", name=name)
                 yield self._make_change(text, span, self.new, phrase("the call fails"))
 
+    def _find_added_header(self) -> Iterator[Change]:
+        """Yield a line with the text by which other packages include an added header."""
+        path = PurePosixPath(self.file.path)
+        if self.file.old_path is None and path.suffix in HEADER_SUFFIXES and self._is_interface(self.file.path):
+            folder = next((folder for folder in path.parents if folder.name == _HEADER_FOLDER), path.parent)
+            text = phrase("header added: other packages include '{path}'", path=path.relative_to(folder).as_posix())
+            yield Change(text, location=Location(self.file.path, 1, 1))
+
     def _compare_packages(self, *, are_headers_told: bool) -> Iterator[Change]:
         """Yield the packages, or else the headers, that the source is the first or was the last to use."""
         old_path = self.file.old_path or self.file.path
@@ -558,7 +585,7 @@ class _SourcePair:
         if None in (self.file.old_path, self.file.new_path) or not self._is_interface(self.file.old_path or ""):
             return
         for change in (
-            *compare_namespaces(old_names, new_names),
+            *compare_namespaces(old_names, new_names, partial(has_namespace, self.new.version, self.file.path)),
             *compare_protected(old_names, new_names),
             *compare_enumerations(old_names.enumerations, new_names.enumerations),
         ):

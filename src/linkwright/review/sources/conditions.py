@@ -12,7 +12,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.sources.names import ConditionalLines, NameKind, SourceNames
 
-_KINDS = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.ACTION)
+_KINDS = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.ACTION, NameKind.PARAMETER)
 _IF = re.compile(r"\bif\s*(?:constexpr\s*)?\(")
 _ELSE = re.compile(r"\s*else\b\s*")
 _TEXT = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'')
@@ -111,19 +111,16 @@ def _find_statement_end(code: str, brackets: Mapping[int, int], start: int, dept
 
 
 def compare_conditions(old: SourceNames, new: SourceNames) -> Iterator[ConditionChange]:
-    """Yield the topics, services and actions that depend on a condition in only one version.
+    """Yield the topics, services, actions and parameters that depend on a condition in only one version.
 
-    Names that a version makes in several places are left out.
+    Names that a version makes in several places are left out. So are parameters with a condition that has their names,
+    such as whether they are set.
     """
-    found: dict[tuple[bool, str, int, NameKind], list[str]] = {}
-    before = {(item.kind, item.name): item for item in old.names}
-    for item in new.names:
-        key = item.kind, item.name
-        if item.kind not in _KINDS or key not in before or old.counts[key] != 1 or new.counts[key] != 1:
-            continue
+    found: dict[tuple[bool, str, int, NameKind, bool], list[str]] = {}
+    for kind, name, is_read, lines_of_sides in _list_places(old, new):
         sides = [
             [lines for lines in names.conditional_lines if lines.first <= line <= lines.last]
-            for names, line in ((old, before[key].span.line), (new, item.span.line))
+            for names, line in zip((old, new), lines_of_sides, strict=True)
         ]
         for is_old in (False, True):
             own, others = sides if is_old else reversed(sides)
@@ -131,16 +128,34 @@ def compare_conditions(old: SourceNames, new: SourceNames) -> Iterator[Condition
             if texts < {lines.condition for lines in own}:
                 lines = [lines for lines in own if lines.condition not in texts]
                 condition = " and ".join(dict.fromkeys(item.condition for item in lines))
-                found.setdefault((is_old, condition, lines[0].line, item.kind), []).append(item.name)
-    for (is_old, condition, line, kind), found_names in found.items():
-        yield ConditionChange(_format(kind, found_names, condition, is_old=is_old), line, is_old)
+                if kind is not NameKind.PARAMETER or name.lstrip("~") not in condition:
+                    found.setdefault((is_old, condition, lines[0].line, kind, is_read), []).append(name)
+    for (is_old, condition, line, kind, is_read), names in found.items():
+        yield ConditionChange(_format(kind, names, condition, is_old=is_old, is_read=is_read), line, is_old)
 
 
-def _format(kind: NameKind, names: Sequence[str], condition: str, *, is_old: bool) -> Phrase:
+def _list_places(old: SourceNames, new: SourceNames) -> Iterator[tuple[NameKind, str, bool, tuple[int, int]]]:
+    """Yield the names that both versions have in one place: kind, name, whether it is only read, and both lines."""
+    before = {(item.kind, item.name): item for item in old.names}
+    for item in new.names:
+        key = item.kind, item.name
+        if item.kind in _KINDS and key in before and old.counts[key] == new.counts[key] == 1:
+            yield item.kind, item.name, False, (before[key].span.line, item.span.line)
+    for name, lines in new.parameter_reads.items():
+        old_lines = old.parameter_reads.get(name, [])
+        if len(lines) == len(old_lines) == 1:
+            yield NameKind.PARAMETER, name, True, (old_lines[0], lines[0])
+
+
+def _format(kind: NameKind, names: Sequence[str], condition: str, *, is_old: bool, is_read: bool) -> Phrase:
     title = kind.title if len(names) == 1 else kind.plural
     shown = condition if len(condition) <= _MAX_CHARACTERS else f"{condition[:_MAX_CHARACTERS]}..."
-    if is_old:
-        return phrase(
-            "{kind} {names}: no longer only if {condition}", kind=title, names=quoted_names(names), condition=shown
-        )
-    return phrase("{kind} {names}: now only if {condition}", kind=title, names=quoted_names(names), condition=shown)
+    if is_read and is_old:
+        text = phrase("{kind} {names}: no longer read only if {condition}", kind=title, names="", condition=shown)
+    elif is_read:
+        text = phrase("{kind} {names}: read now only if {condition}", kind=title, names="", condition=shown)
+    elif is_old:
+        text = phrase("{kind} {names}: no longer only if {condition}", kind=title, names="", condition=shown)
+    else:
+        text = phrase("{kind} {names}: now only if {condition}", kind=title, names="", condition=shown)
+    return text.with_arguments(names=quoted_names(names))

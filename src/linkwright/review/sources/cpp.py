@@ -10,6 +10,14 @@ from pathlib import Path, PurePosixPath
 from linkwright.diagnostics import SourceText, Span
 from linkwright.review.sources.conditions import find_cpp_conditions
 from linkwright.review.sources.cpp_callbacks import find_message_type, find_service_type
+from linkwright.review.sources.cpp_calls import (
+    COMMUNICATION_KINDS,
+    GRAPH_KINDS,
+    KINDS,
+    ROS1_CALLS,
+    Call,
+    find_calls,
+)
 from linkwright.review.sources.cpp_conditions import Conditions
 from linkwright.review.sources.cpp_functions import (
     HIDDEN,
@@ -21,9 +29,13 @@ from linkwright.review.sources.cpp_functions import (
     read_scopes,
 )
 from linkwright.review.sources.cpp_handles import Handles, add_namespace
+from linkwright.review.sources.cpp_helpers import Helper, find_helper_uses, find_helpers
+from linkwright.review.sources.cpp_lifecycle import LifecycleCallbacks
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.cpp_options import find_options
 from linkwright.review.sources.cpp_qos import find_assigned_qos
+from linkwright.review.sources.cpp_text import blank_comments, find_arguments
+from linkwright.review.sources.cpp_values import TEXT, VARIABLE, InitialValues, find_constants, parse_literal
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
@@ -32,66 +44,34 @@ from linkwright.review.sources.name_patterns import find_format
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.node_options import Remappings, read_remappings
 from linkwright.review.sources.parameter_defaults import find_cpp_parameter_default
-from linkwright.review.sources.parameter_helpers import find_helper_calls, is_parameter_name, read_elements
+from linkwright.review.sources.parameter_helpers import (
+    find_helper_calls,
+    is_known_to_be_set,
+    is_parameter_name,
+    read_elements,
+)
 from linkwright.review.sources.registrations import find_registrations
 from linkwright.review.sources.shared_constants import read_header_constants
 
-_COMMENT_OR_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])'""", re.DOTALL)
-_KINDS = {
-    "create_publisher": NameKind.PUBLISHER,
-    "advertise": NameKind.PUBLISHER,
-    "advertiseCamera": NameKind.PUBLISHER,
-    "create_subscription": NameKind.SUBSCRIPTION,
-    "subscribe": NameKind.SUBSCRIPTION,
-    "subscribeCamera": NameKind.SUBSCRIPTION,
-    "create_service": NameKind.SERVICE,
-    "advertiseService": NameKind.SERVICE,
-    "create_client": NameKind.CLIENT,
-    "serviceClient": NameKind.CLIENT,
-    "create_server": NameKind.ACTION,
-    "declare_parameter": NameKind.PARAMETER,
-    "auto_declare": NameKind.PARAMETER,
-    "declare_parameter_if_not_declared": NameKind.PARAMETER,
-    "get_parameter_or": NameKind.PARAMETER,
-    "param": NameKind.PARAMETER,
-    "getParam": NameKind.PARAMETER,
-    "getParamCached": NameKind.PARAMETER,
-    "lookupTransform": NameKind.FRAME_LOOKUP,
-    "waitForTransform": NameKind.FRAME_LOOKUP,
-    "canTransform": NameKind.FRAME_LOOKUP,
-}
-_CALL = re.compile(
-    rf"(?P<scope>\brclcpp_action::|\bros::param::|[.>]\s*|\b)(?P<name>{'|'.join(_KINDS)}|(?<=ros::param::)get)"
-    r"\s*(?=[<(])"
-)
-_ROS1_CALLS = frozenset(
-    {
-        *("advertise", "advertiseCamera", "advertiseService", "subscribe", "subscribeCamera", "serviceClient"),
-        *("param", "getParam", "getParamCached", "get", "lookupTransform", "waitForTransform", "canTransform"),
-    }
-)
-"""The methods whose names also occur in other libraries, so that only literal names count."""
-_COMMUNICATION_KINDS = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT)
-_GRAPH_KINDS = frozenset({*_COMMUNICATION_KINDS, NameKind.ACTION, NameKind.ACTION_CLIENT})
-"""The kinds of names that remappings change."""
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds of names that a header declares, perhaps several times under different conditions."""
-_FREE_INDEX = {"create_publisher": 1, "create_subscription": 1, "create_service": 2, "create_client": 3}
-"""The index of the name in the free functions of rclcpp, behind the interfaces of the node."""
 _SERVICE_QOS_INDEX = {"create_service": 1, "create_client": 0}
 """The index of the QoS behind the name of a service."""
-_CLIENT_LIBRARY = "rclcpp::"
-_NODE_FIRST_CALLS = frozenset({"declare_parameter_if_not_declared"})
-_DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2, "declare_parameter_if_not_declared": 2}
+_DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2}
 _PARAM_ARGUMENTS = 3
 """The number of arguments of ``param`` of ROS 1, which also has the variable for the value."""
 _MEMBER_CALLBACK = re.compile(r",\s*&\s*\w+::\w+\s*,\s*this\b")
 _OUTPUT_CALLS = frozenset({"getParam", "getParamCached", "get"})
 _ROS2_PARAMETER_CALLS = frozenset({"declare_parameter", "auto_declare", "declare_parameter_if_not_declared"})
 _NODE = re.compile(
-    r"(?::\s*|,\s*)(?:rclcpp(?:_lifecycle)?::)?(?:Lifecycle)?Node\s*\(|"
+    r"(?::\s*|,\s*)(?:rclcpp(?:_lifecycle)?::)?(?:Lifecycle)?Node\s*[({]|"
     r"\brclcpp(?:_lifecycle)?::(?:Lifecycle)?Node::make_shared\s*\(|"
     r"\bmake_shared<\s*rclcpp(?:_lifecycle)?::(?:Lifecycle)?Node\s*>\s*\("
+)
+_BASE_CALL = re.compile(r"(?<=[:,])\s*(?:\w+::)*(?P<base>\w+)\s*(?=[({]\s*\")")
+"""The construction of a base class with a text in the initializer list of a constructor."""
+_NODE_CLASS = re.compile(
+    r"\bclass\s+(?:[A-Z]\w*_\w+\s+)?(?P<name>\w+)\s*(?:final\s*)?:[^;{}]*\b(?:Lifecycle)?Node\b[^;{}]*\{"
 )
 _INIT = re.compile(r"\bros::init\s*\(")
 _FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]+);")
@@ -101,6 +81,7 @@ _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
 _RATE = re.compile(
     r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
 )
+_PERIOD = re.compile(r"\d|\bDuration\b|seconds\b")
 _NAMESPACE = re.compile(r"^[ \t]*(?:inline\s+)?namespace\s+(?P<name>[A-Za-z_]\w*(?:\s*::\s*\w+)*)\s*\{", re.MULTILINE)
 _ALIAS = re.compile(
     r"\btypedef\s+(?P<type>[^;{}]+[\s>*&])(?P<name>\w+)\s*;|\busing\s+(?P<using>\w+)\s*=\s*(?P<used>[^;{}]+);"
@@ -110,17 +91,7 @@ _CLASS = re.compile(
     r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)(?P<bases>[^;{]*))?\{",
     re.MULTILINE,
 )
-_TEXT = re.compile(r'\s*(?:(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"\s*\)?\s*')
-_VARIABLE = re.compile(r"\s*(?:\w+::)*(?P<name>\w+)\s*(?:\.c_str\(\))?\s*")
-_CONSTANT = re.compile(
-    r"(?:\b(?:string|char|auto|string_view)\b[\s*&const]*\b(?P<name>\w+)\s*(?:\[\s*\])?\s*(?:=|(?P<open>[({]))"
-    r'\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;)'
-    r'|#\s*define\s+(?P<macro>\w+)[ \t]+\(?"(?P<value>[^"\\]*)"'
-)
-_LITERAL = re.compile(r'\s*(-?[\d.]+(?:e-?\d+)?f?|true|false|"[^"\\]*"|(?:std::)?string\((?P<text>"[^"\\]*")\))\s*')
-_WRAPPED = re.compile(r"\s*(?:rclcpp::)?ParameterValue\s*\((?P<value>.*)\)\s*", re.DOTALL)
 _QOS = re.compile(r"\d+|[\w:]*QoS\w*\s*[({].*|rmw_qos_profile_\w+|(?:rclcpp::)?(?:\w+::)?\w*QoS\w*", re.DOTALL)
-_BRACKETS = {"(": ")", "<": ">", "[": "]", "{": "}"}
 
 
 def read_cpp(source: SourceText, names: SourceNames) -> None:
@@ -140,19 +111,24 @@ class _Reader:
     def __init__(self, source: SourceText, names: SourceNames) -> None:
         self._source = source
         self._names = names
-        self._text = _COMMENT_OR_TEXT.sub(_blank_comment, source.text)
+        self._text = blank_comments(source.text)
         self._conditions = Conditions(source.text)
-        self._constants = _find_constants(self._text)
+        self._constants = find_constants(self._text)
 
     def read(self) -> None:
         """Add the names."""
         text = self._text
-        for match in _CALL.finditer(text):
-            self._read_call(match)
+        for call in find_calls(text):
+            self._read_call(call)
+        self._read_helper_uses()
         for pattern, kind, index in ((_NODE, NameKind.NODE, 0), (_INIT, NameKind.NODE, 2)):
             for match in pattern.finditer(text):
                 self._names.makes_node = True
                 self._add_argument(kind, match.end() - 1, index)
+        for match in _BASE_CALL.finditer(text):
+            if match["base"] in self._node_bases:
+                self._names.makes_node = True
+                self._add_argument(NameKind.NODE, match.end(), 0)
         for match in _FRAME.finditer(text):
             kind = NameKind.FRAME if match["child"] else NameKind.MESSAGE_FRAME
             self._add_frame(kind, match.start("value"), match.end("value"))
@@ -167,14 +143,17 @@ class _Reader:
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for interface in find_hardware_interfaces(text):
             self._add(interface.kind, interface.name, interface.start, interface.end)
-        for option in find_options(text, _find_arguments):
+        for option in find_options(text, find_arguments):
             self._add(NameKind.OPTION, option.name, option.start, option.end, option.default, option.details)
         for match in _RATE.finditer(text):
             self._read_rate(match)
         for match in _RECONFIGURATION.finditer(text):
             self._add(NameKind.RECONFIGURATION, match["name"], match.start("name"), match.end("name"))
-        for item in find_registrations(text):
-            self._add(item.kind, item.name, item.start, item.end)
+        registrations = list(find_registrations(text))
+        for item in registrations:
+            bases = sorted({other.base for other in registrations if other[:2] == item[:2] and other.base})
+            details = ((Detail.BASES, ", ".join(bases)),) if bases else ()
+            self._add(item.kind, item.name, item.start, item.end, details=details)
         self._read_classes()
         self._read_functions()
         self._names.conditional_lines += find_cpp_conditions(text)
@@ -227,6 +206,8 @@ class _Reader:
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
             if len(functions) == 1 and functions[0].result:
                 details = (*details, (Detail.RESULT, functions[0].result))
+            if any(function.is_const for function in functions):
+                details = (*details, (Detail.CONSTANT, YES))
             start = self._text.find(name.rpartition("::")[2], functions[0].start)
             self._add(NameKind.FUNCTION, name, start, start + len(name.rpartition("::")[2]), types, details)
         for member in read_declared_members(self._text):
@@ -247,65 +228,38 @@ class _Reader:
             span = self._make_span(member.start, member.start + len(member.name.rpartition("::")[2]))
             self._names.protected.append(SourceName(NameKind.MEMBER, member.name, member.type, span))
 
-    def _read_call(self, match: re.Match[str]) -> None:
-        text, function = self._text, match["name"]
-        kind = NameKind.PARAMETER if function == "get" else _KINDS[function]
-        is_action = match["scope"].startswith("rclcpp_action") or function == "create_server"
-        if is_action and kind is NameKind.CLIENT:
-            kind = NameKind.ACTION_CLIENT
-        start, type_name = match.end(), ""
-        if text[start] == "<":
-            end = _find_closing_bracket(text, start)
-            type_name = " ".join(text[start + 1 : end].split())
-            if function == "advertiseService":
-                type_name = type_name.partition(",")[0].removesuffix("::Request")
-            if kind not in _GRAPH_KINDS:
-                type_name = type_name.rpartition("::")[2]
-            start = text.find("(", end, end + 20)
-        if start < 0 or text[start : start + 1] != "(":
-            return
-        if function == "param" and not type_name and not match["scope"].strip():
-            return  # a different function with the same name
-        arguments = list(_find_arguments(text, start))
-        if function in _FREE_INDEX and text.startswith(_CLIENT_LIBRARY, match.start("name") - len(_CLIENT_LIBRARY)):
-            arguments = arguments[_FREE_INDEX[function] :]
+    def _read_call(self, call: Call) -> None:
+        text, kind = self._text, call.kind
         if kind is NameKind.FRAME_LOOKUP:
-            for begin, end in arguments[:2]:
+            for begin, end in call.arguments[:2]:
                 self._add_frame(kind, begin, end)
             return
-        name_arguments = arguments[1:2] if function in _NODE_FIRST_CALLS else arguments[:1]
-        if (
-            name_arguments
-            and kind in _COMMUNICATION_KINDS
-            and self._add_format_pattern(kind, type_name, *name_arguments[0])
+        candidates = call.arguments if call.is_action else call.arguments[:1]
+        if not candidates or (
+            kind in COMMUNICATION_KINDS and self._add_format_pattern(kind, call.type, *candidates[0])
         ):
             return
-        candidates = arguments if is_action else name_arguments
-        name_offsets = next(
-            ((begin, end) for begin, end in candidates if self._get_literal(begin, end) is not None), None
-        )
-        if name_offsets is not None:
-            namespace, has_known_scope = "", True
-            if function in _ROS1_CALLS:
-                namespace = self._handles.find_handle_namespace(match.start("name"))
-                is_global = match["scope"].startswith("ros::param")
-                has_known_scope = is_global or self._handles.has_known_namespace(match.start("name"))
-            elif kind is not NameKind.PARAMETER:
-                namespace = self._handles.find_sub_namespace(match.start("name"))
-            self._add_named_call(kind, function, type_name, arguments, name_offsets, namespace)
-            if kind is NameKind.PARAMETER and not has_known_scope:
-                self._names.unknown_scopes.add(self._get_literal(*name_offsets) or "")
-        elif candidates:
-            begin, end = candidates[0] if not is_action else candidates[min(1, len(candidates) - 1)]
-            name = " ".join(text[begin:end].split())
-            is_ros = self._add_default(kind, name) or function not in _ROS1_CALLS
-            if function == "param" and type_name and len(arguments) == _PARAM_ARGUMENTS:
-                is_ros, type_name = True, self._find_literal_default(function, arguments)
-            elif kind is not NameKind.PARAMETER:
-                is_ros = is_ros or bool(type_name) or _MEMBER_CALLBACK.search(text, start, arguments[-1][1]) is not None
-                type_name = type_name or self._find_callback_type(kind, arguments)
-            if is_ros:
-                self._names.expressions.append(self._make_name(kind, name, type_name, begin, end))
+        offsets = next(((begin, end) for begin, end in candidates if self._get_literal(begin, end) is not None), None)
+        if offsets is not None:
+            texts = [text[begin:end].strip() for begin, end in call.arguments[1:]]
+            self._add_named_call(call, self._get_literal(*offsets) or "", offsets, texts)
+            return
+        begin, end = candidates[0] if not call.is_action else candidates[min(1, len(candidates) - 1)]
+        if call.start in self._inner_calls:
+            return  # the callers give the names
+        name, type_name = " ".join(text[begin:end].split()), call.type
+        is_ros = self._add_default(kind, name) or call.function not in ROS1_CALLS
+        texts = [text[slice(*argument)].strip() for argument in call.arguments[1:]]
+        details: tuple[tuple[Detail, str], ...] = ()
+        if call.function == "param" and type_name and len(call.arguments) == _PARAM_ARGUMENTS:
+            is_ros, type_name = True, self._find_literal_default(call, texts)
+        elif kind is not NameKind.PARAMETER:
+            end_of_call = call.arguments[-1][1]
+            is_ros = is_ros or bool(type_name) or _MEMBER_CALLBACK.search(text, end, end_of_call) is not None
+            type_name = type_name or self._find_callback_type(kind, texts)
+            details = tuple(self._find_qos(call, texts))
+        if is_ros:
+            self._names.expressions.append(self._make_name(kind, name, type_name, begin, end, details))
 
     def _add_default(self, kind: NameKind, expression: str) -> bool:
         """Add the name that an expression has by default, and return whether a parameter gives it."""
@@ -325,68 +279,107 @@ class _Reader:
 
         Returns whether there is one.
         """
-        variable = _VARIABLE.fullmatch(self._text[begin:end])
+        variable = VARIABLE.fullmatch(self._text[begin:end])
         pattern = None if variable is None else find_format(self._text[:begin], variable["name"])
         if pattern is None:
             return False
         self._names.expressions.append(self._make_name(kind, pattern, type_name, begin, end))
         return True
 
-    def _add_named_call(
-        self,
-        kind: NameKind,
-        function: str,
-        type_name: str,
-        arguments: list[tuple[int, int]],
-        name_offsets: tuple[int, int],
-        namespace: str,
-    ) -> None:
+    def _add_named_call(self, call: Call, name: str, offsets: tuple[int, int], texts: Sequence[str]) -> None:
+        """Add the name in a call.
+
+        Args:
+            call: the call.
+            name: the name that it is given.
+            offsets: the offsets of the argument with the name.
+            texts: the arguments behind the name.
+        """
+        kind, type_name = call.kind, call.type
         details: list[tuple[Detail, str]] = []
-        other_arguments = [self._text[begin:end].strip() for begin, end in arguments[1:]]
+        namespace, has_known_scope = "", True
+        if call.function in ROS1_CALLS:
+            namespace, has_known_scope = self._find_scope(call)
+        elif kind is not NameKind.PARAMETER:
+            namespace = self._handles.find_sub_namespace(call.start)
         if kind is NameKind.PARAMETER:
             if type_name:
-                details.append((Detail.VALUE_TYPE if function in _ROS2_PARAMETER_CALLS else Detail.READ_AS, type_name))
-            type_name = "" if function in _OUTPUT_CALLS else self._find_literal_default(function, arguments)
-        elif kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION) and other_arguments:
-            qos = find_assigned_qos(self._text, other_arguments[0], arguments[0][0]) or other_arguments[0]
-            if _QOS.fullmatch(qos):
-                details.append((Detail.QUEUE if function in _ROS1_CALLS else Detail.QOS, " ".join(qos.split())))
-        if function in _SERVICE_QOS_INDEX and kind is not NameKind.ACTION_CLIENT:
-            index = _SERVICE_QOS_INDEX[function]
-            details += read_service_qos(
-                " ".join(other_arguments[index].split()) if index < len(other_arguments) else None
-            )
-        if kind is NameKind.PUBLISHER and function in _ROS1_CALLS and other_arguments[-1:] == ["true"]:
+                detail = Detail.VALUE_TYPE if call.function in _ROS2_PARAMETER_CALLS else Detail.READ_AS
+                details.append((detail, type_name))
+            is_output = call.function in _OUTPUT_CALLS or is_known_to_be_set(self._text, name, call.start)
+            type_name = "" if is_output else self._find_literal_default(call, texts)
+        else:
+            details += self._find_qos(call, texts)
+        callback = self._lifecycle.find(offsets[0])
+        if kind in GRAPH_KINDS and callback:
+            details.append((Detail.CREATED_IN, callback))
+        if kind is NameKind.PUBLISHER and call.function in ROS1_CALLS and list(texts[-1:]) == ["true"]:
             details.append((Detail.LATCH, YES))
         if not type_name:
-            type_name = self._find_callback_type(kind, arguments)
-        name = add_namespace(namespace, self._get_literal(*name_offsets) or "")
-        self._add(kind, name, *name_offsets, type_name, tuple(details))
+            type_name = self._find_callback_type(kind, texts)
+        if not has_known_scope:
+            self._names.unknown_scopes.add(name)
+        name = add_namespace(namespace, name)
+        self._add(kind, name, *offsets, type_name, tuple(details))
         if kind in (NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.ACTION):
-            self._add_callback(kind, name, arguments)
+            self._add_callback(kind, name, texts)
 
-    def _add_callback(self, kind: NameKind | None, name: str, arguments: list[tuple[int, int]]) -> None:
+    def _find_scope(self, call: Call) -> tuple[str, bool]:
+        """Return the namespace of a name of ROS 1, and whether it is known if the name is of a parameter."""
+        if call.node:
+            return self._handles.get_namespace(call.node), False
+        is_known = call.kind is not NameKind.PARAMETER or call.scope.startswith("ros::param")
+        namespace = self._handles.find_handle_namespace(call.start)
+        return namespace, is_known or self._handles.has_known_namespace(call.start)
+
+    def _find_qos(self, call: Call, texts: Sequence[str]) -> Iterator[tuple[Detail, str]]:
+        """Yield the QoS or the length of the queue of a topic or service."""
+        if call.kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION) and texts:
+            qos = find_assigned_qos(self._text, texts[0], call.start) or texts[0]
+            if _QOS.fullmatch(qos):
+                yield Detail.QUEUE if call.function in ROS1_CALLS else Detail.QOS, " ".join(qos.split())
+        if call.function in _SERVICE_QOS_INDEX and call.kind is not NameKind.ACTION_CLIENT:
+            index = _SERVICE_QOS_INDEX[call.function]
+            yield from read_service_qos(" ".join(texts[index].split()) if index < len(texts) else None)
+
+    def _read_helper_uses(self) -> None:
+        """Add the names that helpers of the source or its headers make from the literals of their callers."""
+        for helpers, is_own in ((self._own_helpers, True), (self._header_helpers, False)):
+            for use in find_helper_uses(self._text, helpers, is_own=is_own):
+                self._add_named_call(use.call, use.name, (use.begin, use.end), use.arguments)
+
+    @cached_property
+    def _own_helpers(self) -> list[Helper]:
+        return find_helpers(self._text)
+
+    @cached_property
+    def _header_helpers(self) -> list[Helper]:
+        own = {helper.name for helper in self._own_helpers}
+        return [helper for text in self._headers for helper in find_helpers(text) if helper.name not in own]
+
+    @cached_property
+    def _inner_calls(self) -> frozenset[int]:
+        """The offsets of the calls in helpers whose callers give the names."""
+        return frozenset(use.call.start for use in find_helper_uses(self._text, self._own_helpers, is_own=True))
+
+    def _add_callback(self, kind: NameKind | None, name: str, texts: Sequence[str]) -> None:
         """Add the member function that messages, requests, goals or a timer call.
 
         Calls with several functions among their arguments are left out.
         """
-        functions = self._find_pointers(arguments)
+        functions = _find_pointers(texts)
         if len(functions) == 1:
             self._names.callbacks.setdefault(functions.pop(), (kind, name))
 
-    def _find_pointers(self, arguments: list[tuple[int, int]]) -> set[str]:
-        """Return the member functions whose addresses are among the arguments, qualified by their classes."""
-        return set(_POINTER.findall(self._text[arguments[0][0] : arguments[-1][1]]))
-
-    def _find_callback_type(self, kind: NameKind, arguments: list[tuple[int, int]]) -> str:
+    def _find_callback_type(self, kind: NameKind, texts: Sequence[str]) -> str:
         """Return the type of the messages or requests that the only callback among the arguments takes.
 
         It is empty if it is unknown, and for other kinds than subscriptions and services.
         """
         find_type = {NameKind.SUBSCRIPTION: find_message_type, NameKind.SERVICE: find_service_type}.get(kind)
-        first = 2 if kind is NameKind.SUBSCRIPTION else 1
-        functions = {name.rpartition("::")[2] for name in self._find_pointers(arguments)}
-        words = (self._text[begin:end].strip().lstrip("&") for begin, end in arguments[first : first + 1])
+        first = 1 if kind is NameKind.SUBSCRIPTION else 0
+        functions = {name.rpartition("::")[2] for name in _find_pointers(texts)}
+        words = (text.lstrip("&") for text in texts[first : first + 1])
         functions = functions or {word for word in words if word.isidentifier()}
         if find_type is None or len(functions) != 1:
             return ""
@@ -395,7 +388,16 @@ class _Reader:
     @cached_property
     def _headers(self) -> list[str]:
         """The headers that may declare members of the classes of the source, without comments."""
-        return [_COMMENT_OR_TEXT.sub(_blank_comment, text) for text in read_included_headers(Path(self._source.name))]
+        return [blank_comments(text) for text in read_included_headers(Path(self._source.name))]
+
+    @cached_property
+    def _node_bases(self) -> Collection[str]:
+        """The classes of included headers that derive from a node, to which derived classes give its name."""
+        return {match["name"] for text in self._headers for match in _NODE_CLASS.finditer(text)}
+
+    @cached_property
+    def _lifecycle(self) -> LifecycleCallbacks:
+        return LifecycleCallbacks(self._text)
 
     @cached_property
     def _remappings(self) -> Remappings:
@@ -407,28 +409,32 @@ class _Reader:
         """The node handles and sub-nodes. A header may declare the handles of a class."""
         return Handles(self._text, self._headers if "::" in self._text else [])
 
-    def _find_literal_default(self, function: str, arguments: list[tuple[int, int]]) -> str:
-        """Return the literal default of a parameter; empty if there is none.
+    def _find_literal_default(self, call: Call, texts: Sequence[str]) -> str:
+        """Return the literal default of a parameter, or the initial value of a member; empty if there is none.
 
         Functions that return the value have the default as their second argument.
+
+        Args:
+            call: the call that reads or declares the parameter.
+            texts: the arguments behind the name.
         """
-        index = _DEFAULT_INDEX.get(function, 1)
-        index = index if index < len(arguments) else 1
-        if index >= len(arguments):
+        index = _DEFAULT_INDEX.get(call.function, 1) - 1
+        index = index if index < len(texts) else 0
+        if index >= len(texts):
             return ""
-        text = self._text[slice(*arguments[index])]
-        wrapped = _WRAPPED.fullmatch(text)
-        value = _LITERAL.fullmatch(wrapped["value"] if wrapped else text)
+        value = parse_literal(texts[index])
         if value is not None:
-            return value["text"] or value[1]
-        variable = _VARIABLE.fullmatch(text)
+            return value
+        variable = VARIABLE.fullmatch(texts[index])
         constant = self._constants.get(variable["name"]) if variable else None
-        return "" if constant is None else f'"{constant}"'
+        if constant is not None:
+            return f'"{constant}"'
+        return self._initial_values.find_default(texts[index], call.start) or ""
 
     def _read_members(self) -> None:
         """Add the topics and actions with which members and variables are constructed."""
         for member in find_constructions(self._text, self._headers):
-            for begin, end in list(_find_arguments(self._text, member.start))[:3]:
+            for begin, end in list(find_arguments(self._text, member.start))[:3]:
                 if self._add_literal(member.kind, begin, end, member.type):
                     break
 
@@ -437,45 +443,53 @@ class _Reader:
 
         The name is one of the first two arguments. Elements of SDF at the given offsets are left out.
         """
+        own = {helper.name for helper in (*self._own_helpers, *self._header_helpers)}
         for call in find_helper_calls(self._text):
-            if call.function in _KINDS:
+            if call.function in KINDS or call.function in own:
                 continue
             kind = NameKind.ELEMENT if call.is_of_plugin else NameKind.PARAMETER
-            arguments = list(_find_arguments(self._text, call.start))
+            arguments = list(find_arguments(self._text, call.start))
             for index, (begin, end) in enumerate(arguments[:2]):
-                literal = _TEXT.fullmatch(self._text[begin:end])
+                literal = TEXT.fullmatch(self._text[begin:end])
                 is_element = literal is not None and begin + literal.start("text") in element_starts
                 if literal is not None and not is_element and is_parameter_name(literal["text"]):
-                    values = (_LITERAL.fullmatch(self._text[slice(*argument)]) for argument in arguments[index + 1 :])
-                    default = next((value["text"] or value[1] for value in values if value is not None), "")
+                    values = (parse_literal(self._text[slice(*argument)]) for argument in arguments[index + 1 :])
+                    default = next((value for value in values if value is not None), "")
                     self._add(kind, literal["text"], begin, end, default)
                     self._names.unknown_scopes.add(literal["text"])  # the function has the node handle
                     break
 
     def _read_rate(self, match: re.Match[str]) -> None:
-        arguments = list(_find_arguments(self._text, match.end() - 1))
+        arguments = list(find_arguments(self._text, match.end() - 1))
         is_timer = match["name"] == "create_timer"
         texts = [" ".join(self._text[slice(*argument)].split()) for argument in arguments]
         index = 1 if is_timer and len(texts) > 1 and not re.search(r"\d", texts[0]) else 0
+        if is_timer:  # behind the node and its clock in the functions of rclcpp
+            index = next((place for place, text in enumerate(texts[:3]) if _PERIOD.search(text)), index)
         if index < len(texts):
             name = match["name"].split()[0]
             rate = f"{name}({texts[index]})", self._make_span(*arguments[index])
             self._names.rates.append(rate)
             if "imer" in name:
-                functions = self._find_pointers(arguments)
+                functions = _find_pointers(texts)
                 name = functions.pop().rpartition("::")[2] if len(functions) == 1 else ""
                 self._names.timers.append(Timer(name, *rate))
-                self._add_callback(None, "", arguments)
+                self._add_callback(None, "", texts)
 
     def _get_literal(self, begin: int, end: int) -> str | None:
         """Return the text of a literal or constant, or None for other expressions."""
-        literal = _TEXT.fullmatch(self._text[begin:end])
+        literal = TEXT.fullmatch(self._text[begin:end])
         if literal is not None:
             return literal["text"]
-        variable = _VARIABLE.fullmatch(self._text[begin:end])
+        variable = VARIABLE.fullmatch(self._text[begin:end])
         if variable is None or variable["name"] in self._constants:
             return None if variable is None else self._constants[variable["name"]]
-        return self._shared_constants.get(variable["name"])
+        constant = self._shared_constants.get(variable["name"])
+        return self._initial_values.find_text(variable["name"]) if constant is None else constant
+
+    @cached_property
+    def _initial_values(self) -> InitialValues:
+        return InitialValues(self._text, self._headers)
 
     @cached_property
     def _shared_constants(self) -> Mapping[str, str]:
@@ -485,7 +499,7 @@ class _Reader:
         return {name: text for name, text in constants.items() if name not in assigned}
 
     def _add_argument(self, kind: NameKind, start: int, index: int) -> None:
-        arguments = list(_find_arguments(self._text, start))
+        arguments = list(find_arguments(self._text, start))
         if index < len(arguments):
             self._add_literal(kind, *arguments[index])
 
@@ -505,12 +519,12 @@ class _Reader:
         type_name: str = "",
         details: tuple[tuple[Detail, str], ...] = (),
     ) -> None:
-        literal = _TEXT.fullmatch(self._text[begin:end])
+        literal = TEXT.fullmatch(self._text[begin:end])
         if literal is not None:
             begin, end = begin + literal.start("text"), begin + literal.end("text")
         if kind is NameKind.NODE:
             name = self._remappings.node or name
-        elif kind in _GRAPH_KINDS:
+        elif kind in GRAPH_KINDS:
             name = self._remappings.resolve(name)
         if name:
             self._names.add(self._make_name(kind, name, type_name, begin, end, details))
@@ -526,7 +540,7 @@ class _Reader:
     ) -> SourceName:
         """Return a name. Types of messages, services and actions are as written."""
         full_type = ""
-        if kind in _GRAPH_KINDS and type_name:
+        if kind in GRAPH_KINDS and type_name:
             full_type = find_cpp_type(type_name, [self._text, *self._headers])
             type_name = type_name.rpartition("::")[2]
         condition = "" if kind in _DECLARED_KINDS else self._conditions.find(begin)
@@ -542,50 +556,9 @@ class _Reader:
 
 def _join_overloads(functions: Sequence[DeclaredFunction]) -> str:
     """Return the parameters of each overload of a function."""
-    return "; ".join(sorted(", ".join(function.parameters) for function in functions))
+    return "; ".join(sorted({", ".join(function.parameters) for function in functions}))
 
 
-def _find_constants(text: str) -> Mapping[str, str]:
-    """Return the texts of constants and of variables assigned once, by name."""
-    constants: dict[str, str] = {}
-    for match in _CONSTANT.finditer(text):
-        name = match["name"] or match["macro"]
-        assignment_count = len(re.findall(rf"\b{name}\b\s*(?:\[\s*\])?\s*=(?!=)", text))
-        output = rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b"
-        is_output = match["macro"] is None and re.search(output, text) is not None
-        if assignment_count <= 1 and not is_output and name not in constants:
-            constants[name] = match["text"] if match["macro"] is None else match["value"]
-    return constants
-
-
-def _blank_comment(match: re.Match[str]) -> str:
-    """Return a string unchanged, or spaces for a comment or character literal."""
-    return match[0] if match[0].startswith('"') else re.sub(r"[^\n]", " ", match[0])
-
-
-def _find_closing_bracket(text: str, start: int) -> int:
-    """Return the offset of the matching closing bracket, or the end of the text."""
-    depth, opening = 0, text[start]
-    for index in range(start, len(text)):
-        depth += (text[index] == opening) - (text[index] == _BRACKETS[opening])
-        if depth == 0:
-            return index
-    return len(text)
-
-
-def _find_arguments(text: str, start: int) -> Iterator[tuple[int, int]]:
-    """Yield the offsets of the arguments in the parentheses that begin at an offset."""
-    depth, begin, is_text = 0, start + 1, False
-    for index in range(start + 1, len(text)):
-        character = text[index]
-        if character == '"' and text[index - 1] != "\\":
-            is_text = not is_text
-        if is_text:
-            continue
-        if depth == 0 and character in ",)":
-            if text[begin:index].strip():
-                yield begin, index
-            if character == ")":
-                return
-            begin = index + 1
-        depth += (character in "([{") - (character in ")]}")
+def _find_pointers(texts: Sequence[str]) -> set[str]:
+    """Return the member functions whose addresses are among arguments, qualified by their classes."""
+    return set(_POINTER.findall(", ".join(texts)))

@@ -52,6 +52,7 @@ class DeclaredFunction(NamedTuple):
         parameters: the types of the parameters. A parameter with a default ends with ``= ...``.
         is_pure: whether derived classes must define it.
         is_override: whether it overrides a function of a base class, which determines its callers.
+        is_const: whether it can be called on constant objects.
         result: the type that it returns; empty if it is unknown, as of constructors.
         start: the offset of the declaration.
     """
@@ -60,6 +61,7 @@ class DeclaredFunction(NamedTuple):
     parameters: tuple[str, ...]
     is_pure: bool
     is_override: bool
+    is_const: bool
     result: str
     start: int
 
@@ -194,12 +196,15 @@ def _read_function(chunk: str, classes: list[str], start: int) -> Iterator[Decla
         is_name = match["name"] not in _KEYWORDS and not match["name"].isupper() and not match["name"].startswith("~")
         if end < 0 or not _QUALIFIERS.fullmatch(suffix) or not is_name or "=" in declaration[: match.start()]:
             continue
+        if declaration[: match.start()].rstrip().endswith("::"):
+            return  # the definition of a method that its class declares
         parameters = tuple(_parse_parameter_type(text) for text in _split_parameters(declaration[match.end() : end]))
         name = "::".join([*classes, "".join(match["name"].split())])
         is_override = re.search(r"\b(?:override|final)\b", suffix) is not None
         is_pure = re.search(r"=\s*0\s*$", suffix) is not None
+        is_const = re.match(r"\s*const\b", suffix) is not None
         result = _read_result(declaration[: match.start()], suffix)
-        yield DeclaredFunction(name, parameters, is_pure, is_override, result, start)
+        yield DeclaredFunction(name, parameters, is_pure, is_override, is_const, result, start)
         return
 
 

@@ -70,6 +70,10 @@ class Handles:
             return before[-1] if before else assigned[0][1]
         return self._namespaces.get(variable["name"], "")
 
+    def get_namespace(self, handle: str) -> str:
+        """Return the namespace of the handle that a function is given; empty for others and unknown ones."""
+        return self._namespaces.get(handle.strip("&* "), "")
+
     def has_known_namespace(self, start: int) -> bool:
         """Return whether the namespace of the handle on which the method at an offset is called is known.
 

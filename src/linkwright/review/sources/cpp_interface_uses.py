@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from linkwright.messages.definitions.interfaces import to_snake_case
 from linkwright.review.sources.interface_uses import WHOLE, InterfaceUse, LostInterface
@@ -43,6 +43,27 @@ def find_cpp_uses(text: str, interface: LostInterface) -> Iterator[InterfaceUse]
                 use = re.search(pattern, scope)
                 if use is not None:
                     yield _make_use(interface, f"{name}{lost}", code, match.end("variable") + use.start())
+
+
+def find_members(text: str, interface: LostInterface) -> set[str]:
+    """Return the members of classes in a header whose type is a message. Their names end with an underscore."""
+    if interface.is_removed or interface.inner_parts:
+        return set()
+    prefix = rf"\b{re.escape(interface.package)}::(?:{interface.kind}::)?{re.escape(interface.name)}"
+    pattern = rf"{prefix}{_POINTER}\s*>?\s+(?P<variable>[A-Za-z]\w*_)\s*[;={{]"
+    return {match["variable"] for match in re.finditer(pattern, blank_comments(text))}
+
+
+def find_member_uses(text: str, interface: LostInterface, members: Collection[str]) -> Iterator[InterfaceUse]:
+    """Yield the places where a source uses what an interface lost of members that an included header declares."""
+    code = blank_comments(text)
+    for member in sorted(members):
+        if re.search(rf"[\w>&*]\s+[&*]*(?<!return ){member}\s*[;=,){{]", code.replace("return", "      ")):
+            continue  # another variable of the same name
+        for lost in sorted(interface.lost_from("")):
+            use = re.search(rf"(?<![\w.>])(?:this\s*->\s*)?{member}\s*(?:\.|->)\s*{re.escape(lost)}\b(?!\s*\()", code)
+            if use is not None:
+                yield _make_use(interface, lost, code, use.start())
 
 
 def _find_includes(text: str, interface: LostInterface) -> Iterator[InterfaceUse]:

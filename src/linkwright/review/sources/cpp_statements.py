@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from linkwright.review.sources.cpp_conditions import is_guard
-from linkwright.review.sources.statements import Statement, parse_statement
+from linkwright.review.sources.statements import Statement, find_template_start, parse_statement
 from linkwright.review.sources.tokens import Token, TokenKind, match_brackets, tokenize_cpp
 
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n\\]|\\\r?\n|\\.)*", re.MULTILINE)
@@ -40,12 +41,12 @@ class _Block:
     pending: list[Token] = field(default_factory=list)
 
 
-def read_cpp_statements(text: str) -> dict[str, list[Statement]]:
+@lru_cache(maxsize=8)
+def read_cpp_statements(text: str) -> Mapping[str, Sequence[Statement]]:
     """Return the statements of a source by function or class.
 
-    Other statements have an empty name.
-
-    Statements that print, log or throw are left out.
+    Other statements have an empty name. Statements that print, log or throw are left out. The result is kept, because
+    several comparisons in a row read the same two sources.
     """
     reader = _Reader()
     _read_source(text, reader)
@@ -237,14 +238,18 @@ def _find_scope_name(header: Sequence[Token]) -> str | None:
 
 
 def _find_function_name(header: Sequence[Token]) -> str:
-    """Return the name before the parameters in the header of a function."""
+    """Return the name before the parameters in the header of a function, without template arguments."""
     index = _find_parameters_start(header)
-    start = index
-    while start > 0 and (
-        start == index or header[start].text == "::" or header[start - 1].text in ("::", "~", "operator")
+    parts: list[str] = []
+    while index > 0 and (
+        not parts or parts[0] == "::" or header[index - 1].text == "::" or header[index - 1].text in ("~", "operator")
     ):
-        start -= 1
-    return "".join(token.text for token in header[start:index])
+        index -= 1
+        if header[index].text == ">" and parts and parts[0] == "::":
+            index = find_template_start(header, index) + 1
+        else:
+            parts.insert(0, header[index].text)
+    return "".join(parts)
 
 
 def _find_parameters_start(header: Sequence[Token]) -> int:

@@ -10,13 +10,12 @@ from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_same_type
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
+from linkwright.review.sources.qos import find_qos_reason, normalize_qos
 from linkwright.review.sources.signatures import parse_signature
 
-_KNOWN_IN_BOTH = (Detail.QOS, Detail.ARGUMENTS, Detail.RESULT)
+_KNOWN_IN_BOTH = (Detail.QOS, Detail.ARGUMENTS, Detail.RESULT, Detail.BASES, Detail.CREATED_IN)
 """The properties that are compared only if both versions tell them."""
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
-_BEST_EFFORT = re.compile(r"best_?effort|sensor_?data", re.IGNORECASE)
-_TRANSIENT = re.compile(r"transient_?local|latching", re.IGNORECASE)
 _QOS = re.compile(r"[\w:.]*(?:QoS|qos_profile|QOS)\w*\s*(?:[({].*)?", re.DOTALL)
 _SERVICES_DEFAULT = re.compile(
     r"(?:rclcpp::)?ServicesQoS\s*[({]\s*[)}](?:\.get_rmw_qos_profile\(\))?|(?:[\w.]+\.)?(?:rmw_)?qos_profile_services_default"
@@ -79,9 +78,13 @@ def compare_details(
         before, after = old_details.get(detail), new_details.get(detail)
         if before == after or (detail in _KNOWN_IN_BOTH and None in (before, after)):
             continue
+        if detail is Detail.QOS and normalize_qos(before or "") == normalize_qos(after or ""):
+            continue
+        if detail is Detail.CONSTANT and after is not None:
+            continue  # calls that built still build
         if detail is Detail.RESULT and is_same_type(before or "", after or ""):
             continue
-        missing = NO if detail in (Detail.LATCH, Detail.REQUIRED) else "-"
+        missing = NO if detail in (Detail.LATCH, Detail.REQUIRED, Detail.CONSTANT) else "-"
         text = phrase(
             "{kind} '{name}': {property} {old} -> {new}",
             kind=new.kind.title,
@@ -176,10 +179,16 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
     """Return the reason why a changed property is breaking, or None if it is not."""
     old, new = before or "", after or ""
     if detail is Detail.QOS:
-        return _find_qos_reason(name, old, new)
+        return find_qos_reason(name, old, new)
     if detail is Detail.RESULT:
         reason = phrase("code that uses the result as '{type}' does not build", type=old)
         return None if can_use_result(old, new) else reason
+    if detail is Detail.BASES:
+        lost = sorted(set(old.split(", ")) - set(new.split(", ")))
+        reason = phrase("programs that load the class as '{type}' do not find it", type=", ".join(lost))
+        return reason if lost else None
+    if detail is Detail.CONSTANT:
+        return phrase("code that calls '{name}' on constant objects does not build", name=name.name)
     if detail is Detail.VALUE_TYPE and name.kind is NameKind.PARAMETER and before and after:
         return phrase("values of the old type are rejected")
     if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:
@@ -212,35 +221,6 @@ def find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
     if items[0].kind is NameKind.FUNCTION:
         return phrase("classes that derive from the class and do not define it do not build")
     return make_required_reason(items[0].kind, joined_first(names, MAX_NAMES))
-
-
-def _find_qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:
-    """Return the reason why a different QoS is breaking, or None.
-
-    A subscription needs what the publisher offers.
-    """
-    was_best_effort, is_best_effort = (_BEST_EFFORT.search(text) is not None for text in (old, new))
-    was_transient, is_transient = (_TRANSIENT.search(text) is not None for text in (old, new))
-    if name.kind in (NameKind.SERVICE, NameKind.CLIENT):
-        return _find_service_reason(name.kind) if is_best_effort and not was_best_effort else None
-    if name.kind is NameKind.PUBLISHER:
-        if is_best_effort and not was_best_effort:
-            return phrase("subscriptions that ask for reliable messages get nothing")
-        if was_transient and not is_transient:
-            return phrase("subscriptions that ask for messages from before their start get nothing")
-    if name.kind is NameKind.SUBSCRIPTION:
-        if was_best_effort and not is_best_effort:
-            return phrase("the node gets nothing from publishers that send with best effort")
-        if is_transient and not was_transient:
-            return phrase("the node gets nothing from publishers that keep no messages")
-    return None
-
-
-def _find_service_reason(kind: NameKind) -> Phrase:
-    """Return the reason why best effort is breaking: services and their clients are reliable by default."""
-    if kind is NameKind.SERVICE:
-        return phrase("clients with the default QoS do not reach the service")
-    return phrase("the client does not reach services with the default QoS")
 
 
 def read_service_qos(text: str | None) -> tuple[tuple[Detail, str], ...]:

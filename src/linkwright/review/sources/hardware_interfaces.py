@@ -13,17 +13,24 @@ _OFFERED = re.compile(
 )
 """The construction of an interface with a literal name, such as ``CommandInterface("gripper", "position", &value)``."""
 _CLAIMED = re.compile(r"\bnames\s*\.\s*(?:push|emplace)_back\s*\(\s*\"(?P<name>[\w.-]+/[\w./-]+)\"\s*\)")
+_PARAMETER = re.compile(
+    r"\b(?:hardware_parameters|\bparameters)\s*(?:\[\s*|\.\s*(?:at|find|count|contains)\s*\(\s*)\"(?P<name>[\w.-]+)\"\s*[\])]"
+)
+"""A parameter that hardware reads from its description, such as ``info_.hardware_parameters["port"]``."""
+_HARDWARE = re.compile(r"\bhardware_interface\b|\bHardwareInfo\b")
 _CONTROLLER = re.compile(r"\bInterfaceConfiguration\b")
 
 
 def find_hardware_interfaces(text: str) -> Iterator[FoundName]:
-    """Yield the interfaces with literal names in a C++ source without comments."""
+    """Yield the interfaces with literal names and the parameters of hardware in a C++ source without comments."""
     for match in _OFFERED.finditer(text):
         kind = NameKind.COMMAND_INTERFACE if match["kind"] == "Command" else NameKind.STATE_INTERFACE
         name = f"{_get_word(match, 'part')}/{_get_word(match, 'name')}"
         yield FoundName(kind, name, match.start("kind"), match.end())
     for match in _CLAIMED.finditer(text) if _CONTROLLER.search(text) else ():
         yield FoundName(NameKind.CLAIMED_INTERFACE, match["name"], match.start("name"), match.end("name"))
+    for match in _PARAMETER.finditer(text) if _HARDWARE.search(text) else ():
+        yield FoundName(NameKind.HARDWARE_PARAMETER, match["name"], match.start("name"), match.end("name"))
 
 
 def _get_word(match: re.Match[str], group: str) -> str:

@@ -31,7 +31,9 @@ def find_left_types(versions: Versions, changed_files: Sequence[ChangedFile]) ->
             if not any(sources.find(old.kind, old, file.new_path)):
                 kind = get_counterpart(old.kind)
                 users = sources.find(kind, old, file.new_path) if kind is not None else ()
-                yield from ((path, _make_change(path, item, new, file.new_path)) for path, item in users)
+                for path, item in users:
+                    if not item.has_type_of(new):  # its package may be unknown
+                        yield path, _make_change(path, item, new, file.new_path)
 
 
 def _find_changed_types(versions: Versions, old_path: str, new_path: str) -> Iterator[tuple[SourceName, SourceName]]:

@@ -1,4 +1,4 @@
-"""Find C++ files that use a class or structure which an included header no longer declares."""
+"""Find C++ files that use a class, structure or enumerator which an included header no longer declares."""
 
 from __future__ import annotations
 
@@ -10,35 +10,37 @@ from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.cpp_conditions import blank_disabled
-from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, NameKind
+from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, NameKind, SourceNames
 from linkwright.review.sources.reading import read_source_names
-from linkwright.review.versions import TEST_FOLDERS, Versions
+from linkwright.review.versions import Versions
 
 _COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
-_SCOPE = re.compile(r"\b(?:namespace|class|struct)\s+(?P<name>\w+)")
+_SCOPE = re.compile(r"\b(?:namespace|enum\s+(?:class|struct)|class|struct|enum)\s+(?P<name>\w+)")
 _USED_NAMESPACE = re.compile(r"\busing\s+namespace\s+(?:\w+::)*(?P<name>\w+)")
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<path>[^">\n]+)[">]', re.MULTILINE)
+_TYPE_USE = r"(?=\s*(?:[&*]\s*|\s)\w|\s*::|\s*[>&*])"
+_ENUMERATOR_USE = r"(?!\s*(?:\w|[({]|::))"
+"""The patterns of the code behind the name of a type and of an enumerator."""
 
 
 def find_lost_types(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the files that use a type which a header lost, each with a change.
+    """Yield the files that use a type or enumerator which a header lost, each with a change.
 
-    Types that another file of the repository declares are left out, as are files that do not include the header.
+    Names that another file of the repository declares are left out, as are files that do not include the header.
     """
-    lost = {file.new_path: names for file in changed_files if file.new_path and (names := _find_lost(versions, file))}
+    lost = {file.new_path: found for file in changed_files if file.new_path and (found := _find_lost(versions, file))}
     if not lost:
         return
-    paths = versions.new.paths(CPP_SUFFIXES)
-    texts = {path: versions.new.text(path) for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)}
+    texts = {path: versions.new.text(path) for path in versions.new.paths(CPP_SUFFIXES)}
     codes = {path: blank_comments(text) for path, text in texts.items()}
-    for header, names in lost.items():
-        declared = _find_declared(names, codes.values())
+    for header, (names, enumerators) in lost.items():
+        declared = _find_declared([*names, *enumerators], codes.values())
         scopes = {match["name"] for match in _SCOPE.finditer(versions.old.text(_find_old_path(changed_files, header)))}
         for path in find_including_files(texts, header):
             if {match["name"] for match in _USED_NAMESPACE.finditer(codes[path])} <= scopes | {"std"}:
-                yield from _find_uses(
-                    path, codes[path], header, [name for name in names if name not in declared], scopes
-                )
+                for own, pattern in ((names, _TYPE_USE), (enumerators, _ENUMERATOR_USE)):
+                    lost_names = [name for name in own if name not in declared]
+                    yield from _find_uses(path, codes[path], header, lost_names, scopes, pattern)
 
 
 def _find_declared(names: Sequence[str], codes: Iterable[str]) -> set[str]:
@@ -46,20 +48,21 @@ def _find_declared(names: Sequence[str], codes: Iterable[str]) -> set[str]:
     any_name = "|".join(map(re.escape, names))
     pattern = re.compile(
         rf"\b(?:class|struct|union|enum|typename|define|using)\s+(?:[A-Z]\w*_\w+\s+|class\s+|struct\s+|(?:\w+::)+)?"
-        rf"(?P<name>{any_name})\b|(?:\}}|\btypedef\b[^;{{}}]*)\s*\b(?P<alias>{any_name})\s*;"
+        rf"(?P<name>{any_name})\b|(?:\}}|\btypedef\b[^;{{}}]*)\s*\b(?P<alias>{any_name})\s*;|"
+        rf"(?:\benum\b[^;{{}}()]*\{{[^;{{}}]*?|\b(?:const|constexpr)\b[^;{{}}()=]*)\b(?P<value>{any_name})\b(?=\s*[=,}}{{])"
     )
-    return {match["name"] or match["alias"] for code in codes for match in pattern.finditer(code)}
+    return {match[match.lastgroup or 0] for code in codes for match in pattern.finditer(code)}
 
 
 def _find_uses(
-    path: str, code: str, header: str, names: Sequence[str], scopes: Collection[str]
+    path: str, code: str, header: str, names: Sequence[str], scopes: Collection[str], use_pattern: str
 ) -> Iterator[tuple[str, Change]]:
     """Yield a change for the first use of each name in a file.
 
     The name may have a scope of the header.
     """
     for name in names:
-        pattern = re.compile(rf"(?<![\w.>:])(?:(?P<scope>\w+)::)*{name}\b(?=\s*(?:[&*]\s*|\s)\w|\s*::|\s*[>&*])")
+        pattern = re.compile(rf"(?<![\w.>:])(?:(?P<scope>\w+)::)*{name}\b{use_pattern}")
         use = next((match for match in pattern.finditer(code) if match["scope"] in (None, *scopes)), None)
         if use is not None:
             yield path, _make_change(path, header, name, code[: use.start()].count("\n") + 1)
@@ -69,18 +72,25 @@ def _find_old_path(changed_files: Sequence[ChangedFile], path: str) -> str:
     return next(file.old_path for file in changed_files if file.new_path == path and file.old_path)
 
 
-def _find_lost(versions: Versions, file: ChangedFile) -> list[str]:
-    """Return the classes and structures that only the old version of a header has."""
+def _find_lost(versions: Versions, file: ChangedFile) -> tuple[list[str], list[str]] | None:
+    """Return the types and the enumerators that only the old version of a header has; None if there are none."""
     if file.old_path is None or PurePosixPath(file.path).suffix not in HEADER_SUFFIXES or file.is_submodule:
-        return []
+        return None
     old, new = (
-        {item.name for item in names.of_kind(NameKind.CLASS)} | names.hidden_classes
-        for names in (
-            read_source_names(versions.old.file(file.old_path)),
-            read_source_names(versions.new.file(file.new_path or "")),
-        )
+        read_source_names(versions.old.file(file.old_path)),
+        read_source_names(versions.new.file(file.new_path or "")),
     )
-    return sorted(old - new)
+    types, enumerators = ([set(find(names)) for names in (old, new)] for find in (_list_types, _list_enumerators))
+    lost = sorted(types[0] - types[1]), sorted(enumerators[0] - enumerators[1])
+    return lost if any(lost) else None
+
+
+def _list_types(names: SourceNames) -> set[str]:
+    return {item.name for item in names.of_kind(NameKind.CLASS)} | names.hidden_classes
+
+
+def _list_enumerators(names: SourceNames) -> set[str]:
+    return {name for enumerators in names.enumerations.values() for name in enumerators}
 
 
 def find_including_files(texts: Mapping[str, str], header: str) -> list[str]:

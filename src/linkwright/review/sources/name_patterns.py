@@ -10,6 +10,9 @@ import re
 _TEXT = re.compile(r"\"(?P<double>(?:\\.|[^\"\\])*)\"|'(?P<single>(?:\\.|[^'\\])*)'")
 _F_STRING = re.compile(r"\b[fF][rR]?[\"']|\b[rR][fF][\"']")
 _PLACEHOLDER = re.compile(r"\{[^{}]*\}|%[-+ #0]*\d*(?:\.\d+)?[hlzjt]*[a-zA-Z]|%\(\w+\)[a-z]")
+_CALLED = re.compile(r"(\w+)\s*\(")
+_JOINING_CALLS = frozenset({"format", "string", "to_string", "str", "c_str", "String"})
+"""The functions whose results contain the texts in their arguments."""
 _UNKNOWN_PART = "{}"
 """The mark for a part of a pattern with an unknown value."""
 
@@ -25,6 +28,25 @@ def extract_pattern(expression: str) -> str | None:
     texts = [match["double"] if match["single"] is None else match["single"] for match in _TEXT.finditer(expression)]
     pattern = _UNKNOWN_PART.join(_PLACEHOLDER.sub(_UNKNOWN_PART, text) for text in texts)
     return pattern if re.search(r"\w", pattern.replace(_UNKNOWN_PART, "")) else None
+
+
+def can_make(expression: str, name: str) -> bool:
+    """Return whether an expression may have a name as its value; True if it is unknown.
+
+    Args:
+        expression: the expression that gives a name, in Python or C++.
+        name: the name.
+    """
+    pattern = extract_pattern(expression)
+    if pattern is None or not set(_CALLED.findall(expression)) <= _JOINING_CALLS:
+        return True
+    start = 0
+    for text in pattern.split(_UNKNOWN_PART):
+        position = name.find(text, start)
+        if position < 0:
+            return False
+        start = position + len(text)
+    return True
 
 
 def find_format(text: str, variable: str) -> str | None:

@@ -42,6 +42,7 @@ class NameKind(Enum):
     COMMAND_INTERFACE = (phrase("command interface"), phrase("command interfaces"))
     STATE_INTERFACE = (phrase("state interface"), phrase("state interfaces"))
     CLAIMED_INTERFACE = (phrase("claimed interface"), phrase("claimed interfaces"))
+    HARDWARE_PARAMETER = (phrase("parameter of the hardware"), phrase("parameters of the hardware"))
     OPTION = (phrase("command-line option"), phrase("command-line options"))
     PLUGIN = (phrase("exported class"), phrase("exported classes"))
     PLUGINLIB_CLASS = (phrase("class for pluginlib"), phrase("classes for pluginlib"))
@@ -76,6 +77,9 @@ class Detail(Enum):
     REQUIRED = phrase("required")
     ARGUMENTS = phrase("arguments")
     RESULT = phrase("result")
+    CONSTANT = phrase("const")
+    BASES = phrase("base classes")
+    CREATED_IN = phrase("created in")
     CONDITION = phrase("condition")
 
     @property
@@ -119,12 +123,14 @@ class FoundName(NamedTuple):
         name: the name by which others use it, such as ``gripper/position`` of an interface of ros2_control.
         start: the offset of the name.
         end: the end of the name.
+        base: the base class as which programs load an exported class; empty if there is none.
     """
 
     kind: NameKind
     name: str
     start: int
     end: int
+    base: str = ""
 
 
 @dataclass(frozen=True)
@@ -184,6 +190,7 @@ class SourceNames:
         counts: the number of places with a literal name, by kind and name.
         conditional_lines: the branches of ``if`` statements.
         default_names: the names that parameters give by default.
+        parameter_reads: the lines in which a Python source reads a parameter that it declares, by name.
         unknown_scopes: the parameters of ROS 1 that may be private, because a caller passes the node handle, or
             another function has it.
         rates: the texts of rates and periods, each with its location.
@@ -219,6 +226,7 @@ class SourceNames:
     counts: Counter[tuple[NameKind, str]] = field(default_factory=Counter)
     conditional_lines: list[ConditionalLines] = field(default_factory=list)
     default_names: set[DefaultName] = field(default_factory=set)
+    parameter_reads: dict[str, list[int]] = field(default_factory=dict)
     unknown_scopes: set[str] = field(default_factory=set)
     rates: list[tuple[str, Span]] = field(default_factory=list)
     timers: list[Timer] = field(default_factory=list)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
-from linkwright.review.sources.names import SourceNames
+from linkwright.review.sources.names import HEADER_SUFFIXES, SourceNames
+from linkwright.review.versions import Version
 
 
 class HeaderChange(NamedTuple):
@@ -25,11 +27,20 @@ class HeaderChange(NamedTuple):
     is_old: bool = False
 
 
-def compare_namespaces(old: SourceNames, new: SourceNames) -> Iterator[HeaderChange]:
-    """Yield the namespaces that a header no longer has. A namespace that replaces the only lost one is a new name."""
+def compare_namespaces(
+    old: SourceNames, new: SourceNames, is_left: Callable[[str], bool] = lambda _: False
+) -> Iterator[HeaderChange]:
+    """Yield the namespaces that a header no longer has. A namespace that replaces the only lost one is a new name.
+
+    Args:
+        old: the names in the old version.
+        new: the names in the new version.
+        is_left: whether another header of the package still has a namespace. Such a namespace is not lost.
+    """
     lost, added = ([name for name in side if name not in other] for side, other in (
         (old.namespaces, new.namespaces), (new.namespaces, old.namespaces),
     ))  # fmt: skip
+    lost = [name for name in lost if not is_left(name)]
     if not lost:
         return
     names = quoted_names(lost)
@@ -41,3 +52,16 @@ def compare_namespaces(old: SourceNames, new: SourceNames) -> Iterator[HeaderCha
         yield HeaderChange(
             phrase("namespaces removed: {names}", names=names), old.namespaces[lost[0]], reason, is_old=True
         )
+
+
+def has_namespace(version: Version, path: str, name: str) -> bool:
+    """Return whether another header in the package of a header opens a namespace.
+
+    Args:
+        version: the version of the repository.
+        path: the path of the header.
+        name: the name of the namespace as written.
+    """
+    pattern = re.compile(rf"^[ \t]*(?:inline\s+)?namespace\s+{re.escape(name)}\s*\{{", re.MULTILINE)
+    paths = version.paths(HEADER_SUFFIXES, version.package_of(path) or "")
+    return any(pattern.search(version.text(other)) for other in paths if other != path)

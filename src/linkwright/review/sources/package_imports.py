@@ -7,15 +7,22 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.packages.readers.python_values import PythonFile
+from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.files.build_facts import FactKind
+from linkwright.review.files.setup_files import SETUP_FILE, read_setup_facts
 from linkwright.review.installed_paths import find_python_packages
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 
 PACKAGE_FILE = "__init__.py"
+_SETUP_BUILD_TYPE = "ament_python"
+_UNCERTAIN_ARGUMENTS = frozenset({"packages", "package_dir", "py_modules", "**"})
+"""The arguments of ``setup`` that may install modules of other folders, if their values are computed."""
 
 
 def read_imports(python: PythonFile, names: SourceNames) -> None:
@@ -62,6 +69,29 @@ def is_installed_module(version: Version, package: str | None, path: str) -> boo
         PurePosixPath(package) / part / name for name in find_python_packages(version, package) for part in ("", "src")
     ]
     return any(file.is_relative_to(folder) for folder in folders)
+
+
+def is_certainly_uninstalled(version: Version, package: str, path: str) -> bool:
+    """Return whether the ``setup.py`` of a ROS package leaves out the folder of a module.
+
+    It then lists the installed Python packages, which do not include packages below them.
+
+    Args:
+        version: the version of the repository.
+        package: the folder of the ROS package.
+        path: the path of the module.
+    """
+    setup_path = (PurePosixPath(package) / SETUP_FILE).as_posix()
+    if Manifest(read_document(str(version.file(package) / MANIFEST))).build_type != _SETUP_BUILD_TYPE:
+        return False
+    try:
+        facts = read_setup_facts(version, setup_path)
+    except (UnreadableFileError, LinkwrightError, OSError, ValueError):
+        return False
+    if facts.unknown or any(name in _UNCERTAIN_ARGUMENTS for name, _ in facts.other_commands):
+        return False
+    folder = PurePosixPath(path).relative_to(package).parent
+    return ".".join(folder.parts) not in {fact.name for fact in facts.facts if fact.kind is FactKind.MODULE}
 
 
 def find_failing_imports(version: Version, package: str, path: str, names: SourceNames) -> Iterator[int]:

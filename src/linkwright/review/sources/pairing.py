@@ -12,7 +12,10 @@ _MIN_SIMILARITY = 0.6
 """The minimum ratio of equal characters of similar names of the same kind."""
 _MAX_COMPARED_PAIRS = 10_000
 """The maximum number of pairs of names among which similar names are searched."""
-_UNTYPED_KINDS = (NameKind.PARAMETER, NameKind.ELEMENT, NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION)
+_UNTYPED_KINDS = (
+    *(NameKind.PARAMETER, NameKind.ELEMENT, NameKind.HARDWARE_PARAMETER),
+    *(NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION),
+)
 """The kinds for which equal types do not suggest a rename."""
 
 

@@ -7,9 +7,13 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 _TEMPLATE = r"(?:<[^<>()]*(?:<[^<>]*>)?[^<>()]*>\s*)?"
-_VERB = r"(?:get|read|load|declare|retrieve|fetch|init|require)"
-_FUNCTION = re.compile(rf"_?{_VERB}(?:\w*_)?(?:[Pp]aram|[Pp]arameter)_?|_?{_VERB}\w*[a-z](?:Param|Parameter)_?")
-_CALL = re.compile(rf"\b(?P<name>\w*[Pp]aram(?:eter)?_?)\s*{_TEMPLATE}(?=\()")
+_VERB = r"(?:get|read|load|declare|retrieve|fetch|init|require|register)"
+_TYPED = r"declare_?(?:[dD]ouble|[iI]nt(?:eger)?|[bB]ool|[sS]tring|[fF]loat)(?:_?[aA]rray|_?[vV]ector)?"
+"""A function that declares a parameter of a type, such as ``declare_double``."""
+_FUNCTION = re.compile(
+    rf"_?{_VERB}(?:\w*_)?(?:[Pp]aram|[Pp]arameter)_?|_?{_VERB}\w*[a-z](?:Param|Parameter)_?|{_TYPED}"
+)
+_CALL = re.compile(rf"\b(?P<name>\w*[Pp]aram(?:eter)?_?|{_TYPED})\s*{_TEMPLATE}(?=\()")
 _NAME = re.compile(r"[~/]?[A-Za-z]\w*(?:[./]\w+)*")
 _FILE = re.compile(r".*\.(?:ya?ml|json|xml|urdf|srdf)")
 _SDF = r"\b\w*[sS][dD][fF]\w*"
@@ -31,6 +35,7 @@ _ASSIGNED = re.compile(
 )
 _GAZEBO = re.compile(r"\b\w*gazebo_ros\w*\s*(?:->|\.)\s*$")
 _DEFAULT = re.compile(r"\s*,\s*(?P<value>-?[\d.]+(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")\s*[,)]")
+_MAX_BRANCH_CHARACTERS = 400
 
 
 class ReadElement(NamedTuple):
@@ -55,6 +60,19 @@ def reads_parameter(function: str) -> bool:
 def is_parameter_name(text: str) -> bool:
     """Return whether a text can be the name of a parameter, and not that of a file."""
     return _NAME.fullmatch(text) is not None and _FILE.fullmatch(text) is None
+
+
+def is_known_to_be_set(text: str, name: str, position: int) -> bool:
+    """Return whether a call is in the branch of a condition that a parameter is set, so that its default is unused.
+
+    Args:
+        text: the source without comments.
+        name: the name of the parameter.
+        position: the offset of the call.
+    """
+    call = rf"(?:hasParam|has_parameter|has)\s*\(\s*\"[~/]*{re.escape(name)}\"\s*\)"
+    condition = rf"\bif\s*\([^;{{}}!|]*\b{call}[^;{{}}|]*\{{?[^{{}}]*\Z"
+    return re.search(condition, text[max(0, position - _MAX_BRANCH_CHARACTERS) : position]) is not None
 
 
 class HelperCall(NamedTuple):

@@ -27,7 +27,7 @@ from linkwright.review.sources.python_callbacks import CallbackFunctions
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
 from linkwright.review.sources.required_parameters import is_required_parameter
 from linkwright.review.sources.shared_constants import read_imported_constants
-from linkwright.review.sources.signatures import read_method_signatures, read_signature
+from linkwright.review.sources.signatures import find_argument_default, read_method_signatures, read_signature
 from linkwright.review.sources.undefined_names import find_bound_names, find_undefined_names
 
 _RCLPY_METHODS = {
@@ -362,7 +362,9 @@ class _Reader:
         ):
             self._names.makes_node = True
             index = int(bool(call.args) and ast.unparse(call.args[0]) == "self")  # ``Base.__init__(self, ...)``
-            self._add(NameKind.NODE, _get_argument(call, index, "node_name"), None)
+            node = _get_argument(call, index, "node_name")
+            default = find_argument_default(self._python.tree, node) if isinstance(node, ast.Name) else None
+            self._add(NameKind.NODE, node if self._python.text(default) is None else default, None)
         else:
             self._names.makes_node |= function == "init_node"  # a node with a computed name
             self._read_other_call(call, function)
@@ -419,6 +421,9 @@ class _Reader:
             self._read_getopt(call)
         elif reads_parameter(function):
             self._read_helper_call(call)
+            name = self._python.text(_get_argument(call, 0, "name")) if function == "get_parameter" else None
+            if name is not None:
+                self._names.parameter_reads.setdefault(name, []).append(call.lineno)
 
     def _read_helper_call(self, call: ast.Call) -> None:
         """Add the parameter that a function of the repository reads.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
@@ -12,6 +13,8 @@ from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON
 from linkwright.review.sources.python import read_dynamic_parameters, read_python
 
 _MAX_BYTES = 1 << 20
+_MAX_SOURCES = 4096
+"""The maximum number of sources whose names are kept."""
 _PYTHON_NAME = b"python"
 _FORMATTED_TEXT = "f-string"
 """The beginning of the messages about errors in formatted texts."""
@@ -44,7 +47,21 @@ def try_read_source(path: Path) -> SourceText | None:
 
 
 def read_source_names(path: Path) -> SourceNames:
-    """Return the names in a source. The result is empty for a file that cannot be read."""
+    """Return the names in a source. The result is empty for a file that cannot be read.
+
+    A file is read once in a review, in which it does not change; see `forget_source_names`. The result is shared:
+    callers must not change it.
+    """
+    return _read_source_names(path)
+
+
+def forget_source_names() -> None:
+    """Forget the sources that were read, because a working tree may change between two reviews."""
+    _read_source_names.cache_clear()
+
+
+@lru_cache(maxsize=_MAX_SOURCES)
+def _read_source_names(path: Path) -> SourceNames:
     names = SourceNames()
     source = try_read_source(path)
     if source is None:

@@ -54,6 +54,8 @@ def find_removal_reason(
         return phrase("values that launch files and parameter files give to '{name}' have no effect", name=text)
     if kind is NameKind.ELEMENT:
         return phrase("values that worlds and descriptions give to '{name}' have no effect", name=text)
+    if kind is NameKind.HARDWARE_PARAMETER:
+        return phrase("values that descriptions give to '{name}' have no effect", name=text)
     if kind is NameKind.FRAME:
         return frame_reason(str(text))
     if kind in (NameKind.COMMAND_INTERFACE, NameKind.STATE_INTERFACE):

@@ -8,12 +8,13 @@ from collections.abc import Iterator
 from linkwright.review.sources.names import FoundName, NameKind
 
 _CLASS = r"\s*(?:::)?(?P<name>\w+(?:\s*::\s*\w+)*(?:\s*<[\w\s:,<>]*>)?)\s*"
+_BASE = r"\s*(?:::)?(?P<base>\w+(?:\s*::\s*\w+)*(?:\s*<[\w\s:,<>]*>)?)"
 _TEXT = r'\s*(?:[^(),;"]*,)?\s*"(?P<text>[^"\\]+)"'
 _PATTERNS = (
     (NameKind.PLUGIN, rf"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\({_CLASS}\)"),
-    (NameKind.PLUGINLIB_CLASS, rf"\b(?:PLUGINLIB_EXPORT_CLASS|CLASS_LOADER_REGISTER_CLASS)\s*\({_CLASS},"),
-    (NameKind.PLUGINLIB_CLASS, rf"\bPLUGINLIB_REGISTER_CLASS\s*\(\s*\w+\s*,{_CLASS},"),
-    (NameKind.PLUGINLIB_CLASS, rf"\bPLUGINLIB_DECLARE_CLASS\s*\(\s*\w+\s*,\s*\w+\s*,{_CLASS},"),
+    (NameKind.PLUGINLIB_CLASS, rf"\b(?:PLUGINLIB_EXPORT_CLASS|CLASS_LOADER_REGISTER_CLASS)\s*\({_CLASS},{_BASE}"),
+    (NameKind.PLUGINLIB_CLASS, rf"\bPLUGINLIB_REGISTER_CLASS\s*\(\s*\w+\s*,{_CLASS},{_BASE}"),
+    (NameKind.PLUGINLIB_CLASS, rf"\bPLUGINLIB_DECLARE_CLASS\s*\(\s*\w+\s*,\s*\w+\s*,{_CLASS},{_BASE}"),
     (NameKind.LIBRARY_PLUGIN, rf"\bGZ_REGISTER_[A-Z]+_PLUGIN\s*\({_CLASS}\)"),
     (NameKind.SIMULATION_PLUGIN, rf"\b(?:GZ|IGNITION)_ADD_PLUGIN\s*\({_CLASS}[,)]"),
     (NameKind.SIMULATION_PLUGIN, rf"\b(?:GZ|IGNITION)_ADD_PLUGIN_ALIAS\s*\({_CLASS},(?P<aliases>[^()]*)\)"),
@@ -52,7 +53,8 @@ def find_registrations(text: str) -> Iterator[FoundName]:
                     for alias in _ALIAS.finditer(match["aliases"])
                 )
                 continue
-            found.append(FoundName(kind, name, match.start("name"), match.end("name")))
+            base = "".join((groups.get("base") or "").split())
+            found.append(FoundName(kind, name, match.start("name"), match.end("name"), base))
     for item in found:
         if item.name not in aliased or item.kind is not NameKind.SIMULATION_PLUGIN:
             yield item

@@ -12,6 +12,7 @@ from linkwright.diagnostics import SourceText
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages import enclosing_package
 from linkwright.packages.readers.python_values import PythonFile
+from linkwright.review.sources.cpp_values import read_initial_values
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -83,12 +84,15 @@ def find_own_module(path: Path, module: str, level: int) -> Path | None:
         level: the number of dots before the name.
     """
     parts = module.split(".") if module else []
-    folder = path.parents[level - 1] if 0 < level <= len(path.parents) else path.parent
-    bases = [folder.joinpath(*parts)]
-    if not level and parts and parts[0] == folder.name:
-        bases.append(folder.parent.joinpath(*parts))
+    beside = path.parents[level - 1] if 0 < level <= len(path.parents) else path.parent
+    bases = [beside.joinpath(*parts)]
     package = enclosing_package(path.parent)
-    base = (path.parent if package is None else package[1]).resolve()
+    root = path.parent if package is None else package[1]
+    base = root.resolve()
+    if not level and parts:
+        bases += [parent.parent.joinpath(*parts) for parent in path.parents if parent.name == parts[0]]
+        folders = [root / part for part in ("", "src") if (root / part / parts[0] / "__init__.py").is_file()]
+        bases += [folder.joinpath(*parts) for folder in folders]
     files = (base_path.with_name(f"{base_path.name}{PYTHON_SUFFIX}").resolve() for base_path in bases if parts)
     return next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
 
@@ -124,7 +128,7 @@ def _read_python_constants(path: str, modified_ns: int) -> Mapping[str, ast.expr
 
 
 def find_constant_users(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[ChangedFile]:
-    """Yield the unchanged sources that use a constant whose value changed.
+    """Yield the unchanged sources that use a constant or member whose value changed.
 
     Only sources of the same package are searched.
     """
@@ -153,9 +157,10 @@ def find_constant_users(versions: Versions, changed_files: Sequence[ChangedFile]
 
 
 def _read_constants(version: Version, path: str) -> dict[str, str]:
-    """Return the text constants of a header or a Python module."""
+    """Return the text constants of a header or a Python module, and the initial values of the members of a header."""
     file = version.file(path)
     if not path.endswith(PYTHON_SUFFIX):
-        return read_header_constants([version.text(path)])
+        text = version.text(path)
+        return read_initial_values(text) | read_header_constants([text])
     values = _read_python_constants(str(file), file.stat().st_mtime_ns) if file.is_file() else {}
     return {name: str(value.value) for name, value in values.items() if isinstance(value, ast.Constant)}

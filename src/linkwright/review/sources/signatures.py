@@ -100,6 +100,35 @@ def read_signature(definition: ast.stmt) -> Signature | None:
     return _NO_PARAMETERS if is_self_contained(definition) else None
 
 
+def find_argument_default(tree: ast.AST, name: ast.Name) -> ast.expr | None:
+    """Return the default of a parameter in the function that uses it, or None for other names.
+
+    A parameter that the function assigns has none.
+
+    Args:
+        tree: the syntax tree that contains the function.
+        name: the use of the parameter.
+    """
+    functions = [
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and any(inner is name for inner in ast.walk(node))
+    ]
+    if not functions:
+        return None
+    function = functions[-1]  # the innermost one
+    arguments = function.args
+    positional = [*arguments.posonlyargs, *arguments.args]
+    defaults = dict(zip([item.arg for item in reversed(positional)], reversed(arguments.defaults), strict=False))
+    keywords = zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+    defaults |= {item.arg: default for item, default in keywords if default is not None}
+    is_assigned = any(
+        isinstance(node, ast.Name) and node.id == name.id and not isinstance(node.ctx, ast.Load)
+        for node in ast.walk(function)
+    )
+    return None if is_assigned else defaults.get(name.id)
+
+
 def parse_signature(text: str) -> Signature | None:
     """Return the parameters in a parenthesized text, or None if the text is something else."""
     try:

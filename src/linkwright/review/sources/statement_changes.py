@@ -12,7 +12,8 @@ from linkwright.review.sources.changed_texts import find_text_changes
 from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_added_code, find_code_change
-from linkwright.review.sources.names import DYNAMIC_SUFFIX
+from linkwright.review.sources.deprecations import find_deprecations
+from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 
 
@@ -32,6 +33,7 @@ def compare_statements(
         changes += _compare_values(old, new, file, changes)
         changes += _compare_code(old, new, file.old_path, file.new_path, changes)
         changes += _compare_keys(old, new, file, changes)
+        changes += _find_deprecations(old, new, file)
     elif file.new_path is not None:
         changes += _find_added_code(old, new, file.new_path, changes)
     return changes[len(reported) :]
@@ -51,6 +53,13 @@ def _compare_values(
         yield Change(change.sentence, location=Location(path, change.line, 1, change.is_old))
 
 
+def _find_deprecations(old: ChangedSources, new: ChangedSources, file: ChangedFile) -> Iterator[Change]:
+    """Yield the new texts that say that something is deprecated."""
+    texts = old.version.text(file.old_path or ""), new.version.text(file.new_path or "")
+    for text, line in find_deprecations(*texts, is_cpp=file.path.endswith(CPP_SUFFIXES)):
+        yield Change(text, location=Location(file.path, line, 1))
+
+
 def _compare_code(
     old: ChangedSources, new: ChangedSources, old_path: str, new_path: str, reported: Sequence[Change]
 ) -> Iterator[Change]:
@@ -68,7 +77,7 @@ def _compare_code(
     change = find_code_change(before, after, reported, has_moved, new.get_names(new_path), renamed)
     if change is not None:
         location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
-        yield Change(change.text, location=location)
+        yield Change(change.text, location=location, is_code=True)
 
 
 def _find_added_code(
@@ -84,7 +93,7 @@ def _find_added_code(
 
     change = find_added_code(code, reported, has_moved, new.get_names(path))
     if change is not None:
-        yield Change(change.text, location=Location(path, change.line, 1, change.is_old))
+        yield Change(change.text, location=Location(path, change.line, 1, change.is_old), is_code=True)
 
 
 def _compare_keys(

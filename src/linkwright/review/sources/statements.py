@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -42,6 +43,12 @@ _MAX_EXPRESSION_CHARACTERS = 60
 """The maximum number of characters of the shown expression around a literal."""
 
 
+_MATHEMATICAL = {"M_PI": math.pi, "M_PI_2": math.pi / 2, "M_PI_4": math.pi / 4, "M_E": math.e}
+"""The values of constants of mathematics in C and C++."""
+_ROUNDING = 1e-3
+"""The relative difference of a rounded constant of mathematics."""
+
+
 class Literal(NamedTuple):
     """A literal in a statement.
 
@@ -66,8 +73,12 @@ class Literal(NamedTuple):
     def differs_from(self, other: Literal) -> bool:
         """Return whether two literals have different values of the same kind.
 
-        A constant may have any value.
+        A constant may have any value, except for those of mathematics.
         """
+        numbers = [_MATHEMATICAL.get(item.value) or _parse_number(item.value) for item in (self, other)]
+        if self.constant != other.constant and None not in numbers:
+            first, second = (number or 0.0 for number in numbers)
+            return abs(first - second) > _ROUNDING * max(abs(first), abs(second))
         return self.value != other.value and self.constant == other.constant
 
 
@@ -108,6 +119,13 @@ class Statement(NamedTuple):
     def get_text(self, first: int, last: int) -> str:
         """Return the text of the tokens from a first to a last index, both included."""
         return join_tokens(self.tokens[first : last + 1])
+
+
+def _parse_number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
 
 
 def parse_statement(tokens: Sequence[Token]) -> Statement:
@@ -318,10 +336,10 @@ def find_literal_differences(old: Statement, new: Statement) -> Iterator[Differe
             and new_literal.last > new_literal.first
             and len(group) == 1
         ):
-            label = _add_context(new, start, end, "[...]", brackets)
+            label = add_context(new, start, end, "[...]", brackets)
             yield Difference(change_text(label, *map(_format_list, texts)), *texts, token)
             continue
-        yield Difference(_add_context(new, start, end, expression, brackets), *texts, token)
+        yield Difference(add_context(new, start, end, expression, brackets), *texts, token)
 
 
 def find_expression_difference(old: Statement, new: Statement) -> Iterator[Difference]:
@@ -378,7 +396,7 @@ def format_literal(statement: Statement, literal: Literal) -> str:
     if after + 1 < len(tokens) and tokens[after].text == "in":
         _, end = _find_expression(tokens, Literal("", after + 1, after + 1), brackets)
         return statement.get_text(start, end)
-    return _add_context(statement, start, end, statement.get_text(start, end), brackets)
+    return add_context(statement, start, end, statement.get_text(start, end), brackets)
 
 
 def _format_list(text: str) -> str:
@@ -416,7 +434,7 @@ def _ends_expression(token: Token) -> bool:
     return is_keyword or (token.kind is TokenKind.OPERATOR and token.text in (*_DELIMITERS, "&&", "||"))
 
 
-def _add_context(new: Statement, start: int, end: int, expression: str, brackets: dict[int, int]) -> str:
+def add_context(new: Statement, start: int, end: int, expression: str, brackets: dict[int, int]) -> str:
     """Return a changed expression with the assigned name or the called function."""
     tokens = new.tokens
     before = tokens[start - 1] if start else None
@@ -495,7 +513,7 @@ def _find_name_before(tokens: Sequence[Token], index: int, brackets: dict[int, i
             index = brackets[index] - 1
             continue
         if token.text == ">" and not parts:
-            index = _find_template_start(tokens, index)
+            index = find_template_start(tokens, index)
             continue
         if token.kind is TokenKind.OPERATOR or token.text in _KEYWORDS:
             break
@@ -511,7 +529,7 @@ def _find_name_before(tokens: Sequence[Token], index: int, brackets: dict[int, i
     return name if len(name) <= _MAX_EXPRESSION_CHARACTERS else ""
 
 
-def _find_template_start(tokens: Sequence[Token], index: int) -> int:
+def find_template_start(tokens: Sequence[Token], index: int) -> int:
     """Return the index before template arguments that end at an index, or -1."""
     depth = 0
     for start in range(index, max(index - _MAX_TEMPLATE_TOKENS, -1), -1):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+import re
 from collections.abc import Iterator
 
 _PYTHON_2_BUILTINS = frozenset(
@@ -27,6 +28,8 @@ _PYTHON_2_BUILTINS = frozenset(
 """The builtins of Python 2, and builtins that other programs add."""
 _DYNAMIC_NAMES = frozenset({"globals", "exec", "execfile", "setattr", "builtins", "__builtins__", "vars"})
 """The names with which a source can define further names."""
+_INTERFACES = re.compile(r"\w+\.(?:msg|srv|action)")
+"""A module with the types of a package."""
 
 
 def find_bound_names(tree: ast.AST) -> Iterator[str]:
@@ -56,15 +59,26 @@ def find_undefined_names(tree: ast.AST) -> dict[str, ast.Name]:
     bound_names = set(find_bound_names(tree))
     uses = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
     names = {node.id for node in uses} - bound_names - set(dir(builtins)) - _PYTHON_2_BUILTINS
-    if "*" in bound_names or not _DYNAMIC_NAMES.isdisjoint(node.id for node in uses):
+    has_star, brings_types = _read_star_imports(tree)
+    if (has_star and not brings_types) or not _DYNAMIC_NAMES.isdisjoint(node.id for node in uses):
         return {}
-    names = {name for name in names if not name.startswith("__")}
+    names = {name for name in names if not name.startswith("__") and not (has_star and name[:1].isupper())}
     skipped_ids = {id(inner) for part in _find_uncertain_parts(tree) for inner in ast.walk(part)} if names else set()
     first_uses: dict[str, ast.Name] = {}
     for node in sorted(uses, key=lambda node: (node.lineno, node.col_offset)):
         if node.id in names and id(node) not in skipped_ids:
             first_uses.setdefault(node.id, node)
     return first_uses
+
+
+def _read_star_imports(tree: ast.AST) -> tuple[bool, bool]:
+    """Return whether a source imports all names of a module, and whether all such modules only have types.
+
+    The names of the types of messages, services and actions begin with capital letters.
+    """
+    imports = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    modules = [node.module or "" for node in imports if any(alias.name == "*" for alias in node.names)]
+    return bool(modules), all(_INTERFACES.fullmatch(module) for module in modules)
 
 
 def _find_uncertain_parts(tree: ast.AST) -> Iterator[ast.AST]:

@@ -6,11 +6,13 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.users.installed_readers import without_comments
-from linkwright.review.versions import TEST_FOLDERS, Versions
+from linkwright.review.users.references import find_share_paths
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _READER_SUFFIXES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".yaml", ".yml")
 _PROGRAM_SUFFIXES = frozenset({*_READER_SUFFIXES[:6], ".c", ".sh", ".bash"})
@@ -44,13 +46,21 @@ def find_lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> 
             continue
         is_description = path.endswith(_DESCRIPTION_SUFFIXES)
         text = versions.new.text(path)
+        told = _list_told_names(versions.new, path, text) if any(name in text for name in lost) else set[str]()
         text = without_comments(text, path) if is_description else text
         for name, old_path in lost.items():
             if is_description and PurePosixPath(name).suffix.lower() not in _SHAPE_SUFFIXES:
                 continue
-            line = _find_line(text, name)
+            line = 0 if name in told else _find_line(text, name)
             if line and versions.new.package_of(path) == versions.old.package_of(old_path):
                 yield path, _make_change(path, name, line, is_renamed=changed.get(old_path) is not None)
+
+
+def _list_told_names(version: Version, path: str, text: str) -> set[str]:
+    """Return the names of the files whose paths `find_lost_references` finds in a launch file of any name."""
+    if path not in find_launch_files(version):
+        return set()
+    return {PurePosixPath(subpath).name for _, subpath, _ in find_share_paths(SourceText(path, text), path)}
 
 
 def _is_data(path: str) -> bool:

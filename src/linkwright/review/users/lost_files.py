@@ -16,6 +16,9 @@ from linkwright.review.sources.reading import is_generated, read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _HEADERS = "include/"
+_TARGETS = (FactKind.EXECUTABLE, FactKind.LIBRARY, FactKind.EXPORTED_TARGET)
+"""The kinds of targets of a removed build file that others start or link to."""
+_TEST_CONDITION = "BUILD_TESTING"
 
 
 def find_lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
@@ -25,6 +28,7 @@ def find_lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     """
     moved_packages = {package.old_folder for package in find_renamed_packages(versions)}
     changed = {file.path for file in changed_files}
+    removed = {file.old_path for file in changed_files if file.new_path is None}
     packages: dict[str, list[ChangedFile]] = {}
     for file in changed_files:
         if file.old_path is None or file.old_path == file.new_path or file.is_submodule:
@@ -40,6 +44,8 @@ def find_lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) ->
                 *_find_lost_targets(files, old, new, is_compared=path in changed),
                 *_find_lost_modules(versions, files, old),
             ]
+            if find_build_file(versions.old, package) in removed:
+                changes += _find_lost_facts(old, new)
             yield from ((path, change) for change in changes)
 
 
@@ -76,6 +82,20 @@ def _find_lost_targets(
         if targets:
             names = list_names(summarize_files(targets, new.files))
             yield Change(phrase("no longer installed: {names}", names=names), Effect.BREAKING, reason)
+
+
+def _find_lost_facts(old: BuildFacts, new: BuildFacts) -> Iterator[Change]:
+    """Yield the changes about targets of a removed build file that the build file in its place does not have."""
+    if new.unknown:
+        return
+    kept = {fact.name for fact in new.facts} | {PurePosixPath(target).stem for target in new.files}
+    for kind in _TARGETS:
+        facts = [fact for fact in old.facts if fact.kind is kind and _TEST_CONDITION not in fact.condition]
+        names = list(dict.fromkeys(fact.name for fact in facts if PurePosixPath(fact.name).stem not in kept))
+        if names:
+            text = phrase("{kind} removed: {names}", kind=kind.title, names=list_names(names))
+            yield Change(text, Effect.BREAKING, kind.reason)
+            kept |= {PurePosixPath(name).stem for name in names}
 
 
 def _relative_to_package(facts: BuildFacts, path: str) -> str:

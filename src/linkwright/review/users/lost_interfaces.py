@@ -13,9 +13,10 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.interfaces import read_structures
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
-from linkwright.review.sources.cpp_interface_uses import find_cpp_uses
+from linkwright.review.sources.cpp_interface_uses import find_cpp_uses, find_member_uses, find_members
 from linkwright.review.sources.interface_uses import InterfaceUse, LostInterface
-from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX
+from linkwright.review.sources.lost_types import find_including_files
+from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
 from linkwright.review.sources.python_interface_uses import find_python_uses
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -37,6 +38,21 @@ def find_lost_interfaces(versions: Versions, changed_files: Sequence[ChangedFile
         find_uses = find_python_uses if path.endswith(PYTHON_SUFFIX) else find_cpp_uses
         uses = {use.key: use for use in reversed([use for item in lost for use in find_uses(text, item)])}
         yield from ((path, _make_change(path, use)) for use in reversed(uses.values()))
+    yield from _find_member_uses(versions.new, lost)
+
+
+def _find_member_uses(version: Version, lost: Sequence[LostInterface]) -> Iterator[tuple[str, Change]]:
+    """Yield the C++ sources that use what interfaces lost of members which an included header declares."""
+    paths = version.paths(CPP_SUFFIXES) if lost else []
+    texts = {path: version.text(path) for path in paths if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)}
+    for interface in lost:
+        found: dict[str, set[str]] = {}
+        for header in [path for path in texts if path.endswith(HEADER_SUFFIXES) and interface.name in texts[path]]:
+            members = find_members(texts[header], interface)
+            for user in find_including_files(texts, header) if members else ():
+                found.setdefault(user, set()).update(members)
+        for user, members in found.items():
+            yield from ((user, _make_change(user, use)) for use in find_member_uses(texts[user], interface, members))
 
 
 def _make_change(path: str, use: InterfaceUse) -> Change:

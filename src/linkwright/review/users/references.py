@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import PurePosixPath
 
@@ -10,34 +9,56 @@ from linkwright.diagnostics import SourceText, Span, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.readers.launch_files import read_launch_file
 from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.launch_paths import find_launch_files
+from linkwright.review.launches.missing_programs import find_packages
 from linkwright.review.launches.script_options import find_refused_options
-from linkwright.review.versions import Versions
+from linkwright.review.users.installed_readers import find_named_paths
+from linkwright.review.versions import Version, Versions
 
 LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".launch", ".launch.yaml", ".launch.yml")
 """The ends of the names of launch files whose paths are searched."""
-_SHARE_PATH = re.compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\s*\)/([\w./+-]+)")
 
 
 def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield launch files with paths to missing files or refused options, and the changes.
 
-    A missing file exists only in the old version. A script does not accept a refused option.
+    A missing file exists only in the old version, or a changed launch file in XML or YAML names it for the first time.
+    A script does not accept a refused option.
     """
     yield from find_refused_options(versions, changed_files)
     lost = {file.old_path for file in changed_files if file.old_path and file.old_path != file.new_path}
     names = {PurePosixPath(path).name for path in lost}
-    if not names:
-        return
-    for path in versions.new.paths(LAUNCH_SUFFIXES):
-        file, text = versions.new.file(path), versions.new.text(path)
-        if not any(name in text for name in names):
+    changed = {file.new_path: file.old_path for file in changed_files if file.new_path}
+    for path in find_launch_files(versions.new):
+        text = versions.new.text(path) if names or path in changed else ""
+        is_user = any(name in text for name in names)
+        if not is_user and path not in changed:
             continue
-        for package, subpath, span in _find_share_paths(SourceText(str(file), text), path):
-            if _is_lost(versions, path, package, subpath, lost):
-                yield path, _make_change(path, package, subpath, span)
+        source = SourceText(str(versions.new.file(path)), text)
+        known = _list_known_paths(versions.old, changed.get(path, path)) if path in changed else None
+        reported: set[tuple[str, str]] = set()
+        for package, subpath, span in find_share_paths(source, path):
+            if (package, subpath) in reported:
+                continue
+            reported.add((package, subpath))
+            if is_user and _is_lost(versions, path, package, subpath, lost):
+                yield path, _make_change(path, package, subpath, span, is_lost=True)
+            elif known is not None and (package, subpath) not in known and _is_missing(versions.new, package, subpath):
+                yield path, _make_change(path, package, subpath, span, is_lost=False)
 
 
-def _find_share_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, Span]]:
+def _list_known_paths(version: Version, path: str | None) -> set[tuple[str, str]] | None:
+    """Return the paths that the old version of a launch file names; None for a file in Python.
+
+    The check of packages (LW842) finds the missing files that Python files name.
+    """
+    if (path or "").endswith(".py"):
+        return None
+    source = SourceText(str(version.file(path or "")), version.text(path) if path else "")
+    return {(package, subpath) for package, subpath, _ in find_share_paths(source, path or "")}
+
+
+def find_share_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, Span]]:
     """Yield the paths in share folders that a launch file names.
 
     Each is given as the package, the path in it, and the location in the launch file.
@@ -46,8 +67,28 @@ def _find_share_paths(source: SourceText, path: str) -> Iterator[tuple[str, str,
         for item in read_launch_file(source, path).paths:
             yield item.package, item.path, item.span
         return
-    for match in _SHARE_PATH.finditer(source.text):
-        yield match[1], match[2], source.span(match.start(), match.end())
+    for named_path in find_named_paths(source, path):
+        if named_path.package and named_path.path and named_path.is_complete:
+            yield named_path.package, named_path.path, named_path.span
+
+
+def _is_missing(version: Version, package: str, subpath: str) -> bool:
+    """Return whether a package of the repository certainly does not have a file."""
+    owner = find_packages(version).get(package)
+    share = version.shares.get(package)
+    if owner is None or share is None or (share / subpath).exists() or ".." in PurePosixPath(subpath).parts:
+        return False
+    path = PurePosixPath(owner.folder) / subpath
+    is_unknown = version.commit is not None and bool(version.commit.removed_links or version.commit.missing_files)
+    ignored = "\n".join(map(version.text, (".gitignore", f"{owner.folder}/.gitignore")))
+    parts = {*path.parts, path.suffix} - {"", "launch", "config", "urdf"}
+    return (
+        not owner.may_generate
+        and owner.facts is not None
+        and path.name not in owner.build_text
+        and not is_unknown
+        and not any(part in ignored for part in parts)
+    )
 
 
 def _is_lost(versions: Versions, path: str, package: str, subpath: str, lost: Collection[str]) -> bool:
@@ -62,7 +103,9 @@ def _is_lost(versions: Versions, path: str, package: str, subpath: str, lost: Co
     return versions.old.relative(old_share / subpath) in lost
 
 
-def _make_change(path: str, package: str, subpath: str, span: Span) -> Change:
-    text = phrase("names '{file}' of '{package}', which no longer exists", file=subpath, package=package)
+def _make_change(path: str, package: str, subpath: str, span: Span, *, is_lost: bool) -> Change:
+    text = phrase("names '{file}' of '{package}', which does not exist", file=subpath, package=package)
+    if is_lost:
+        text = phrase("names '{file}' of '{package}', which no longer exists", file=subpath, package=package)
     reason = phrase("the launch file does not find the file")
     return Change(text, Effect.BREAKING, reason, Location(path, span.line, span.column))

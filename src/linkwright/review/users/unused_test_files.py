@@ -1,24 +1,48 @@
-"""Find renamed files of tests that nothing else uses."""
+"""Find files of tests, which nothing else uses."""
 
 from __future__ import annotations
 
 import re
 from pathlib import PurePosixPath
 
+from linkwright.diagnostics import SourceText
+from linkwright.review.files.cmake_branches import iterate_conditional_commands
 from linkwright.review.installed_paths import find_installed_paths
 from linkwright.review.users.installed_readers import READER_SUFFIXES
-from linkwright.review.versions import TEST_FOLDERS, Versions
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
+
+_TEST_CONDITION = re.compile(r"(?<!NOT )\b(?:BUILD_TESTING|CATKIN_ENABLE_TESTING)\b")
+
+
+def is_test_file(version: Version, path: str) -> bool:
+    """Return whether a file belongs to tests and is certainly not installed, or only if tests are built."""
+    package = version.package_of(path)
+    if package is None or TEST_FOLDERS.isdisjoint(PurePosixPath(path).relative_to(package).parts):
+        return False
+    relative_path = PurePosixPath(path).relative_to(package)
+    return find_installed_paths(version, package, path) == frozenset() or _is_installed_for_tests(
+        version, package, relative_path
+    )
+
+
+def _is_installed_for_tests(version: Version, package: str, path: PurePosixPath) -> bool:
+    """Return whether all commands of a package that install a file do so only if tests are built."""
+    build_file = (PurePosixPath(package) / "CMakeLists.txt").as_posix()
+    source = SourceText(build_file, version.text(build_file))
+    names = {path.as_posix(), *(f"{parent}" for parent in path.parents if parent.name)}
+    conditions = [
+        condition
+        for statement, condition in iterate_conditional_commands(source)
+        if statement.name == "install" and any(token.text.rstrip("/") in names for token in statement.tokens)
+    ]
+    return bool(conditions) and all(_TEST_CONDITION.search(condition) for condition in conditions)
 
 
 def is_unused_test_file(versions: Versions, old_path: str, new_path: str) -> bool:
     """Return whether a renamed file belongs to tests, is not installed, and no file has its old name any more."""
-    package = versions.old.package_of(old_path)
-    if package is None or TEST_FOLDERS.isdisjoint(PurePosixPath(old_path).relative_to(package).parts):
+    if not is_test_file(versions.old, old_path):
         return False
-    if (
-        versions.new.package_of(new_path) != package
-        or find_installed_paths(versions.old, package, old_path) != frozenset()
-    ):
+    if versions.new.package_of(new_path) != versions.old.package_of(old_path):
         return False
     name = re.compile(rf"(?<![\w.-]){re.escape(PurePosixPath(old_path).name)}(?![\w.-])")
     return not any(name.search(versions.new.text(path)) for path in versions.new.paths(READER_SUFFIXES))

@@ -1,14 +1,15 @@
 """Convert the command lines of Gazebo's programs to parameters of substitute nodes.
 
-Of the many options of `gazebo`, `gzserver` and `gz sim`, only the world, the paused start, the random seed and the ROS
-arguments have an effect here. The node's parameters are ``world``, ``pause`` and ``seed``, and ``gui`` for a server
-with a window. The executable is ``gzclient`` for a window without a server.
+Of the many options of `gazebo`, `gzserver` and `gz sim`, only the world, the paused start, the random seed, the ROS
+arguments and the start in ``--gui-config`` have an effect here. The node's parameters are ``world``, ``pause`` and
+``seed``, and ``gui`` for a server with a window. The executable is ``gzclient`` for a window without a server.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import Any
 
 from linkwright.nodes.node_command import NodeCommand
@@ -23,6 +24,9 @@ _GZ_VALUE_OPTIONS = """-z --iterations --gui-config --physics-engine --render-en
 _GZ_VERBOSITY = ("-v", "--verbose")
 """Options of gz sim that take the next argument as their value if it is a number."""
 _ROS_ARGUMENTS = "--ros-args"
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_WORLD_CONTROL = re.compile(r"<plugin\s[^>]*\bfilename\s*=\s*[\"']WorldControl[\"'].*?</plugin>", re.DOTALL)
+_UNPAUSED_START = re.compile(r"<start_paused>\s*(false|0)\s*</start_paused>", re.IGNORECASE)
 
 
 def simulator_command(command: Sequence[str]) -> NodeCommand | None:
@@ -53,16 +57,30 @@ def parse_classic_server_command(arguments: Sequence[str], *, window: bool = Fal
 def parse_gz_server_command(arguments: Sequence[str]) -> NodeCommand:
     """Parse the arguments of ``gz sim``.
 
-    Without ``-r``, the simulation starts paused.
+    Without ``-r``, the simulation starts paused, unless the configuration of the window starts it.
     """
     gazebo_arguments, ros_arguments = _split_ros_arguments(arguments)
     options, positional = _parse_options(gazebo_arguments, _GZ_VALUE_OPTIONS.split())
     if "-g" in options:
         return NodeCommand("ros_gz_sim", "gzclient")
-    parameters = _read_seed(options) | {"pause": "-r" not in options, "gui": "-s" not in options}
+    has_window = "-s" not in options
+    is_started = "-r" in options or (has_window and _is_started_by_window(options.get("--gui-config", "")))
+    parameters = _read_seed(options) | {"pause": not is_started, "gui": has_window}
     if any(positional):
         parameters["world"] = next(filter(None, positional))
     return NodeCommand("ros_gz_sim", "gzserver", parameters, ros_arguments)
+
+
+def _is_started_by_window(config_file: str) -> bool:
+    """Return whether the panel for the time of Gazebo's window starts the simulation.
+
+    The file is a list of elements, not a single XML element.
+    """
+    try:
+        text = _COMMENT.sub("", Path(config_file).read_text(encoding="utf-8", errors="replace"))
+    except OSError:
+        return False
+    return any(_UNPAUSED_START.search(panel) for panel in _WORLD_CONTROL.findall(text))
 
 
 def _split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]:

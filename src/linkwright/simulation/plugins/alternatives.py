@@ -5,7 +5,6 @@ from __future__ import annotations
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.sdf.plugins import library_name
 
-_AIR_SPEED_ALTERNATIVE = phrase("the velocity that gz-sim-odometry-publisher-system publishes, in still air")
 _WIDE_CAMERA_ALTERNATIVE = phrase("a camera with a wide <horizontal_fov>")
 _AUTOPILOT_ALTERNATIVE = phrase(
     "a ROS node in place of the autopilot: commands on the topics of the motors and joints, "
@@ -37,8 +36,19 @@ _ROTOR_ALTERNATIVE = phrase("gz-sim-multicopter-motor-model-system for each roto
 _CONTROL_ALTERNATIVE = phrase("gz_ros2_control-system, with <ros2_control> in the description")
 _LIGHT_ALTERNATIVE = phrase("a <material> of one color, because colors do not change in time")
 _IMU_ALTERNATIVE = phrase("a <sensor> of type imu")
+_WALK_ALTERNATIVE = phrase("an <actor> with the waypoints of a <script>")
+_STEERING_ALTERNATIVE = phrase("libgazebo_ros_ackermann_drive.so, or controllers of ros2_control")
+_DRIVE_ALTERNATIVE = phrase("libgazebo_ros_diff_drive.so")
+_VIEW_ALTERNATIVE = phrase("the camera of the page")
+_TRANSFORM_ALTERNATIVE = phrase("robot_state_publisher, or static_transform_publisher of tf2_ros")
+_LOGICAL_CAMERA_ALTERNATIVE = phrase("a <sensor> of type logical_camera")
 _GROUPS = {
-    _AUTOPILOT_ALTERNATIVE: ("ArduPilotPlugin", "gazebo_mavlink_interface", "rotors_gazebo_mavlink_interface"),
+    _AUTOPILOT_ALTERNATIVE: (
+        "ArduCopterPlugin",
+        "ArduPilotPlugin",
+        "gazebo_mavlink_interface",
+        "rotors_gazebo_mavlink_interface",
+    ),
     _BATTERY_ALTERNATIVE: (
         "battery_consumer_ros_plugin",
         "custom_battery_consumer_ros_plugin",
@@ -50,6 +60,7 @@ _GROUPS = {
         *("gazebo_camera_manager_plugin", "gazebo_ros_realsense", "gazebo_ros_triggered_multicamera", "multicamera"),
         *("uuv_gazebo_ros_camera_plugin", "MrsGazeboCommonResources_CameraPlugin"),
         *("MrsGazeboCommonResources_RealsensePlugin", "MrsGazeboCommonResources_ServoCameraPlugin"),
+        *("CameraZoomPlugin", "MRSGazeboRealsensePlugin"),
     ),
     _CONTACT_ALTERNATIVE: (
         *("RobotFootContactPlugin", "contact_plugin", "gazebo_ros_contact", "gazebo_ros_create_bumper"),
@@ -60,52 +71,72 @@ _GROUPS = {
         *("MrsGazeboCommonResources_RangefinderPlugin", "gazebo_ros_create_cliff_sensor", "gazebo_sonar_plugin"),
         *("gazebo_ros_create_ir_intensity_sensor", "sonar"),
     ),
+    _DRIVE_ALTERNATIVE: ("DiffDrivePlugin", "diffdrive_plugin_multi_wheel", "gazebo_ros_diffdrive_uos"),
     _IMU_ALTERNATIVE: (
         *("gazebo_ros_create_imu", "realsense_gazebo_accel_sensor", "realsense_gazebo_gyro_sensor"),
         "xbot2_gz_imu_server",
     ),
     _LIDAR_ALTERNATIVE: (
         *("MrsGazeboCommonResources_2DLidarPlugin", "MrsGazeboCommonResources_LivoxLaserSimulationPlugin"),
-        *("ros2_livox", "rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin", "ray"),
+        *("rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin", "ray"),
+        *("MrsGazeboCommonResources_3DLidarPlugin", "rotors_gazebo_lidar_plugin"),
     ),
     _LIGHT_ALTERNATIVE: (
         *("LightIndicator", "PlacardPlugin", "traffic_light_plugin"),
         *("MrsGazeboCommonResources_LightPlugin", "MrsGazeboCommonResources_SafetyLedPlugin"),
     ),
+    _LOGICAL_CAMERA_ALTERNATIVE: ("ROSLogicalCameraPlugin", "gazebo_irlock_plugin"),
     _MOTION_ALTERNATIVE: (
+        *("RandomVelocityPlugin", "InitialVelocityPlugin"),
         *("SetVelPlugin", "gazebo_random_velocity_plugin", "gazebo_ros_force_based_move"),
         "tuw_gazebo_ros_diff_drive",
     ),
     _POSE_ALTERNATIVE: (
+        *("gazebo_world_odometry", "rotors_gazebo_optical_flow_plugin", "gazebo_aruco_plugin"),
         *("PubTfPlugin", "gazebo_opticalflow_plugin", "gazebo_opticalFlow_plugin", "gazebo_opticalflow_mockup_plugin"),
         *("gazebo_vision_plugin", "gazebo_ros_create_optical_mouse", "xbot2_gz_link_state_sensor"),
     ),
     _POSITION_ALTERNATIVE: (
+        *("GimbalSmall2dPlugin",),
         *("gazebo_gimbal_controller_plugin", "hector_servo_plugin", "rotors_gazebo_gimbal_controller_plugin"),
     ),
     _RADIO_ALTERNATIVE: ("wireless_receiver", "wireless_transmitter", "rfid", "rfidtag", "uwb_range"),
-    _RELEASE_ALTERNATIVE: ("ParachutePlugin", "gazebo_catapult_plugin", "gazebo_drop_plugin"),
+    _RELEASE_ALTERNATIVE: (
+        "ParachutePlugin",
+        "SuctionGripper",
+        "gazebo_parachute_plugin",
+        "gazebo_catapult_plugin",
+        "gazebo_drop_plugin",
+    ),
     _ROTOR_ALTERNATIVE: ("hector_gazebo_quadrotor_aerodynamics", "hector_gazebo_quadrotor_propulsion"),
+    _STEERING_ALTERNATIVE: ("gazebo_ros_tricycle_drive", "gazebo_ros_steer_drive", "gazebo_ros_steerbot"),
     _TASK_ALTERNATIVE: tuple(f"{task}ScoringPlugin" for task in _TASKS),
     _THERMAL_ALTERNATIVE: (
         *("thermal", "thermal_camera", "gz-sim-thermal-system", "gz-sim-thermal-sensor-system"),
         *("MRSGazeboThermalCameraPlugin", "gazebo_ros_thermal_camera", "gazebo_ros_thermal_camera_pink"),
     ),
-    _WATER_ALTERNATIVE: ("freefloating_gazebo_fluid", "gazebo_usv_dynamics_plugin"),
+    _TRANSFORM_ALTERNATIVE: (
+        *("MRSGazeboStaticTransformRepublisher", "MrsGazeboCommonResources_StaticTransformRepublisher"),
+    ),
+    _VIEW_ALTERNATIVE: ("MRSGazeboRvizCameraSynchronizer", "MrsGazeboCommonResources_RvizCameraSynchronizer"),
+    _WALK_ALTERNATIVE: ("ActorPlugin", "gazebo_ros_actor_command", "gazebo_ros_actor_plugin"),
+    _WATER_ALTERNATIVE: (
+        "BuoyancySystemPlugin",
+        "freebuoyancy_gazebo",
+        "freefloating_gazebo_fluid",
+        "gazebo_usv_dynamics_plugin",
+    ),
     _WIDE_CAMERA_ALTERNATIVE: ("wide_angle_camera", "wideanglecamera"),
 }
 """Libraries and types of sensors, by their alternative."""
 
 ALTERNATIVES = {
     **{name: alternative for alternative, names in _GROUPS.items() for name in names},
-    **dict.fromkeys(("air_speed", "gz-sim-air-speed-system"), _AIR_SPEED_ALTERNATIVE),
-    "AdvancedLiftDragPlugin": phrase("libLiftDragPlugin.so for each wing"),
     "RosGzPointCloud": phrase("a <sensor> of type rgbd_camera or gpu_lidar, which publishes its points"),
-    "gazebo_irlock_plugin": phrase("a <sensor> of type logical_camera"),
     "gazebo_ros_grasp_fix": phrase("libgazebo_grasp_fix.so"),
     "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
     "gz-sim-camera-video-recorder-system": phrase("`linkwright bag record` with the topic of the camera"),
-    "gz-sim-follow-actor-system": phrase("an <actor> with the waypoints of a <script>"),
+    "gz-sim-follow-actor-system": _WALK_ALTERNATIVE,
     "gz-sim-log-playback-system": phrase("`linkwright bag play`"),
     "gz-sim-log-system": phrase("`linkwright sim --record`, or `linkwright bag record`"),
     "rotors_gazebo_bag_plugin": phrase("`linkwright sim --record`, or `linkwright bag record`"),

@@ -20,7 +20,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import phrase, quoted_names
 from linkwright.geometry.arrays import rotation_matrix
 from linkwright.geometry.single import Vector3
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -67,11 +67,15 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
     Attributes:
         target_speed: the commanded speed, in rad/s.
         speed: the current speed, in rad/s.
+        is_blocked: whether a failure holds the rotor.
+        rotor_link: the full name of the rotor's link.
+        MOTOR_TYPES: the values of ``<motorType>`` that are simulated.
     """
 
     PARAMETERS: ClassVar[type[Any]] = MotorParameters
     IGNORED: ClassVar[Collection[str]] = ("motorSpeedPubTopic",)
     CARRIED: ClassVar[tuple[str, ...]] = ("target_speed", "speed")
+    MOTOR_TYPES: ClassVar[tuple[str, ...]] = ("velocity",)
 
     def start(self) -> None:
         """Find the rotor, and subscribe to its speed commands.
@@ -80,25 +84,26 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
             LinkwrightError: SIM133, SIM134, there is no such link or joint; SIM160, the motor type is not ``velocity``.
         """
         parameters = self.parameters
-        if parameters.motor_type != "velocity":
+        if parameters.motor_type not in self.MOTOR_TYPES:
             raise self.parameter_error(
                 phrase(
-                    "plugin '{plugin}': <motorType> must be 'velocity', the only supported type",
+                    "plugin '{plugin}': <motorType> must be {types}, because other types are not simulated",
                     plugin=self.context.name,
+                    types=quoted_names(self.MOTOR_TYPES, " or "),
                 )
             )
-        self._link = self.link(parameters.link_name)
+        self.rotor_link = self.link(parameters.link_name)
         joint = self.joint(parameters.joint_name)
         self._parent = self.simulation.scene.joints[joint].parent
         self._sign = -1.0 if parameters.turning_direction.strip().lower() == "cw" else 1.0
         self._motor = self.simulation.add_velocity_motor(joint, _SPIN_GAIN, inf)
-        self.simulation.keep_awake(self._link)
+        self.simulation.keep_awake(self.rotor_link)
         self.reset()
         namespace = self.text_in(self.context.element, "robotNamespace").strip("/") or self.context.path
         self.node.subscribe(
             "actuator_msgs/msg/Actuators", f"/{namespace}/{parameters.command_topic.lstrip('/')}", self._on_actuators
         )
-        self.every(0.0, self._apply_thrust)
+        self.every(0.0, self.apply_thrust)
 
     def limit_target(self, speed: float) -> float:
         """Return a commanded speed within the limits of the motor, in rad/s."""
@@ -121,6 +126,7 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
     def reset(self) -> None:
         """Stop the rotor."""
         self.target_speed = self.speed = 0.0
+        self.is_blocked = False
 
     def _on_actuators(self, actuators: Any) -> None:
         number = self.parameters.actuator_number
@@ -128,14 +134,17 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
         if number < len(speeds) and isfinite(speeds[number]):
             self.target_speed = float(speeds[number])
 
-    def _apply_thrust(self) -> None:
+    def apply_thrust(self) -> None:
+        """Turn the rotor, and apply its forces to its links."""
         parameters, simulation = self.parameters, self.simulation
         target_speed = self.limit_target(self.target_speed)
         time_constant = parameters.time_constant_up if target_speed > self.speed else parameters.time_constant_down
         old_weight = exp(-simulation.step / NANOSECONDS_PER_SECOND / time_constant) if time_constant > 0.0 else 0.0
         self.speed = old_weight * self.speed + (1.0 - old_weight) * target_speed
-        axis = rotation_matrix(simulation.link_pose(self._link)[3:])[:, 2]
-        velocity = simulation.link_velocity(self._link)[0] - self.wind
+        if self.is_blocked:
+            self.speed = 0.0
+        axis = rotation_matrix(simulation.link_pose(self.rotor_link)[3:])[:, 2]
+        velocity = simulation.link_velocity(self.rotor_link)[0] - self.wind
         axial_velocity = float(velocity @ axis)
         thrust = self.compute_thrust(axial_velocity)
         cross_velocity = abs(self.speed) * (velocity - axial_velocity * axis)
@@ -144,9 +153,13 @@ class GzMulticopterMotor(SimulatedPlugin[MotorParameters]):
             -self._sign * thrust * parameters.moment_constant * axis
             - self.rolling_sign * parameters.rolling_moment_coefficient * cross_velocity
         )
-        self.push(self._link, force)
+        self.push(self.rotor_link, force)
         self.push(self._parent, (0.0, 0.0, 0.0), torque)
-        self._motor.target = self._sign * self.speed / parameters.slowdown
+        self.set_spin(self._sign * self.speed)
+
+    def set_spin(self, speed: float) -> None:
+        """Set the speed in rad/s at which the rotor turns before it is slowed down for the display."""
+        self._motor.target = speed / self.parameters.slowdown
 
 
 @dataclass(frozen=True, kw_only=True)

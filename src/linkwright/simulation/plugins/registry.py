@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.extension_errors import load_extension
 from linkwright.loading.extensions import EntryPoint, extensions
+from linkwright.sdf.figures import ACTOR_COLLISIONS_LIBRARY
 from linkwright.sdf.plugins import Plugin, library_name
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ _SENSORS_BY_SYSTEM = {
     "navsat": ("navsat",),
     "altimeter": ("altimeter",),
     "air-pressure": ("air_pressure",),
+    "air-speed": ("air_speed",),
     "magnetometer": ("magnetometer",),
     "forcetorque": ("force_torque",),
     "logical-camera": ("logical_camera",),
@@ -50,6 +52,7 @@ _BUILT_IN = frozenset(
     (
         *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM)),
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
+        ACTOR_COLLISIONS_LIBRARY,  # the scene gives such actors collisions
         "WaveVisual",  # the page draws the water from what the floating bodies publish
         "rotors_gazebo_ros_interface_plugin",  # the topics of Gazebo's transport are topics of ROS here
         *("rmagine_embree_map_gzplugin", "rmagine_optix_map_gzplugin"),  # lidars see all shapes without a map of them
@@ -62,6 +65,7 @@ _BUILT_IN = frozenset(
 _OTHER_GZ_LIBRARIES = frozenset(
     (
         *("AcousticPingerPlugin", "BallShooterPlugin", "LightBuoyPlugin"),
+        *("AirSpeedPlugin", "GenericMotorModelPlugin", "MotorFailurePlugin", "MovingPlatformController"),
         *("PolyhedraBuoyancyDrag", "PublisherPlugin", "SimpleHydrodynamics", "Surface", "USVWind"),
         *("StationkeepingScoringPlugin", "WayfindingScoringPlugin"),
     )

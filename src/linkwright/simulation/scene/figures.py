@@ -1,4 +1,4 @@
-"""Actors and roads: visible models without contacts."""
+"""Actors and roads: visible models without contacts, except for actors with ``libActorCollisionsPlugin.so``."""
 
 from __future__ import annotations
 
@@ -25,6 +25,8 @@ from linkwright.xmltree import Element
 from linkwright.xmltree.reader import parse_file
 
 T = TypeVar("T", Actor, Model)
+ACTOR_PERIOD_NS = 10_000_000
+"""The time in nanoseconds between two poses of an actor that collides."""
 _GZ_LIBRARIES = ("gz-sim", "ignition-gazebo")
 """Strings that the file names of gz's plugins contain."""
 _BIND_MATRIX_SEMANTIC = "INV_BIND_MATRIX"
@@ -50,6 +52,11 @@ class Figure:
     walk: Walk | None
     origin: Transform
     links: tuple[PlacedLink, ...]
+
+    @property
+    def walks_into_bodies(self) -> bool:
+        """Whether the figure moves, and collides."""
+        return self.walk is not None and any(link.collisions for link in self.model.links)
 
     def pose_at(self, seconds: float) -> Transform:
         """Return the pose in the world at a simulated time in s."""
@@ -99,13 +106,14 @@ def _choose_free_name(item: T, used_names: set[str]) -> T:
 def add_figure(figure: Figure, spec: Any, writer: BodyWriter) -> None:
     """Add the links of a figure to a MuJoCo specification.
 
-    The links become bodies without contacts or dynamics.
+    The links become bodies without dynamics. Only actors that collide have contacts.
     """
     for placed_link in figure.links:
         body = spec.worldbody.add_body(name=placed_link.name, mocap=figure.walk is not None)
         set_pose(body, compose(figure.pose, placed_link.pose))
         body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]
         writer.add_visuals(body, placed_link.link, placed_link.frames, fixed=True)
+        writer.add_collisions(body, placed_link.link, placed_link.frames, fixed=True)
 
 
 def move_actors(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -> None:

@@ -100,7 +100,7 @@ class Scene:
         models: the models by name, in the order in which they were added.
         joints: the movable joints of models, by name.
         bodies: the bodies of the specification, by link name.
-        figures: actors and roads, which are visible but have no contacts.
+        figures: actors and roads, which are visible; only actors that collide have contacts.
     """
 
     def __init__(

@@ -76,6 +76,11 @@ class LidarSensor:
         self._retro = GeomTable(self._simulation, self._list_retro_values)
         self._own_geoms = GeomTable(self._simulation, self._mark_own_geoms)
 
+    @property
+    def shape(self) -> tuple[int, int]:
+        """The numbers of vertical and of horizontal rays."""
+        return self.vertical.count, self.horizontal.count
+
     @cached_property
     def directions(self) -> Array:
         """The unit vectors of the rays in the lidar's frame, shape (vertical * horizontal, 3)."""
@@ -98,8 +103,7 @@ class LidarSensor:
             ranges = np.clip(self._noise.apply(ranges), self.range_min, self.range_max)
         ranges[is_too_far], ranges[is_too_near] = np.inf, -np.inf
         intensities[is_too_far] = 0.0
-        shape = self.vertical.count, self.horizontal.count
-        return Scan(ranges.reshape(shape), intensities.reshape(shape))
+        return Scan(ranges.reshape(self.shape), intensities.reshape(self.shape))
 
     def _cast_rays(self) -> tuple[Array, Any]:
         simulation, pose = self._simulation, self._mount.pose()

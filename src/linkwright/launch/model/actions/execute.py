@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from types import NoneType
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import did_you_mean, phrase
@@ -94,10 +95,11 @@ class ExecuteLocal(Action):
         self._log_cmd = log_cmd
         self._exit_callback: Callable[..., Any] | None = None
         self._on_exit: list[LaunchDescriptionEntity] = []
-        if callable(on_exit) and not isinstance(on_exit, LaunchDescriptionEntity):
-            self._exit_callback = on_exit
-        else:
-            self._on_exit = as_entities(on_exit)
+        reaction: Any = on_exit
+        if isinstance(reaction, (LaunchDescriptionEntity, Iterable, NoneType)):
+            self._on_exit = as_entities(reaction)
+        else:  # as in ROS, the type is checked when the process has ended
+            self._exit_callback = reaction if callable(reaction) else lambda *_: reaction
         self._respawn = normalize_typed_substitution(read_boolean(respawn), bool)
         self._respawn_delay = respawn_delay
         self._respawn_max_retries = respawn_max_retries

@@ -22,6 +22,7 @@ from linkwright.launch.model.declared_substitution import (
 from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
+from linkwright.launch.model.substitutions.hosted_parameters import read_hosted_parameter
 from linkwright.launch.model.xacro_arguments import parse_xacro_arguments
 from linkwright.packages import current_finder
 
@@ -71,7 +72,8 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
             skipped_count = len(arguments) - len(xacro_arguments)
             argument_text = text.split(None, skipped_count)[skipped_count:]
             return self._expand_xacro(context, xacro_arguments, argument_text[0] if argument_text else "")
-        return self._run(context, text, arguments)
+        output = read_hosted_parameter(context.session.host, arguments) if context.is_running else None
+        return self._run(context, text, arguments) if output is None else output
 
     def _expand_xacro(self, context: LaunchContext, words: list[str], argument_text: str) -> str:
         try:

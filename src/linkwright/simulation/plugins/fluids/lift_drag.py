@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from math import acos, pi
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Vector3
+from linkwright.simulation.plugins.fluids.directions import normalize
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -60,7 +60,7 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
         parameters = self.parameters
         self._link = self.link(parameters.link_name)
         self._control_joint = self.joint(parameters.control_joint_name) if parameters.control_joint_name else ""
-        self._forward, self._upward = _normalize(np.array(parameters.forward)), _normalize(np.array(parameters.upward))
+        self._forward, self._upward = normalize(np.array(parameters.forward)), normalize(np.array(parameters.upward))
         self.simulation.keep_awake(self._link)
         self.every(0.0, self._apply_forces)
         self._apply_forces()
@@ -87,11 +87,11 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
             return np.zeros(3)
         upward = rotation @ self._upward
         if parameters.radial_symmetry:
-            upward = _normalize(np.cross(forward, np.cross(forward, velocity)))
-        spanwise = _normalize(np.cross(forward, upward))
-        sweep_factor = 1.0 - float(spanwise @ _normalize(velocity)) ** 2
+            upward = normalize(np.cross(forward, np.cross(forward, velocity)))
+        spanwise = normalize(np.cross(forward, upward))
+        sweep_factor = 1.0 - float(spanwise @ normalize(velocity)) ** 2
         in_plane = velocity - velocity @ spanwise * spanwise
-        lift_direction = _normalize(np.cross(spanwise, in_plane))
+        lift_direction = normalize(np.cross(spanwise, in_plane))
         angle = acos(min(max(float(lift_direction @ upward), -1.0), 1.0))
         angle_of_attack = parameters.a0 + (angle if lift_direction @ forward >= 0.0 else -angle)
         angle_of_attack = (angle_of_attack + pi / 2) % pi - pi / 2
@@ -99,7 +99,7 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
         if self._control_joint:
             lift += parameters.control_joint_rad_to_cl * self.simulation.joint_state(self._control_joint)[0]
         pressure = 0.5 * parameters.air_density * float(in_plane @ in_plane)
-        force: Array = pressure * parameters.area * (lift * lift_direction - drag * _normalize(in_plane))
+        force: Array = pressure * parameters.area * (lift * lift_direction - drag * normalize(in_plane))
         return force
 
     def _compute_coefficients(self, angle_of_attack: float) -> tuple[float, float]:
@@ -112,10 +112,3 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
         if after_stall > 0.0:
             lift = max(lift, 0.0)
         return sign * lift, abs(drag)
-
-
-def _normalize(vector: ArrayLike) -> Array:
-    """Return a vector's direction, or zero for a zero vector."""
-    components = np.asarray(vector, np.float64)
-    length = float(np.linalg.norm(components))
-    return components / length if length > 0.0 else components

@@ -11,21 +11,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-import numpy as np
-
-from linkwright.geometry.arrays import quaternion_inverse, rotate
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.px4.sensors import ModelSensor
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, SingleTopicSensor
 from linkwright.simulation.plugins.sensors.lidar import SingleTopicLidar
+from linkwright.simulation.sensors.air_speed import measure_dynamic_pressure
 from linkwright.simulation.sensors.lidar import Scan
 from linkwright.simulation.sensors.mount import Mount
 
 _PASCAL_PER_HECTOPASCAL = 100.0
 _AIRSPEED_RATE_HZ = 10.0
-_TEMPERATURE_KELVIN, _LAPSE_RATE_KELVIN_PER_M, _DENSITY_KG_PER_M3 = 288.15, 0.0065, 1.225
-"""The air at sea level."""
-_DENSITY_EXPONENT = 4.256
 _LEAST_DISTANCE_M, _GREATEST_DISTANCE_M = 0.06, 35.0
 """The limits of the parameters of the distance sensor."""
 _FIELD_OF_VIEW_RAD = 0.0523598776
@@ -71,21 +66,11 @@ class Px4Airspeed(ModelSensor[Px4AirspeedParameters], SingleTopicSensor[Px4Airsp
 
     def measure(self) -> None:
         """Measure, and publish the dynamic pressure."""
-        mount = self.mount
-        pose, (linear, _) = mount.pose(), mount.velocity()
-        velocity = np.array(linear) - np.array(self.simulation.wind)
-        speed = float(rotate(quaternion_inverse(np.array(pose[3:])), velocity)[0])
         message = self.message("sensor_msgs/msg/FluidPressure", self.frame)
-        pressure = 0.5 * _compute_density(self.home.elevation + pose[2]) * speed * abs(speed)
+        pressure = measure_dynamic_pressure(self.mount, elevation=self.home.elevation)
         message.fluid_pressure = pressure + self._generator.normal(0.0, self._deviation_pa)
         message.variance = self._deviation_pa**2
         self.output.publish(message)
-
-
-def _compute_density(altitude: float) -> float:
-    """Return the density of the air in kg/m3 at an altitude in m."""
-    ratio = (_TEMPERATURE_KELVIN - _LAPSE_RATE_KELVIN_PER_M * altitude) / _TEMPERATURE_KELVIN
-    return float(_DENSITY_KG_PER_M3 * ratio**_DENSITY_EXPONENT)
 
 
 @dataclass(frozen=True, kw_only=True)

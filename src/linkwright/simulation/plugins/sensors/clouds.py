@@ -11,11 +11,12 @@ from linkwright.messages import get_message
 
 _FIELD_TYPES = {np.dtype(np.uint16): 4, np.dtype(np.float32): 7}
 """The data types of sensor_msgs/msg/PointField, by NumPy type."""
+_INTEGER_FIELDS = ("ring", "tag", "line")
 AnyArray = np.ndarray[Any, np.dtype[Any]]
 
 
 def _create_layout(size: int, **offsets: int) -> np.dtype[Any]:
-    formats = [np.uint16 if name == "ring" else np.float32 for name in offsets]
+    formats = [np.uint16 if name in _INTEGER_FIELDS else np.float32 for name in offsets]
     return np.dtype({"names": [*offsets], "formats": formats, "offsets": [*offsets.values()], "itemsize": size})
 
 
@@ -25,6 +26,8 @@ VELODYNE_LAYOUT = _create_layout(22, x=0, y=4, z=8, intensity=12, ring=16, time=
 """The layout of a point of velodyne_simulator, as in velodyne_pointcloud. All points of a revolution have time 0."""
 GZ_LAYOUT = _create_layout(32, x=0, y=4, z=8, intensity=16, ring=24)
 """The layout of a point of gz-sensors. The fields after x, y and z start at multiples of 8 bytes."""
+LIVOX_LAYOUT = _create_layout(20, x=0, y=4, z=8, intensity=12, tag=16, line=18)
+"""The layout of a point of livox_laser_simulation for ROS 2. Tags and lines are 0."""
 _COLORED_LAYOUT = _create_layout(32, x=0, y=4, z=8, rgb=16)
 
 

@@ -1,4 +1,4 @@
-"""Sensors of geographic position, magnetic field, altitude and air pressure.
+"""Sensors of geographic position, magnetic field, altitude, air pressure and air speed.
 
 These plugins replace ``gazebo_ros_gps_sensor`` and the corresponding sensors of gz.
 
@@ -17,6 +17,7 @@ from linkwright.simulation.plugins.sensors.base import (
     SingleTopicSensor,
     vector_to_message,
 )
+from linkwright.simulation.sensors.air_speed import AirSpeedSensor
 from linkwright.simulation.sensors.earth import AltimeterSensor, Barometer, Fix, MagnetometerSensor, NavsatSensor
 
 P = TypeVar("P")
@@ -140,6 +141,28 @@ class GzAirPressure(SingleTopicSensor[NoParameters]):
 
     def measure(self) -> None:
         """Measure, and publish the air pressure."""
+        message = self.message(_PRESSURE_TYPE, self.gz_frame())
+        message.fluid_pressure, message.variance = self._sensor.measure(), self._sensor.noise.variance
+        self.output.publish(message)
+
+
+class GzAirSpeed(SingleTopicSensor[NoParameters]):
+    """The sensor ``air_speed`` of gz: the dynamic pressure of the air along the x axis of the sensor.
+
+    ros_gz_bridge has no message for it; the pressure in Pa is a ``sensor_msgs/msg/FluidPressure`` here.
+    """
+
+    def create_sensor(self) -> None:
+        """Create the pitot tube."""
+        settings, with_mistakes = self.sensor.sensor.air_speed, self.gazebo_mistakes
+        self._sensor = AirSpeedSensor(self.mount, settings, self.random, with_mistakes=with_mistakes)
+
+    def create_publishers(self) -> None:
+        """Create the publisher of ``sensor_msgs/msg/FluidPressure``."""
+        self.output = self.create_gz_output(_PRESSURE_TYPE, "air_speed")
+
+    def measure(self) -> None:
+        """Measure, and publish the dynamic pressure."""
         message = self.message(_PRESSURE_TYPE, self.gz_frame())
         message.fluid_pressure, message.variance = self._sensor.measure(), self._sensor.noise.variance
         self.output.publish(message)

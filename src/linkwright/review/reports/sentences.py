@@ -1,0 +1,174 @@
+"""Write the sentences of a report: changes, argument sets, places, findings and other files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Hashable, Sequence
+
+from linkwright.diagnostics import Diagnostic, Phrase, counted, joined_first, phrase, quoted_names
+from linkwright.diagnostics.phrase import as_phrase
+from linkwright.review.changes import Change, Effect, Location, Review, Subject, SubjectKind
+from linkwright.review.other_files import group_files
+
+_MAX_NAMES = 24
+"""The maximum number of other links or joints that a line names."""
+_MAX_BREAKING_NAMES = 12
+"""The maximum number of other links or joints in a line about a breaking change. Users may search for them."""
+_MAX_PATHS = 4
+"""The maximum number of other files that a line names."""
+_MAX_NAMED_CASES = 1
+"""The maximum number of argument sets that a line names."""
+_MAX_ARGUMENTS = 4
+"""The maximum number of arguments of an argument set that a line names."""
+_ARGUMENT = re.compile(r" (?=[\w.-]+:=)")
+"""The space between two arguments in the name of an argument set."""
+
+
+def get_path_state(subject: Subject) -> Phrase | None:
+    """Return whether a source was added or removed; None for other files, whose changes tell it."""
+    if subject.kind is not SubjectKind.SOURCE or None not in (subject.old_path, subject.new_path):
+        return None
+    return phrase("added") if subject.old_path is None else phrase("removed")
+
+
+def format_change(change: Change) -> Phrase:
+    """Return a change in one line, with the other links or joints, or the number of locations."""
+    names = change.other_names
+    if not names and change.other_locations:
+        return _add_count(change.sentence, 1 + len(change.other_locations))
+    if not names:
+        return change.sentence
+    limit = _MAX_BREAKING_NAMES if change.effect is Effect.BREAKING else _MAX_NAMES
+    listed = quoted_names(names[:limit])
+    if len(names) <= limit:
+        return phrase("{change}; also {names}", change=change.sentence, names=listed)
+    more = len(names) - limit
+    return phrase("{change}; also {names} and {count} more", change=change.sentence, names=listed, count=more)
+
+
+def format_cases(change: Change, subject: Subject) -> Phrase | None:
+    """Return the argument sets with which a change occurs, or None for all argument sets."""
+    if not change.cases:
+        return None
+    cause = _find_common_cause(change.cases, subject.cases)
+    if cause is not None:
+        return cause
+    names = [_find_distinct_arguments(name, subject.cases or change.cases) for name in change.cases]
+    if names == [""]:
+        return phrase("with the default arguments")
+    if len(names) <= _MAX_NAMED_CASES:
+        return phrase("with {arguments}", arguments=", ".join(names))
+    return phrase("with {count} of {total} argument sets", count=len(names), total=len(subject.cases))
+
+
+def _find_common_cause(cases: Sequence[str], all_cases: Sequence[str]) -> Phrase | None:
+    """Return the argument that all sets with a change have and no other set has, or vice versa.
+
+    Returns None unless there is exactly one such argument. An argument is preferred that the other sets have with
+    other values.
+    """
+    words = [set(_ARGUMENT.split(case)) - {""} for case in cases]
+    others = [set(_ARGUMENT.split(case)) - {""} for case in all_cases if case not in cases]
+    if not others:
+        return None
+    cause = _find_common_argument(words, others)
+    if cause is not None:
+        return phrase("with {arguments}", arguments=cause)
+    cause = _find_common_argument(others, words)
+    return None if cause is None else phrase("without {arguments}", arguments=cause)
+
+
+def _find_common_argument(sets: Sequence[set[str]], others: Sequence[set[str]]) -> str | None:
+    """Return the only argument that all sets have and no other set has, or None."""
+    causes = sorted(set.intersection(*sets) - set().union(*others))
+    distinguishing = [cause for cause in causes if all(_has_argument(other, cause) for other in others)]
+    candidates = distinguishing or causes
+    return candidates[0] if len(candidates) == 1 else None
+
+
+def _has_argument(words: set[str], cause: str) -> bool:
+    return any(word.startswith(cause.partition(":=")[0] + ":=") for word in words)
+
+
+def _find_distinct_arguments(case_name: str, cases: Sequence[str]) -> str:
+    """Return the values that distinguish an argument set from the first set.
+
+    For the first set, they are the values that the other sets do not share.
+    """
+    words = [set(_ARGUMENT.split(case)) for case in cases]
+    shared = set.intersection(*words) if case_name == cases[0] else words[0]
+    distinct = [word for word in _ARGUMENT.split(case_name) if word not in shared]
+    return " ".join([*distinct[:_MAX_ARGUMENTS], *(["..."] if len(distinct) > _MAX_ARGUMENTS else [])]) or case_name
+
+
+def format_repeated(path: str, count: int, *, is_shared: bool) -> Phrase:
+    """Return the line for changes that an earlier section lists."""
+    if is_shared:
+        return counted(
+            "the same change in a shared file as in {path}",
+            "the same {count} changes in shared files as in {path}",
+            count,
+            path=path,
+        )
+    return phrase("the same {count} changes as in {path}", path=path, count=count)
+
+
+def group_findings(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Return the findings, with equal findings in a file merged.
+
+    The message contains their number.
+    """
+    groups: dict[Hashable, list[Diagnostic]] = {}
+    for finding in findings:
+        file = None if finding.span is None else finding.span.file
+        groups.setdefault((finding.code, file, str(finding.message)), []).append(finding)
+    return [
+        first if not others else first.with_changes(message=_add_count(as_phrase(first.message), 1 + len(others)))
+        for first, *others in groups.values()
+    ]
+
+
+def _add_count(text: Phrase, count: int) -> Phrase:
+    return phrase("{change} ({count} times)", change=text, count=count)
+
+
+def format_paths(paths: Sequence[str]) -> Phrase:
+    """Return paths in one line, with the number of the remaining ones."""
+    return joined_first(paths, _MAX_PATHS)
+
+
+def format_location(location: Location, path: str) -> Phrase | str:
+    """Return a place as the line of a file, or with its path if it is in another file than `path`."""
+    if location.file == path:
+        return phrase("line {line}", line=location.line)
+    return f"{location.file}:{location.line}"
+
+
+def format_alike(paths: Sequence[str]) -> Phrase | None:
+    """Return the line for other files with the same changes, or None if there are none."""
+    if not paths:
+        return None
+    return counted(
+        "the same in one more file: {paths}",
+        "the same in {count} more files: {paths}",
+        len(paths),
+        paths=format_paths(paths),
+    )
+
+
+def format_code_heading(count: int) -> Phrase:
+    """Return the heading of the section about sources of which only the code changed."""
+    return counted("Only code changed in {count} source", "Only code changed in {count} sources", count)
+
+
+def list_other_files(review: Review) -> list[tuple[str, Phrase | None]]:
+    """Return the paths and states of the files that were not compared.
+
+    Several files of a folder are listed as one.
+    """
+    lines: list[tuple[str, Phrase | None]] = []
+    for path, count, state in group_files(review.other_files, review.file_states):
+        if count > 1 and state is not None:
+            state = phrase("{count} files, {state}", count=count, state=state)
+        lines.append((path, state))
+    return lines

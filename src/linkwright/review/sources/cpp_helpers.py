@@ -1,0 +1,164 @@
+"""Find the functions of C++ sources that make a topic, service, action or parameter from a name that they are given."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from linkwright.review.sources.cpp_calls import Call, find_calls
+from linkwright.review.sources.cpp_text import find_arguments, find_closing_bracket
+from linkwright.review.sources.cpp_values import TEXT
+from linkwright.review.sources.names import NameKind
+
+_SUFFIX = r"\s*(?:const|noexcept|mutable|override|final|\s)*(?:->[^;{}()]*)?\{"
+_DEFINITION = re.compile(
+    r"\b(?P<lambda>\w+)\s*=\s*\[[^\[\]]*\]\s*(?=\()|[\w:>&*]\s+[&*]?(?:\w+(?:<[^<>()]*>)?::)*(?P<name>[A-Za-z_]\w*)\s*(?=\()"
+)
+_STRING = re.compile(
+    r"\s*(?:const\s+)?(?:(?:std::)?string(?:_view)?|char)\s*(?:const\s*)?[&*]*\s*(?P<name>\w+)\s*(?:=.*)?", re.DOTALL
+)
+_PARAMETER = re.compile(r".*?\b(?P<name>\w+)\s*(?:=\s*(?P<default>.*?)\s*)?", re.DOTALL)
+_JOINED = r"(?:\"(?P<before>[^\"\\]*)\"\s*\+\s*)?{name}(?:\.c_str\(\))?(?:\s*\+\s*\"(?P<after>[^\"\\]*)\")?"
+_TEMPLATE = re.compile(r"\btemplate\s*<(?P<names>[^;{}()]*)>[^;{}()]*\Z")
+_MAX_HEAD_CHARACTERS = 300
+_TEMPLATE_NAMES = re.compile(r"\b(?:typename|class)\s+(\w+)")
+_NO_FUNCTIONS = frozenset({"if", "for", "while", "switch", "return", "catch", "else", "new", "delete", "throw"})
+_KINDS_OF_NAMES = frozenset(
+    {
+        *(NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT),
+        *(NameKind.ACTION, NameKind.ACTION_CLIENT, NameKind.PARAMETER),
+    }
+)
+
+
+class Helper(NamedTuple):
+    """A function or lambda that passes one of its parameters as a name.
+
+    Attributes:
+        name: the name of the function.
+        is_lambda: whether it is a lambda.
+        position: the index of the parameter with the name.
+        call: the call inside of it that takes the name.
+        before: the text that it puts before the name.
+        after: the text that it puts behind the name.
+        arguments: the texts of the other arguments of that call.
+        parameters: the names of all parameters.
+        defaults: the defaults of all parameters; empty for those without one.
+        templates: the names of its template parameters.
+        start: the offset of its name in its definition.
+        end: the offset of the end of its body.
+    """
+
+    name: str
+    is_lambda: bool
+    position: int
+    call: Call
+    before: str
+    after: str
+    arguments: tuple[str, ...]
+    parameters: tuple[str, ...]
+    defaults: tuple[str, ...]
+    templates: tuple[str, ...]
+    start: int
+    end: int
+
+
+class HelperUse(NamedTuple):
+    """A call of a helper with a literal name.
+
+    Attributes:
+        call: the call inside of the helper, with the type that this call of the helper gives.
+        name: the name, with the texts that the helper puts around it.
+        begin: the offset of the argument with the name.
+        end: the end of that argument.
+        arguments: the texts of the arguments of the inner call behind its name.
+    """
+
+    call: Call
+    name: str
+    begin: int
+    end: int
+    arguments: list[str]
+
+
+def find_helpers(text: str) -> list[Helper]:
+    """Return the helpers that a C++ source without comments defines.
+
+    Functions that share their name but take the name elsewhere, and parameters that the body sets, are left out.
+    """
+    calls = [call for call in find_calls(text) if call.kind in _KINDS_OF_NAMES and call.arguments]
+    found: list[Helper] = []
+    for match in _DEFINITION.finditer(text) if calls else ():
+        name = match["lambda"] or match["name"]
+        if name not in _NO_FUNCTIONS and name not in {call.function for call in calls}:
+            found += _read_helper(text, match, name, calls)
+    return [
+        item for item in found if all(item.position == other.position for other in found if other.name == item.name)
+    ]
+
+
+def _read_helper(text: str, match: re.Match[str], name: str, calls: Sequence[Call]) -> Iterator[Helper]:
+    texts = [text[begin:end] for begin, end in find_arguments(text, match.end())]
+    strings = {index: found["name"] for index, item in enumerate(texts) if (found := _STRING.fullmatch(item))}
+    if not strings:
+        return
+    opening = re.compile(_SUFFIX).match(text, find_closing_bracket(text, match.end()) + 1)
+    if opening is None:
+        return
+    end = find_closing_bracket(text, opening.end() - 1)
+    parameters = [_PARAMETER.fullmatch(item) for item in texts]
+    names = tuple("" if item is None else item["name"] for item in parameters)
+    defaults = tuple("" if item is None else item["default"] or "" for item in parameters)
+    template = _TEMPLATE.search(text, max(0, match.start() - _MAX_HEAD_CHARACTERS), match.start())
+    templates = () if template is None else tuple(_TEMPLATE_NAMES.findall(template["names"]))
+    start = match.start("lambda" if match["lambda"] else "name")
+    for call in calls:
+        if not opening.end() <= call.start < end:
+            continue
+        given = text[slice(*call.arguments[0])].strip()
+        others = tuple(text[slice(*argument)].strip() for argument in call.arguments[1:])
+        for index, string in strings.items():
+            joined = re.fullmatch(_JOINED.format(name=re.escape(string)), given)
+            if joined is None or re.search(rf"\b{string}\s*\+?=(?!=)", text[opening.end() : end]):
+                continue
+            before, after = joined["before"] or "", joined["after"] or ""
+            is_lambda = match["lambda"] is not None
+            yield Helper(name, is_lambda, index, call, before, after, others, names, defaults, templates, start, end)
+
+
+def find_helper_uses(text: str, helpers: Sequence[Helper], *, is_own: bool) -> Iterator[HelperUse]:
+    """Yield the calls of helpers with literal names in a C++ source without comments.
+
+    Args:
+        text: the source.
+        helpers: the helpers that it or a header defines.
+        is_own: whether the source itself defines them.
+    """
+    for helper in helpers:
+        pattern = re.compile(
+            rf"(?P<receiver>(?:->|\.)\s*)?\b{helper.name}\s*(?P<types><(?:[^<>;(){{}}]|<[^<>;(){{}}]*>)*>\s*)?(?=\()"
+        )
+        for match in pattern.finditer(text):
+            is_of_other = match["receiver"] and not re.search(r"\bthis\s*$", text[: match.start()][-20:])
+            if is_of_other or (is_own and helper.start == match.start()):
+                continue
+            arguments = list(find_arguments(text, match.end()))
+            if not helper.position < len(arguments) <= len(helper.parameters):
+                continue
+            begin, end = arguments[helper.position]
+            literal = TEXT.fullmatch(text[begin:end])
+            if literal is not None and literal["text"]:
+                values = dict(zip(helper.parameters, helper.defaults, strict=True))
+                values.update(
+                    (name, text[slice(*argument)].strip())
+                    for name, argument in zip(helper.parameters, arguments, strict=False)
+                )
+                types = [item.strip() for item in (match["types"] or "").strip()[1:-1].split(",")]
+                given = dict(zip(helper.templates, types, strict=False))
+                type_name = given.get(
+                    helper.call.type, "" if helper.call.type in helper.templates else helper.call.type
+                )
+                texts = [values.get(item, item) for item in helper.arguments]
+                name = f"{helper.before}{literal['text']}{helper.after}"
+                yield HelperUse(helper.call._replace(type=type_name), name, begin, end, texts)

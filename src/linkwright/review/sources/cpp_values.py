@@ -1,0 +1,107 @@
+"""Read the literals of C++ sources: constants, and the initial values of members and variables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+
+TEXT = re.compile(r'\s*(?:(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"\s*\)?\s*')
+VARIABLE = re.compile(r"\s*(?:\w+::)*(?P<name>\w+)\s*(?:\.c_str\(\))?\s*")
+_LITERAL = re.compile(r'\s*(-?[\d.]+(?:e-?\d+)?f?|true|false|"[^"\\]*"|(?:std::)?string\((?P<text>"[^"\\]*")\))\s*')
+_WRAPPED = re.compile(r"\s*(?:rclcpp::)?ParameterValue\s*\((?P<value>.*)\)\s*", re.DOTALL)
+_CONSTANT = re.compile(
+    r"(?:\b(?:string|char|auto|string_view)\b[\s*&const]*\b(?P<name>\w+)\s*(?:\[\s*\])?\s*(?:=|(?P<open>[({]))"
+    r'\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;)'
+    r'|#\s*define\s+(?P<macro>\w+)[ \t]+\(?"(?P<value>[^"\\]*)"'
+)
+_TYPE = r"\b(?:double|float|int|bool|auto|size_t|u?int(?:8|16|32|64)_t|unsigned|long|short|string)"
+_VALUE = r"(?P<value>-?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")"
+_DECLARED = re.compile(rf"{_TYPE}\s+(?P<names>\w+(?:\s*,\s*\w+)*)\s*(?=[;={{])")
+"""A declaration of members or variables, with or without a value."""
+_INITIAL = re.compile(rf"{_TYPE}\s+(?P<name>\w+)\s*(?:=\s*|\{{\s*){_VALUE}\s*\}}?\s*;")
+_INITIALIZED = re.compile(rf"(?<=[:,])\s*(?P<name>\w+)\s*(?:\(\s*|\{{\s*){_VALUE}\s*[)}}]\s*(?=[,{{])")
+"""An entry of the initializer list of a constructor."""
+_MEMBER = re.compile(r"\s*(?:\*?this\s*->\s*)?(?:\w+\s*(?:\.|->)\s*)*(?P<name>[A-Za-z_]\w*)\s*")
+_READ = r"\w*[pP]aram\w*\s*(?:<[^<>;()]*>)?\s*\("
+
+
+def parse_literal(text: str) -> str | None:
+    """Return the literal in an argument, such as ``10.0`` or ``"map"`` with its quotation marks; None for others."""
+    wrapped = _WRAPPED.fullmatch(text)
+    value = _LITERAL.fullmatch(wrapped["value"] if wrapped else text)
+    return None if value is None else value["text"] or value[1]
+
+
+def find_constants(text: str) -> Mapping[str, str]:
+    """Return the texts of constants and of variables assigned once, by name."""
+    constants: dict[str, str] = {}
+    for match in _CONSTANT.finditer(text):
+        name = match["name"] or match["macro"]
+        assignment_count = len(re.findall(rf"\b{name}\b\s*(?:\[\s*\])?\s*=(?!=)", text))
+        is_read = match["macro"] is None and _is_output(text, name)
+        if assignment_count <= 1 and not is_read and name not in constants:
+            constants[name] = match["text"] if match["macro"] is None else match["value"]
+    return constants
+
+
+def _is_output(text: str, name: str) -> bool:
+    """Return whether a call that reads a parameter or another value may write a variable."""
+    output = rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b"
+    return re.search(output, text) is not None
+
+
+class InitialValues:
+    """The literals with which a C++ source initializes members and variables.
+
+    Names with several values are left out. An entry of an initializer list replaces the value of a declaration.
+
+    Args:
+        text: the source without comments.
+        headers: the texts of the headers that may declare members of its classes.
+    """
+
+    def __init__(self, text: str, headers: Sequence[str]) -> None:
+        self._text = text
+        declared, initial, listed = set[str](), dict[str, set[str]](), dict[str, set[str]]()
+        for source in (*headers, text):
+            declared |= {name for match in _DECLARED.finditer(source) for name in re.findall(r"\w+", match["names"])}
+            for match in _INITIAL.finditer(source):
+                initial.setdefault(match["name"], set()).add(match["value"])
+            for match in _INITIALIZED.finditer(source):
+                listed.setdefault(match["name"], set()).add(match["value"])
+        values = initial | {name: found for name, found in listed.items() if name in declared}
+        self._values = {name: next(iter(found)) for name, found in values.items() if len(found) == 1}
+
+    def find_default(self, expression: str, position: int) -> str | None:
+        """Return the literal that a member has where a call passes it, or None if it is unknown.
+
+        Args:
+            expression: the argument of the call, such as ``rate_`` or ``params.rate``.
+            position: the offset of the call.
+        """
+        match = _MEMBER.fullmatch(expression)
+        value = None if match is None else self._values.get(match["name"])
+        if match is None or value is None:
+            return None
+        start = max(self._text.rfind(mark, 0, position) for mark in ";{}") + 1
+        name = re.escape(match["name"])
+        assigned = re.compile(rf"(?<!\w){name}\s*(?:[-+*/|&]?=(?!=))(?!\s*{re.escape(value)}\s*;)|>>\s*{name}\b")
+        read = re.compile(rf"\b{_READ}[^;()]*[,&.>\s]{name}\s*[,)]")
+        is_changed = any(pattern.search(self._text, 0, start) for pattern in (assigned, read))
+        return None if is_changed else value
+
+    def find_text(self, name: str) -> str | None:
+        """Return the text with which a member is initialized and that nothing else sets; None for others."""
+        value = self._values.get(name, "")
+        if not value.startswith('"') or _is_output(self._text, name):
+            return None
+        is_assigned = re.search(rf"(?<![\w\"]){name}\s*\+?=(?!=)(?!\s*{re.escape(value)}\s*;)", self._text)
+        return None if is_assigned else value[1:-1]
+
+
+def read_initial_values(text: str) -> dict[str, str]:
+    """Return the literals with which a header initializes members. Names with several values are left out."""
+    values: dict[str, set[str]] = {}
+    for match in _INITIAL.finditer(text):
+        values.setdefault(match["name"], set()).add(match["value"])
+    return {name: next(iter(found)) for name, found in values.items() if len(found) == 1}

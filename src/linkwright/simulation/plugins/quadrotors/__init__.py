@@ -1,0 +1,1 @@
+"""Quadrotors that fly without rotors."""

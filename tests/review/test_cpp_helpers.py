@@ -1,0 +1,94 @@
+"""The lines of a review about names that C++ sources give to functions of their own or of other libraries."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import sentences
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+HEADER = """class Arm : public rclcpp::Node {
+ public:
+  template <typename Message>
+  void publish_on(const std::string & topic, std::shared_ptr<rclcpp::Publisher<Message>> & out, int depth = 10) {
+    out = create_publisher<Message>("~/" + topic, depth);
+  }
+};
+"""
+SOURCE = """#include "arm/arm.hpp"
+double Arm::read(std::string_view name, double value) { return declare_parameter<double>(name, value); }
+void Arm::listen(const std::string & topic) {
+  sub_ = create_subscription<std_msgs::msg::Bool>(topic, 10, std::bind(&Arm::on_flag, this, _1));
+}
+void Arm::look(std::string topic) {
+  topic = prefix_ + topic;
+  look_ = create_subscription<std_msgs::msg::Bool>(topic, 10, on_look);
+}
+Arm::Arm() {
+  publish_on<std_msgs::msg::String>("state", state_);
+  gain_ = read("gain", 1.0);
+  this->listen("flag");
+  other_.listen("else");
+  look("scene");
+  auto serve = [this](const std::string & name) { return create_service<std_srvs::srv::Trigger>(name, f); };
+  home_ = serve("home");
+}
+"""
+
+
+def review_source(repository, compare, old, new):
+    files = {"arm/include/arm/arm.hpp": HEADER, "arm/src/arm.cpp": SOURCE}
+    repository.commit({**MANIFEST, **files})
+    assert any(old in text for text in files.values())
+    repository.write({path: text.replace(old, new) for path, text in files.items()})
+    return [sentence for found in compare(repository).subjects for sentence in sentences(found)]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('"state"', '"status"', ["publisher '~/state' (String) renamed to '~/status' (String)"]),
+        ('"state", state_', '"state", state_, 1', ["publisher '~/state': QoS 10 -> 1"]),
+        ('("gain", 1.0)', '("gain", 2.0)', ["parameter 'gain': default 1.0 -> 2.0"]),
+        ('"gain"', '"kp"', ["parameter 'gain' (1.0) renamed to 'kp' (1.0)"]),
+        ('"flag"', '"flags"', ["subscription 'flag' (Bool) renamed to 'flags' (Bool)"]),
+        ('"home"', '"homes"', ["service 'home' (Trigger) renamed to 'homes' (Trigger)"]),
+    ],
+)
+def test_a_helper_makes_the_name_that_its_caller_gives(repository, compare, old, new, expected):
+    assert review_source(repository, compare, old, new) == expected
+
+
+@pytest.mark.parametrize("name", ["else", "scene"])
+def test_a_call_of_another_object_or_of_a_helper_that_edits_the_name_is_only_a_value(repository, compare, name):
+    (line,) = review_source(repository, compare, f'"{name}"', f'"{name}s"')
+    assert line.startswith("values in Arm::Arm: ")
+
+
+SWRI = """#include <swri_roscpp/swri_roscpp.h>
+void Arm::init() {
+  swri::param(pnh_, "rate", rate_, 10.0);
+  sub_ = swri::Subscriber(nh_, "command", 1, &Arm::on_command, this);
+  pub_ = swri::advertise<std_msgs::String>(nh_, "state", 1);
+  image_ = image_transport::create_publisher(this, "image", qos);
+  server_ = swri::ServiceServer(nh_, "reset", &Arm::reset, this);
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("10.0", "20.0", "parameter 'rate': default 10.0 -> 20.0"),
+        ('"command"', '"commands"', "subscription 'command' renamed to 'commands'"),
+        ('"state"', '"states"', "publisher 'state' (String) renamed to 'states' (String)"),
+        ('"image"', '"images"', "publisher 'image' renamed to 'images'"),
+        ('"reset"', '"resets"', "service 'reset' renamed to 'resets'"),
+    ],
+)
+def test_a_function_of_another_library_has_the_node_before_the_name(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": SWRI})
+    repository.write({"arm/src/arm.cpp": SWRI.replace(old, new)})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == [expected]

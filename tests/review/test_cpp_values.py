@@ -1,0 +1,63 @@
+"""The lines of a review about initial values of C++ members that are names or defaults of parameters."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import sentences, subject
+
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+HEADER = """struct Limits { double speed{1.5}; int count = 3; };
+class Arm : public rclcpp::Node {
+  double rate_{10.0};
+  bool is_slow_ = true;
+  int depth_;
+  double width_{0.5};
+  std::string topic_{"state"};
+  std::string read_{"scan"};
+  Limits limits_;
+};
+"""
+SOURCE = """#include "arm/arm.hpp"
+Arm::Arm() : Node("arm"), depth_(4) {
+  rate_ = declare_parameter("rate", rate_);
+  nh_.param("is_slow", is_slow_, is_slow_);
+  declare_parameter("depth", depth_);
+  declare_parameter("speed", limits_.speed);
+  width_ = compute();
+  declare_parameter("width", width_);
+  create_publisher<std_msgs::msg::String>(topic_, 10);
+  get_parameter("read", read_);
+  create_publisher<std_msgs::msg::String>(read_, 10);
+}
+"""
+FILES = {"arm/include/arm/arm.hpp": HEADER, "arm/src/arm.cpp": SOURCE}
+
+
+def review_source(repository, compare, old, new):
+    repository.commit({**MANIFEST, **FILES})
+    assert sum(old in text for text in FILES.values()) == 1
+    repository.write({path: text.replace(old, new) for path, text in FILES.items()})
+    return compare(repository)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("{10.0}", "{20.0}", "parameter 'rate': default 10.0 -> 20.0"),
+        ("= true", "= false", "parameter 'is_slow': default true -> false"),
+        ("depth_(4)", "depth_(5)", "parameter 'depth': default 4 -> 5"),
+        ("{1.5}", "{2.5}", "parameter 'speed': default 1.5 -> 2.5"),
+        ('"state"', '"status"', "publisher 'state' (String) renamed to 'status' (String)"),
+    ],
+)
+def test_the_initial_value_of_a_member_is_a_default_or_a_name(repository, compare, old, new, expected):
+    result = review_source(repository, compare, old, new)
+    assert sentences(subject(result, "arm/src/arm.cpp")) == [expected]
+
+
+@pytest.mark.parametrize(("old", "new"), [("{0.5}", "{0.7}"), ('"scan"', '"scans"')])
+def test_a_member_that_the_source_sets_before_its_use_is_only_a_value(repository, compare, old, new):
+    (found,) = review_source(repository, compare, old, new).subjects
+    assert found.path == "arm/include/arm/arm.hpp"

@@ -1,0 +1,120 @@
+"""The lines of a review about launch files of all formats that name missing files, and about tests of ROS 1."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+CMAKE = """cmake_minimum_required(VERSION 3.8)
+project(arm)
+install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})
+"""
+XML = '<launch><node pkg="a" exec="b"><param from="$(find-pkg-share arm)/config/arm.yaml"/></node></launch>\n'
+ROS1 = '<launch><rosparam file="$(find arm)/config/arm.yaml"/></launch>\n'
+YAML = 'launch:\n- node: {pkg: a, exec: b, param: [{from: "$(find-pkg-share arm)/config/arm.yaml"}]}\n'
+PYTHON = """from launch import LaunchDescription
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+from launch.substitutions import PathJoinSubstitution
+
+
+def generate_launch_description():
+    file = PathJoinSubstitution([FindPackageShare("arm"), "config", "arm.yaml"])
+    return LaunchDescription([Node(package="a", executable="b", parameters=[file])])
+"""
+FILES = {
+    "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    "arm/CMakeLists.txt": CMAKE,
+    "arm/config/arm.yaml": "a: 1\n",
+}
+FORMATS = [
+    ("arm.launch.xml", XML), ("included.xml", XML), ("arm.launch", ROS1), ("arm.test", ROS1),
+    ("arm_launch.yaml", YAML), ("included.yaml", YAML),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "text"), [*FORMATS, ("arm.launch.py", PYTHON), ("simulation.py", PYTHON)])
+@pytest.mark.parametrize("new_name", [None, "arm/config/robot.yaml"])
+def test_launch_file_of_any_format_that_names_a_lost_file_is_told(repository, compare, name, text, new_name):
+    repository.commit({**FILES, f"arm/launch/{name}": text})
+    repository.write({"arm/config/arm.yaml": None, **({new_name: "a: 1\n"} if new_name else {})})
+    found = sentences(subject(compare(repository), f"arm/launch/{name}"))
+    assert found == ["names 'config/arm.yaml' of 'arm', which no longer exists"]
+
+
+@pytest.mark.parametrize(("name", "text"), FORMATS)
+def test_launch_file_that_newly_names_a_missing_file_is_breaking(repository, compare, name, text):
+    repository.commit({**FILES, f"arm/launch/{name}": text})
+    repository.write({f"arm/launch/{name}": text.replace("arm.yaml", "robot.yaml")})
+    assert breaking(compare(repository)) == ["names 'config/robot.yaml' of 'arm', which does not exist"]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"arm/config/robot.yaml": "a: 1\n"},
+        {"arm/CMakeLists.txt": CMAKE + "configure_file(a.in config/robot.yaml)\n"},
+        {".gitignore": "robot.yaml\n"},
+        {"arm/launch/arm.launch.xml": XML.replace("arm.yaml", "$(env NAME x).yaml")},
+        {"arm/launch/arm.launch.xml": XML.replace("<node", '<!-- "$(find-pkg-share arm)/config/x.yaml" --><node')},
+    ],
+)
+def test_file_that_may_exist_is_not_told(repository, compare, changes):
+    new = XML.replace("arm.yaml", "robot.yaml")
+    repository.commit({**FILES, "arm/launch/arm.launch.xml": XML})
+    repository.write({"arm/launch/arm.launch.xml": new, **changes})
+    assert breaking(compare(repository)) == []
+
+
+TEST = """<launch>
+  <node pkg="arm" type="driver" name="driver"/>
+  <test test-name="rate" pkg="rostest" type="hztest" name="rate" time-limit="60"><param name="hz" value="5"/></test>
+</launch>
+"""
+
+
+@pytest.mark.parametrize("path", ["arm/test/arm.test", "arm/launch/arm.launch"])
+def test_tests_of_ros1_are_compared_like_nodes(repository, compare, path):
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: TEST})
+    repository.write({path: TEST.replace('value="5"', 'value="6"').replace('"60"', '"90"')})
+    result = compare(repository)
+    expected = ["test 'rostest/hztest': time-limit 60 -> 90", "test 'rostest/hztest': parameter hz 5 -> 6"]
+    assert sentences(subject(result, path)) == expected
+    assert breaking(result) == []
+
+
+@pytest.mark.parametrize("is_added", [True, False])
+def test_added_and_removed_files_of_tests_are_shown_with_their_actions(repository, compare, is_added):
+    repository.commit({"arm/package.xml": PACKAGE_XML, **({} if is_added else {"arm/test/arm.test": TEST})})
+    repository.write({"arm/test/arm.test": TEST if is_added else None})
+    result = compare(repository)
+    (sentence,) = sentences(subject(result, "arm/test/arm.test"))
+    test = "test 'rostest/hztest' (name rate, parameter hz 5, test-name rate, time-limit 60)"
+    assert sentence == f"test {'added' if is_added else 'removed'}: node 'arm/driver' (name driver), {test}"
+    assert breaking(result) == []
+
+
+def test_node_that_a_test_no_longer_starts_is_not_breaking(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/test/arm.test": TEST})
+    repository.write({"arm/test/arm.test": TEST.replace('  <node pkg="arm" type="driver" name="driver"/>\n', "")})
+    result = compare(repository)
+    assert sentences(subject(result, "arm/test/arm.test")) == ["node 'arm/driver' removed: name driver"]
+    assert breaking(result) == []
+
+
+HELPER = """from launch_ros.actions import Node
+
+
+def make():
+    return Node(package="a", executable="b")
+"""
+
+
+@pytest.mark.parametrize(("text", "kind"), [(PYTHON, "launch file"), (HELPER, "functions for launch files")])
+def test_python_file_with_a_launch_description_is_a_launch_file_whatever_its_name(repository, compare, text, kind):
+    repository.commit({**FILES, "arm/launch/simulation.py": text})
+    repository.write({"arm/launch/simulation.py": None})
+    (sentence,) = sentences(subject(compare(repository), "arm/launch/simulation.py"))
+    assert sentence == f"{kind} removed"

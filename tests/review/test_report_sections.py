@@ -1,0 +1,210 @@
+"""Reports tell each fact once, the most important first, in lines that a reader can take in."""
+
+from __future__ import annotations
+
+import html
+import re
+
+from linkwright.diagnostics import phrase
+from linkwright.review import Change, Effect, Review, Subject, SubjectKind
+from linkwright.review.changes import Location
+from linkwright.review.reports import as_data, as_html, as_markdown, as_text
+
+
+def make_subject(path, changes, kind=SubjectKind.LAUNCH_FILE):
+    return Subject(kind, path, path, path, changes)
+
+
+def make_code_change(name, path="src/a.cpp"):
+    sentence = phrase("code changed in {names}", names=f"'{name}()'")
+    return Change(sentence, location=Location(path, 3, 1), is_code=True)
+
+
+def read(markdown):
+    """Return the comment as it is shown."""
+    return html.unescape(re.sub("</?code>", "", markdown))
+
+
+def test_robots_come_first_and_code_last():
+    subjects = [
+        make_subject("a/CMakeLists.txt", [Change(phrase("library removed"))], SubjectKind.BUILD),
+        make_subject("a/src/a.cpp", [make_code_change("spin")], SubjectKind.SOURCE),
+        make_subject("a/src/b.cpp", [Change(phrase("topics added"))], SubjectKind.SOURCE),
+        make_subject("a/urdf/a.urdf", [Change(phrase("link added"))], SubjectKind.DESCRIPTION),
+    ]
+    text = as_text(Review("main", "topic", subjects))
+    paths = [line for line in text.splitlines() if line.startswith("a/")]
+    assert paths == ["a/urdf/a.urdf", "a/src/b.cpp", "a/CMakeLists.txt", "a/src/a.cpp"]
+
+
+def test_sources_with_only_other_code_share_a_section():
+    subjects = [
+        make_subject(f"src/{name}.cpp", [make_code_change(name, f"src/{name}.cpp")], SubjectKind.SOURCE)
+        for name in "abc"
+    ]
+    comment = read(as_markdown(Review("main", "topic", subjects)))
+    assert "<details><summary>Only code changed in 3 sources</summary>" in comment
+    assert "- src/b.cpp: code changed in 'b()' (line 3)" in comment
+    assert "####" not in comment
+    assert as_html(Review("main", "topic", subjects)).count("<h2>") == 1
+    assert read(as_markdown(Review("main", "topic", subjects[:2]))).count("#### src/") == 2
+
+
+def test_sentences_that_differ_in_a_name_are_one_line():
+    names = ["robot_ip", "port", "reverse_port", "tool_voltage"]
+    changes = [
+        Change(
+            phrase("argument '{name}' removed", name=name),
+            Effect.BREAKING,
+            phrase("a value that a caller passes for '{name}' has no effect", name=name),
+        )
+        for name in names
+    ]
+    comment = read(as_markdown(Review("main", "topic", [make_subject("a.launch.py", changes)])))
+    (line,) = [line for line in comment.splitlines() if "argument" in line]
+    assert line == (
+        "- **argument 'robot_ip' removed; also 'port', 'reverse_port', 'tool_voltage'**: a value that a caller passes "
+        "for 'robot_ip' has no effect; likewise for the others (a.launch.py)"
+    )
+
+
+def test_two_sentences_that_differ_in_a_name_stay_apart():
+    changes = [Change(phrase("argument '{name}' added", name=name)) for name in ("a", "b")]
+    text = as_text(Review("main", "topic", [make_subject("a.launch.py", changes)]))
+    assert "argument 'a' added\n  - argument 'b' added" in text
+
+
+def test_same_part_that_several_files_lose_is_one_breaking_change():
+    subjects = [
+        make_subject(
+            f"config/{robot}.yaml",
+            [
+                Change(
+                    phrase("{parameter} removed: {items}", parameter="dh", items=f"a {robot}"),
+                    Effect.BREAKING,
+                    phrase("programs that read '{name}' from the file do not find it", name="dh"),
+                )
+            ],
+            SubjectKind.PARAMETERS,
+        )
+        for robot in ("ur3", "ur5")
+    ]
+    comment = read(as_markdown(Review("main", "topic", subjects)))
+    assert (
+        "- **dh removed**: programs that read 'dh' from the file do not find it (config/ur3.yaml, config/ur5.yaml)"
+        in comment
+    )
+    page = html.unescape(as_html(Review("main", "topic", subjects)))
+    assert "dh removed: a ur3" in page
+    assert "dh removed: a ur5" in page
+
+
+def test_breaking_change_with_different_arguments_is_listed_once():
+    reason = phrase("controllers no longer keep '{name}' within limits", name="wrist")
+    subjects = [
+        Subject(
+            SubjectKind.DESCRIPTION,
+            path,
+            path,
+            path,
+            [Change(phrase("joint '{name}' changed", name="wrist"), Effect.BREAKING, reason, cases=cases)],
+            cases=("type:=a", "type:=b"),
+        )
+        for path, cases in (("a.urdf.xacro", ("type:=a",)), ("b.urdf.xacro", ("type:=a", "type:=b")))
+    ]
+    comment = read(as_markdown(Review("main", "topic", subjects)))
+    assert comment.count("joint 'wrist' changed") == 1
+    assert "(a.urdf.xacro, b.urdf.xacro)" in comment
+
+
+def test_changes_in_common_with_an_earlier_file_are_counted():
+    common = [Change(phrase("speed 1 -> 2")), Change(phrase("gain 3 -> 4"))]
+    subjects = [
+        make_subject("a.yaml", [*common, Change(phrase("rate 5 -> 6"))], SubjectKind.PARAMETERS),
+        make_subject("b.yaml", [*common, Change(phrase("rate 7 -> 8"))], SubjectKind.PARAMETERS),
+        make_subject("c.yaml", [common[0], Change(phrase("rate 9 -> 10"))], SubjectKind.PARAMETERS),
+    ]
+    review = Review("main", "topic", subjects)
+    text = as_text(review)
+    assert "b.yaml\n  - rate 7 -> 8\n  - the same 2 changes as in a.yaml\n" in text
+    assert "c.yaml\n  - speed 1 -> 2\n" in text
+    assert "0 breaking changes, 8 changes" in text
+    assert [len(subject["changes"]) for subject in as_data(review)["subjects"]] == [3, 3, 2]
+
+
+def test_file_with_only_breaking_changes_has_no_section_of_its_own():
+    change = Change(phrase("argument '{name}' removed", name="speed"), Effect.BREAKING, phrase("callers fail"))
+    subjects = [make_subject(path, [change]) for path in ("a.launch.py", "b.launch.py")]
+    comment = read(as_markdown(Review("main", "topic", subjects)))
+    assert "the same in" not in comment
+    assert "#### a.launch.py" not in comment
+    assert "(a.launch.py, b.launch.py)" in comment
+
+
+def test_long_lines_are_cut_and_the_page_and_data_have_the_rest():
+    items = ", ".join(f"parameter p{number} {number}" for number in range(200))
+    review = Review(
+        "main", "topic", [make_subject("a.launch.py", [Change(phrase("node added: {items}", items=items))])]
+    )
+    (line,) = [line for line in read(as_markdown(review)).splitlines() if "node added" in line]
+    assert len(line) < 320
+    assert re.search(r"parameter p\d+ \d+, \.\.\.$", line)
+    assert "p199" not in as_text(review)
+    assert as_data(review)["subjects"][0]["changes"][0]["text"].endswith("p199 199")
+    page = as_html(review)
+    summary, rest = re.search("<details class='long'><summary>(.*?)</summary>(.*?)</details>", page).groups()
+    assert "p199" not in summary
+    assert rest.endswith("p199 199")
+
+
+def test_new_findings_follow_the_breaking_changes(package, compare):
+    path = "arm_description/urdf/bad.urdf"
+    package.commit({path: '<robot name="a"><link name="b"/></robot>'})
+    package.commit({path: '<robot name="a"><link name="b"/><link name="c"/></robot>'})
+    review = compare(package, "HEAD~1..HEAD")
+    comment = as_markdown(review)
+    assert review.new_findings
+    assert comment.index("#### New findings") < comment.index("bad.urdf</code>\n\n-")
+
+
+def test_changes_of_an_action_are_one_line_of_the_comment():
+    entry = phrase("node '{name}'", name="arm/drive")
+    changes = [
+        Change(phrase("{entry}: {change}", entry=entry, change=phrase("parameter {name} added", name=name)))
+        for name in ("speed", "gain")
+    ]
+    review = Review("main", "topic", [make_subject("a.launch.py", changes)])
+    assert "- node 'arm/drive': parameter speed added; parameter gain added\n" in read(as_markdown(review))
+    assert "0 breaking changes, 2 changes" in as_markdown(review)
+
+
+def test_long_types_are_cut_to_their_difference_in_the_comment_only():
+    types = "double, double, const std::string&, unsigned int, unsigned int, boost::shared_ptr<tf::Listener>"
+    values = {"old": f"({types}, int, bool)", "new": f"({types}, long, bool)"}
+    change = Change(phrase("function '{name}': {old} -> {new}", name="f", **values))
+    review = Review("main", "topic", [make_subject("a.hpp", [change], SubjectKind.SOURCE)])
+    (line,) = [line for line in read(as_markdown(review)).splitlines() if "function" in line]
+    assert re.search(r"\.\.\. .*int, bool\) -> \.\.\. .*long, bool\)", line)
+    assert "const std::string" not in line
+    assert values["new"] in html.unescape(as_html(review))
+
+
+def test_many_breaking_changes_are_folded():
+    changes = [
+        Change(
+            phrase("topic '{name}': type {old} -> {new}", name=name, old=name, new="B"), Effect.BREAKING, phrase("x")
+        )
+        for name in map(str, range(20))
+    ]
+    comment = as_markdown(Review("main", "topic", [make_subject("a.cpp", changes, SubjectKind.SOURCE)]))
+    start, rest = comment.split("<details><summary>4 more breaking changes</summary>")
+    assert start.count("- **") == 16
+    assert rest.count("- **") == 4
+
+
+def test_lines_below_a_fold_are_not_part_of_it():
+    """Markdown ends a block of HTML only at an empty line."""
+    changes = [Change(phrase("value {number}", number=number)) for number in range(20)]
+    subjects = [make_subject(path, changes) for path in ("a.yaml", "b.yaml")]
+    comment = as_markdown(Review("main", "topic", subjects))
+    assert "</details>\n\n- the same in one more file: b.yaml" in comment
