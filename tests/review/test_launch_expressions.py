@@ -67,6 +67,7 @@ def test_layout_of_an_expression_is_no_change(review_changes, expression, is_sam
     assert (changes == []) == is_same
 
 
-def test_performed_substitution_is_the_substitution(review_changes):
-    changes, _ = review_changes("arm.launch.py", FILE, '"config/arm.yaml"', 'robot.perform(context), "arm.yaml"')
+@pytest.mark.parametrize("performed", ["robot.perform(context)", "context.perform_substitution(robot)"])
+def test_performed_substitution_is_the_substitution(review_changes, performed):
+    changes, _ = review_changes("arm.launch.py", FILE, '"config/arm.yaml"', f'{performed}, "arm.yaml"')
     assert any("-> [$(find-pkg-share arm)/$(var robot)/arm.yaml]" in change for change in changes), changes

@@ -228,6 +228,17 @@ def test_other_parameter_with_the_same_default_is_not_a_renamed_one(package, com
     assert "macro 'segment': parameter color removed" in breaking(compare(package))
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "is_renamed"), [("tool_name", "tool_names", True), ("headless", "force_paths", False)]
+)
+def test_arguments_that_a_call_passes_on_are_renamed_if_their_names_are_alike(package, compare, old, new, is_renamed):
+    argument = '<xacro:arg name="{0}" default="false"/><xacro:camera {0}="$(arg {0})"/></robot>'
+    package.commit({ROBOT: ARM.replace("</robot>", argument.format(old))})
+    package.write({ROBOT: ARM.replace("</robot>", argument.format(new))})
+    found = sentences(subject(compare(package), ROBOT))
+    assert (f"argument '{old}' renamed to '{new}'" in found) is is_renamed
+
+
 CONTROL = """<ros2_control name="arm" type="system"><hardware><plugin>a/B</plugin></hardware>
 <joint name="upper_joint">INTERFACES<state_interface name="position"/></joint></ros2_control>"""
 

@@ -291,6 +291,8 @@ class ExpressionTexts:
             return part(node.func.value)
         if first is None:
             return None
+        if function == "perform_substitution":
+            return part(first)
         if function in _COMPARISON_SUBSTITUTIONS and len(arguments) > 1:
             return f"{part(first)} {_COMPARISON_SUBSTITUTIONS[function]} {part(arguments[1])}"
         if function == "FindExecutable":

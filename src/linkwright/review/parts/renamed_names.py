@@ -3,14 +3,34 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from difflib import SequenceMatcher
+from typing import NamedTuple
 
 from linkwright.xmltree import Element
 
 _MIN_SHARED_FRACTION = 0.5
 """The minimum share of equal uses of a renamed value."""
+_MIN_SIMILARITY = 0.6
+"""The minimum similarity of two names whose values are only passed on by the same name."""
 _EXPRESSION = re.compile(r"\$\{[^}]*\}|\$\(arg [^)]*\)")
 _MARK = "*"
+
+
+class _Use(NamedTuple):
+    """A text or attribute that uses a name.
+
+    Attributes:
+        tag: the tag of the element.
+        key: the name of the attribute, or the mark if the attribute passes the value on by the same name.
+        text: the text, with the mark in place of the name.
+        other_attributes: the other attributes of the element, unless the value is passed on.
+    """
+
+    tag: str
+    key: str
+    text: str
+    other_attributes: frozenset[tuple[str, str]] = frozenset()
 
 
 def find_renamed_names(
@@ -28,7 +48,9 @@ def find_renamed_names(
     for name, default in removed.items():
         uses = set(_find_uses(old, name))
         shares = {
-            other: _compute_shared_fraction(uses, new_uses[other]) for other in new_uses if added[other] == default
+            other: _compute_shared_fraction(uses, new_uses[other])
+            for other in new_uses
+            if added[other] == default and _may_be_renamed(name, other, uses & new_uses[other])
         }
         best = max(shares, key=lambda other: shares[other], default=None)
         if best is not None and shares[best] >= _MIN_SHARED_FRACTION:
@@ -36,11 +58,17 @@ def find_renamed_names(
             yield name, best
 
 
-def _compute_shared_fraction(old: set[Hashable], new: set[Hashable]) -> float:
+def _may_be_renamed(old: str, new: str, shared: set[_Use]) -> bool:
+    """Return whether equal uses mean the same value: all values that a call passes on by their names look alike."""
+    is_only_passed_on = all(use.key == _MARK for use in shared)
+    return not is_only_passed_on or SequenceMatcher(None, old, new, autojunk=False).ratio() >= _MIN_SIMILARITY
+
+
+def _compute_shared_fraction(old: set[_Use], new: set[_Use]) -> float:
     return len(old & new) / len(old | new) if old and new else 0.0
 
 
-def _find_uses(root: Element, name: str) -> Iterator[Hashable]:
+def _find_uses(root: Element, name: str) -> Iterator[_Use]:
     """Yield the texts and attributes that use a name, with a mark in place of the name.
 
     The other attributes of the element are included, unless an attribute passes the value on by the same name.
@@ -52,7 +80,7 @@ def _find_uses(root: Element, name: str) -> Iterator[Hashable]:
             if marked == text:
                 continue
             if key == name and _EXPRESSION.fullmatch(marked):
-                yield element.tag, _MARK, marked
+                yield _Use(element.tag, _MARK, marked)
                 continue
             other_attributes = frozenset(item for item in element.attributes.items() if item[0] != key)
-            yield element.tag, key, marked, other_attributes
+            yield _Use(element.tag, key, marked, other_attributes)
