@@ -184,7 +184,7 @@ def test_constant_that_a_line_names_is_no_other_code(review_lines):
     new = old.replace("RATE = 'fast'\n", "").replace("go(RATE, LIMIT)", "go(LIMIT)")
     assert review_lines({"a/run.py": old}, {"a/run.py": new}) == [
         "constants removed: RATE = 'fast'",
-        "code changed in 'run()'",
+        "values in run: go(RATE, LIMIT) -> go(LIMIT)",
     ]
 
 

@@ -228,10 +228,12 @@ def test_variants_behind_conditions_are_not_taken_for_one_that_changed(library, 
     old = '<link name="${name}_tip"/>'
     plugin = '<ros2_control name="hand" type="system"><hardware>{}</hardware></ros2_control>'
     library.commit({TOOL: GRIPPER.replace(old, plugin.format("<plugin>mock/Hand</plugin>"))})
-    variants = "".join(f'<xacro:if value="${{{name}}}"><plugin>{name}/Hand</plugin></xacro:if>' for name in ("a", "b"))
+    variants = "".join(
+        f"<xacro:if value=\"${{side == '{side}'}}\"><plugin>{side}/Hand</plugin></xacro:if>" for side in ("a", "b")
+    )
     library.write({TOOL: GRIPPER.replace(old, plugin.format(variants))})
     assert sentences(subject(compare(library), TOOL)) == [
-        "macro 'gripper': ros2_control hand hardware plugin a/Hand [if ${a}] added",
+        "macro 'gripper': ros2_control hand hardware plugin a/Hand [if ${side == 'a'}] added",
         "macro 'gripper': ros2_control hand hardware plugin mock/Hand removed",
     ]
 
@@ -278,8 +280,8 @@ SENSOR_BLOCK = '<gazebo reference="${name}">\n      <sensor'
     [
         (SENSOR_BLOCK, f'<gazebo reference="${{name}}"><mu1>1</mu1></gazebo>{SENSOR_BLOCK}',
          ["macro 'gripper': gazebo ${name} mu1 1 added"]),
-        (SENSOR_BLOCK, ('<xacro:if value="${rough}"><gazebo reference="${name}"><mu1>1</mu1></gazebo></xacro:if>'
-                        f"{SENSOR_BLOCK}"), ["macro 'gripper': gazebo ${name} mu1 1 [if ${rough}] added"]),
+        (SENSOR_BLOCK, ('<xacro:if value="${side}"><gazebo reference="${name}"><mu1>1</mu1></gazebo></xacro:if>'
+                        f"{SENSOR_BLOCK}"), ["macro 'gripper': gazebo ${name} mu1 1 [if ${side}] added"]),
     ],
 )  # fmt: skip
 def test_added_block_of_gazebo_leaves_the_other_block_as_it_is(library, compare, old, new, expected):

@@ -60,16 +60,14 @@ def find_argument_difference(old: Statement, new: Statement) -> Iterator[Differe
         _format_call(statement.tokens, call, pairs[opening])
         for statement, call, pairs in zip((old, new), calls, brackets, strict=True)
     )
-    token = new.tokens[opening]
+    token, values = new.tokens[opening], [_format_value(items) for items in changed]
     if all(changed):
         left = [text if len(text) <= _MAX_LEFT_CHARACTERS else "..." for text in arguments[1][:start]]
         items = [*left, f"{arguments[0][start]} -> {arguments[1][start]}", *(["..."] if end else [])]
-        yield Difference(f"{after[: after.index('(') + 1]}{', '.join(items)})", before, after, token)
+        yield Difference(f"{after[: after.index('(') + 1]}{', '.join(items)})", *values, token)
         return
     is_long = max(len(before), len(after)) > _MAX_CHARACTERS
-    yield Difference(
-        " -> ".join(differing_excerpts(before, after) if is_long else (before, after)), before, after, token
-    )
+    yield Difference(" -> ".join(differing_excerpts(before, after) if is_long else (before, after)), *values, token)
 
 
 def _count_equal(old: Sequence[str], new: Sequence[str]) -> int:
@@ -120,6 +118,14 @@ def _list_literals(arguments: Sequence[Sequence[Token]]) -> list[str]:
         for token in argument
         if token.kind in (TokenKind.TEXT, TokenKind.NUMBER) or _CONSTANT.fullmatch(token.text) is not None
     ]
+
+
+def _format_value(arguments: Sequence[Sequence[Token]]) -> str:
+    """Return the value of the only argument without its keyword, or an empty text if there is none."""
+    if not arguments:
+        return ""
+    (tokens,) = arguments
+    return join_tokens(tokens[2:] if [token.text for token in tokens[1:2]] == ["="] else tokens)
 
 
 def _format_call(tokens: Sequence[Token], call: _Call, closing: int) -> str:

@@ -37,6 +37,7 @@ _NAME_MARK = "\1"
 _Mask = Callable[[str], str]
 _COUNTERS = frozenset({"0", "1"})
 """Numbers that also change with the form of a statement, such as in ``i + 1``."""
+_COMPARISONS = frozenset({"<", "<=", ">", ">=", "==", "!="})
 _MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
 _OPTION_SEPARATOR = re.compile(r"(?<=[\w-]),(?=[\w-])")
@@ -194,12 +195,12 @@ def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
 
 
 def _are_in_same_place(old: Sequence[Token], new: Sequence[Token], before: str, after: str) -> bool:
-    """Return whether two numbers follow the same token, so that one can replace the other."""
+    """Return whether two numbers follow the same token or comparison, so that one can replace the other."""
     places = []
     for tokens, text in ((old, before), (new, after)):
         index = next(index for index, token in enumerate(tokens) if token.text == text)
         places.append(tokens[index - 1].text if index else "")
-    return places[0] == places[1]
+    return places[0] == places[1] or _COMPARISONS.issuperset(places)
 
 
 def _is_same_number(old: str, new: str) -> bool:
@@ -230,9 +231,9 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
     old, new = (text.strip("\"'") for text in (item.old, item.new))
     for line in reported:
         before, arrow, after = line.partition(" -> ")
-        if arrow and _has_word(before, old) and _has_word(after, new):
+        if arrow and all(not text or _has_word(side, text) for side, text in ((before, old), (after, new))):
             return True
-        if all(re.search(rf"= {re.escape(text)}(?![\w.])", line) for text in (item.old, item.new)):
+        if all(text and re.search(rf"= {re.escape(text)}(?![\w.])", line) for text in (item.old, item.new)):
             return True  # a removed and an added constant
     if item.new.endswith(("]", ")", "}")):
         texts = set(_QUOTED.findall(item.old)) ^ set(_QUOTED.findall(item.new))

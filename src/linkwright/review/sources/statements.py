@@ -83,13 +83,13 @@ class Literal(NamedTuple):
 
 
 class Difference(NamedTuple):
-    """A literal that differs between two versions of a statement.
+    """A literal or an argument that differs between two versions of a statement.
 
     Attributes:
         text: the difference with the code around it, such as ``self.rate 10 -> 20``.
-        old: the old literal.
-        new: the new literal.
-        token: the first token of the new literal.
+        old: the old literal or argument; empty if an argument was added.
+        new: the new literal or argument; empty if an argument was removed.
+        token: the first token of the new literal, or of the arguments.
     """
 
     text: str
