@@ -50,6 +50,8 @@ REASON = "the costmap no longer gets the messages of '{}'"
             "obstacle_layer:\n  " + ROS1.replace("\n", "\n  ").replace("topic: scan", "topic: front/scan"),
             [None, REASON.format("scan"), None, None],
         ),
+        ("obstacles_layer: {map_topic: /map/fixed}\n", "fixed", "full", [REASON.format("map/fixed")]),
+        ("player: {map_topic: /map/fixed}\n", "fixed", "full", [None]),
         ("planner:\n  ros__parameters:\n    topic: /scan\n", "/scan", "/lidar", [None]),
     ],
 )

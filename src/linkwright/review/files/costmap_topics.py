@@ -12,8 +12,13 @@ from linkwright.review.list_changes import EMPTY, list_items
 
 _SOURCES = "observation_sources"
 """The parameter of an obstacle layer, or of a costmap itself, with the names of its sources."""
-_LAYER_TOPIC = re.compile(r"(?P<costmap>.*costmap[^.]*(?:\.ros__parameters)?)\.(?:.+\.)?(?:map_topic|topics)")
-"""The parameters of static and range layers with the topics that they read."""
+_LAYER_TOPIC = re.compile(
+    r"(?:(?P<costmap>.*costmap[^.]*(?:\.ros__parameters)?)\.(?:.+\.)?|(?:[^.]*_)?layer(?:_[^.]*)?\.)(?:map_topic|topics)"
+)
+"""The parameters of static and range layers with the topics that they read.
+
+A file that only has the layers, as for ROS 1, belongs to one costmap.
+"""
 
 
 class CostmapTopics:
@@ -69,7 +74,7 @@ def _list_topics(values: Mapping[str, YamlValue]) -> Iterator[tuple[str, str, st
         match = _LAYER_TOPIC.fullmatch(name)
         for topic_name in list_items(value.text) if match is not None else ():
             if match is not None and topic_name not in ("", EMPTY):
-                yield name, match["costmap"], topic_name.strip("/")
+                yield name, match["costmap"] or "", topic_name.strip("/")
 
 
 def _find_owner(values: Mapping[str, YamlValue], layer: str, source: str) -> str | None:
