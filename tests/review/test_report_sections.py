@@ -5,6 +5,8 @@ from __future__ import annotations
 import html
 import re
 
+import pytest
+
 from linkwright.diagnostics import phrase
 from linkwright.review import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.changes import Location
@@ -35,6 +37,14 @@ def test_robots_come_first_and_code_last():
     text = as_text(Review("main", "topic", subjects))
     paths = [line for line in text.splitlines() if line.startswith("a/")]
     assert paths == ["a/urdf/a.urdf", "a/src/b.cpp", "a/CMakeLists.txt", "a/src/a.cpp"]
+
+
+@pytest.mark.parametrize("kind", SubjectKind)
+def test_each_kind_of_file_has_a_section(kind):
+    review = Review("main", "topic", [make_subject("a/file", [Change(phrase("link added"))], kind)])
+    for report in (as_text(review), read(as_markdown(review)), as_html(review)):
+        assert "a/file" in report
+        assert "link added" in report
 
 
 def test_sources_with_only_other_code_share_a_section():

@@ -27,26 +27,29 @@ class Effect(Enum):
 
 
 class SubjectKind(Enum):
-    """The kind of a reviewed file."""
+    """The kind of a reviewed file.
 
+    Reports have this order: robots first, then programs, then the files that build and install them.
+    """
+
+    SCENARIO = "scenario"
     DESCRIPTION = "description"
     WORLD = "world"
     TEMPLATE = "template of a model or world"
+    PART = "part of descriptions"
+    SEMANTICS = "semantic description"
+    MESH = "mesh"
+    INTERFACE = "interface"
     LAUNCH_FILE = "launch file"
+    BEHAVIOR_TREE = "behavior tree"
     PARAMETERS = "parameter file"
     MAP = "map"
-    INTERFACE = "interface"
-    MANIFEST = "package manifest"
-    BUILD = "build file"
-    DEPENDENCIES = "list of dependencies"
-    RVIZ = "RViz configuration"
-    MESH = "mesh"
-    SCENARIO = "scenario"
-    SEMANTICS = "semantic description"
-    BEHAVIOR_TREE = "behavior tree"
-    PART = "part of descriptions"
-    PLUGINS = "plugin description"
     SOURCE = "node source"
+    PLUGINS = "plugin description"
+    RVIZ = "RViz configuration"
+    BUILD = "build file"
+    MANIFEST = "package manifest"
+    DEPENDENCIES = "list of dependencies"
 
 
 class PathChange(Enum):

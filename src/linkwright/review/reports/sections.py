@@ -12,19 +12,7 @@ from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKi
 from linkwright.review.merging import merge_reasons
 from linkwright.review.reports.sentences import format_change
 
-_ORDER = {
-    kind: number
-    for number, kind in enumerate(
-        (
-            *(SubjectKind.SCENARIO, SubjectKind.DESCRIPTION, SubjectKind.WORLD, SubjectKind.TEMPLATE),
-            *(SubjectKind.PART, SubjectKind.SEMANTICS, SubjectKind.MESH, SubjectKind.INTERFACE),
-            *(SubjectKind.LAUNCH_FILE, SubjectKind.PARAMETERS, SubjectKind.MAP, SubjectKind.SOURCE),
-            *(SubjectKind.PLUGINS, SubjectKind.RVIZ, SubjectKind.BUILD, SubjectKind.MANIFEST),
-            SubjectKind.DEPENDENCIES,
-        )
-    )
-}
-"""The order of kinds in a report: robots first, then programs, then the files that build and install them."""
+_ORDER = {kind: number for number, kind in enumerate(SubjectKind)}
 _MIN_REPEATED = 2
 """The minimum number of changes that a section replaces by the path of another section with the same changes."""
 _MIN_CODE_SECTIONS = 3
