@@ -60,14 +60,16 @@ def find_argument_difference(old: Statement, new: Statement) -> Iterator[Differe
         _format_call(statement.tokens, call, pairs[opening])
         for statement, call, pairs in zip((old, new), calls, brackets, strict=True)
     )
-    token, values = new.tokens[opening], [_format_value(items) for items in changed]
+    token, old_value, new_value = new.tokens[opening], *map(_format_value, changed)
     if all(changed):
         left = [text if len(text) <= _MAX_LEFT_CHARACTERS else "..." for text in arguments[1][:start]]
         items = [*left, f"{arguments[0][start]} -> {arguments[1][start]}", *(["..."] if end else [])]
-        yield Difference(f"{after[: after.index('(') + 1]}{', '.join(items)})", *values, token)
+        yield Difference(f"{after[: after.index('(') + 1]}{', '.join(items)})", old_value, new_value, token)
         return
     is_long = max(len(before), len(after)) > _MAX_CHARACTERS
-    yield Difference(" -> ".join(differing_excerpts(before, after) if is_long else (before, after)), *values, token)
+    yield Difference(
+        " -> ".join(differing_excerpts(before, after) if is_long else (before, after)), old_value, new_value, token
+    )
 
 
 def _count_equal(old: Sequence[str], new: Sequence[str]) -> int:

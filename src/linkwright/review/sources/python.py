@@ -421,9 +421,9 @@ class _Reader:
             self._read_getopt(call)
         elif reads_parameter(function):
             self._read_helper_call(call)
-            name = self._python.text(_get_argument(call, 0, "name")) if function == "get_parameter" else None
-            if name is not None:
-                self._names.parameter_reads.setdefault(name, []).append(call.lineno)
+            parameter = self._python.text(_get_argument(call, 0, "name")) if function == "get_parameter" else None
+            if parameter is not None:
+                self._names.parameter_reads.setdefault(parameter, []).append(call.lineno)
 
     def _read_helper_call(self, call: ast.Call) -> None:
         """Add the parameter that a function of the repository reads.
