@@ -80,14 +80,12 @@ def _is_missing(version: Version, package: str, subpath: str) -> bool:
         return False
     path = PurePosixPath(owner.folder) / subpath
     is_unknown = version.commit is not None and bool(version.commit.removed_links or version.commit.missing_files)
-    ignored = "\n".join(map(version.text, (".gitignore", f"{owner.folder}/.gitignore")))
-    parts = {*path.parts, path.suffix} - {"", "launch", "config", "urdf"}
     return (
         not owner.may_generate
         and owner.facts is not None
         and path.name not in owner.build_text
         and not is_unknown
-        and not any(part in ignored for part in parts)
+        and not version.ignores(path.as_posix())
     )
 
 
