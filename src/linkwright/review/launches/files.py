@@ -87,7 +87,7 @@ def compare_launch_files(pair: FilePair) -> None:
     new_paths = {
         file.old_path: file.new_path for file in pair.versions.changed_files if file.old_path and file.new_path
     }
-    replaced = find_replacements(removed, added, new_paths)
+    replaced = find_replacements(removed, added, new_paths, (old, new))
     for old_entry, new_entry in replaced:
         _report_replaced(pair, rename_in_entry(old_entry, old_names), new_entry, outlines)
         settings.compare(old_entry, new_entry)
