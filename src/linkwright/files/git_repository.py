@@ -252,7 +252,7 @@ class GitRepository:
         raise LinkwrightError(Diagnostic("CLI345", message))
 
     def ignores(self, path: str, folder: Path) -> bool:
-        """Return whether git ignores a path by the patterns of a version, or cannot say so.
+        """Return whether git ignores a path by the patterns of a version, or whether git cannot tell.
 
         Args:
             path: the path of a file that may be missing, relative to the root.

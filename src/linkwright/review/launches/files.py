@@ -96,7 +96,11 @@ def compare_launch_files(pair: FilePair) -> None:
     removed = [entry for entry in removed if all(entry is not other for other, _ in replaced)]
     added = [entry for entry in added if all(entry is not other for _, other in replaced)]
     _report_undeclared(pair, undeclared, removed)
-    removed = [entry for entry in removed if entry.kind != "argument" or entry.name not in undeclared]
+    removed = [
+        entry
+        for entry in removed
+        if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
+    ]
     report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)])
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)

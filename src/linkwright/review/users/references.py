@@ -24,7 +24,7 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
     """Yield launch files with paths to missing files or refused options, and the changes.
 
     A missing file exists only in the old version, or a changed launch file in XML or YAML names it for the first time.
-    The latter is not breaking in an added launch file, which nobody uses yet.
+    The latter is not breaking in an added launch file, which has no users yet.
     A script does not accept a refused option.
     """
     yield from find_refused_options(versions, changed_files)
@@ -47,7 +47,7 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
                 yield path, _make_change(path, package, subpath, span, is_lost=True)
             elif known is not None and (package, subpath) not in known and _is_missing(versions.new, package, subpath):
                 change = _make_change(path, package, subpath, span, is_lost=False)
-                is_added = changed[path] is None  # nobody uses the file yet
+                is_added = changed[path] is None  # the file has no users yet
                 yield path, replace(change, effect=Effect.CHANGED, reason=None) if is_added else change
 
 
