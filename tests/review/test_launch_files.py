@@ -540,6 +540,25 @@ def test_changed_value_is_quoted_and_not_the_statement_that_uses_it(review_chang
     assert review_changes("arm.launch.py", text, "size = 3", "size = 4") == (["other code: size = 3 -> size = 4"], [])
 
 
+@pytest.mark.parametrize(("default", "is_replaced"), [("", True), ("other", False)])
+def test_node_whose_namespace_becomes_an_argument_with_the_same_default_is_replaced(
+    repository, compare, default, is_replaced
+):
+    node = '<node pkg="lidar" exec="driver" name="lidar" namespace=""/>'
+    component = '<composable_node pkg="lidar" plugin="lidar::Component" name="lidar" namespace="$(var space)"/>'
+    new = (
+        f'<arg name="space" default="{default}"/>'
+        f'<node_container pkg="rclcpp_components" exec="component_container" name="all" namespace="">{component}'
+        "</node_container>"
+    )
+    repository.commit({"arm/launch/arm.launch.xml": f"<launch>{node}</launch>\n"})
+    repository.write({"arm/launch/arm.launch.xml": f"<launch>{new}</launch>\n"})
+    found = sentences(subject(compare(repository), "arm/launch/arm.launch.xml"))
+    replaced = "node 'lidar/driver' replaced by node 'lidar/lidar::Component'"
+    assert (replaced in found) == is_replaced
+    assert any(sentence.startswith("node 'lidar/driver' removed") for sentence in found) != is_replaced
+
+
 def test_node_whose_package_program_and_name_change_is_replaced(review_changes):
     node = 'Node(package="arm_xs_driver", executable="xs_driver_node", name="xs_driver", output="screen"),'
     text = PYTHON.replace("    return LaunchDescription([", f"    return LaunchDescription([\n        {node}")

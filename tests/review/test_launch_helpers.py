@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.review.conftest import sentences
+from tests.review.conftest import breaking, sentences, subject
 
 MIXIN = """from launch_ros.actions import Node
 
@@ -130,3 +130,54 @@ if __name__ == "__main__":
 def test_actions_of_a_file_that_calls_its_own_function_as_a_program_have_no_condition(review_changes):
     changes, found = review_changes("arm.launch.py", LOOP + PROGRAM_GUARD, ', ("arm", "hand")', "")
     assert changes == found == ["node 'arm/hand' removed"]
+
+
+DECLARED = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+base_argument = DeclareLaunchArgument("base")
+
+
+def generate_launch_description():
+    node = Node(package="arm", executable="driver", parameters=[{"base": LaunchConfiguration("base")}])
+    return LaunchDescription([base_argument, node])
+"""
+DECLARATION = 'base_argument = DeclareLaunchArgument("base")'
+MODULE = f"""from launch.actions import DeclareLaunchArgument
+
+BASE = "base"
+{DECLARATION.replace('"base"', "BASE")}
+mode_argument = DeclareLaunchArgument("mode", choices=["fast", "slow"])
+"""
+FUNCTION = """from launch.actions import DeclareLaunchArgument
+
+def make(name):
+    return DeclareLaunchArgument(name)
+
+base_argument = make("base")
+"""
+
+
+@pytest.mark.parametrize(
+    ("module", "imported", "expected"),
+    [
+        (MODULE, "from arm.common import base_argument", []),
+        (MODULE, "from arm.common import mode_argument as base_argument",
+         ["argument 'base' removed", "argument 'mode' added: choices [fast, slow]"]),
+        (FUNCTION, "from arm.common import base_argument", []),
+        ("", "from elsewhere.common import base_argument", []),
+    ],
+)  # fmt: skip
+def test_actions_imported_from_a_module_of_the_repository_belong_to_the_file(
+    repository, compare, module, imported, expected
+):
+    repository.commit({"arm/launch/arm.launch.py": DECLARED, "arm/arm/common.py": module})
+    new = DECLARED.replace(DECLARATION + "\n", "").replace("from launch_ros", f"{imported}\nfrom launch_ros")
+    repository.write({"arm/launch/arm.launch.py": new})
+    result = compare(repository)
+    assert sorted(breaking(result)) == expected
+    if module == MODULE:
+        changes = sentences(subject(result, "arm/launch/arm.launch.py"))
+        assert not any("other code" in sentence for sentence in changes)

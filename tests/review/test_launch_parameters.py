@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from tests.review.conftest import breaking
+
 FILE = """<launch>
   <arg name="robot" default="arm"/>
   <node pkg="arm" type="driver" name="driver">
@@ -127,3 +129,31 @@ def test_substitutions_in_a_parameter_file_of_xml(review_changes):
     text = '<launch><node pkg="arm" exec="a"><param from="/a.yaml"/></node></launch>\n'
     changes, _ = review_changes("a.launch.xml", text, 'yaml"', 'yaml" allow_substs="true"')
     assert changes == ["node 'arm/a': parameters [/a.yaml] -> [/a.yaml (allow_substs)]"]
+
+
+CALLERS = """<launch>
+  <arg name="{0}" default="{1}"/>
+  <include file="$(find-pkg-share arm)/launch/b.launch.xml">{2}</include>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "default", "passed", "is_renamed"),
+    [
+        ("config", "true", '<arg name="config" value="$(var config)"/>', False),
+        ("config", "a.yaml", '<arg name="config" value="$(var config)"/>', False),
+        ("broadcast", "true", '<arg name="publish_tf" value="$(var broadcast)"/>', True),
+        ("publish_tfs", "true", '<arg name="publish_tfs" value="$(var publish_tfs)"/>', True),
+    ],
+)
+def test_arguments_are_renamed_only_if_their_names_or_the_places_of_their_values_are_alike(
+    repository, compare, name, default, passed, is_renamed
+):
+    old = CALLERS.format("publish_tf", "true", '<arg name="publish_tf" value="$(var publish_tf)"/>')
+    repository.commit({"arm/launch/a.launch.xml": old})
+    repository.write({"arm/launch/a.launch.xml": CALLERS.format(name, default, passed)})
+    result = compare(repository)
+    renamed = f"argument 'publish_tf' renamed to '{name}'"
+    assert (renamed in breaking(result)) == is_renamed
+    assert any(sentence.startswith("argument 'publish_tf' removed") for sentence in breaking(result)) != is_renamed

@@ -57,6 +57,8 @@ def test_launch_file_that_newly_names_a_missing_file_is_breaking(repository, com
         {"arm/config/robot.yaml": "a: 1\n"},
         {"arm/CMakeLists.txt": CMAKE + "configure_file(a.in config/robot.yaml)\n"},
         {".gitignore": "robot.yaml\n"},
+        {".gitignore": "arm/**/*bot.y*ml\n"},
+        {"arm/.gitignore": "/config/r*\n"},
         {"arm/launch/arm.launch.xml": XML.replace("arm.yaml", "$(env NAME x).yaml")},
         {"arm/launch/arm.launch.xml": XML.replace("<node", '<!-- "$(find-pkg-share arm)/config/x.yaml" --><node')},
     ],
@@ -66,6 +68,23 @@ def test_file_that_may_exist_is_not_told(repository, compare, changes):
     repository.commit({**FILES, "arm/launch/arm.launch.xml": XML})
     repository.write({"arm/launch/arm.launch.xml": new, **changes})
     assert breaking(compare(repository)) == []
+
+
+def test_missing_file_of_an_added_launch_file_breaks_nobody(repository, compare):
+    repository.commit(FILES)
+    repository.write({"arm/launch/arm.launch.xml": XML.replace("arm.yaml", "robot.yaml")})
+    result = compare(repository)
+    assert "names 'config/robot.yaml' of 'arm', which does not exist" in sentences(
+        subject(result, "arm/launch/arm.launch.xml")
+    )
+    assert breaking(result) == []
+
+
+def test_a_pattern_that_only_contains_the_name_of_a_folder_does_not_hide_a_missing_file(repository, compare):
+    repository.commit({**FILES, ".gitignore": ".installed.config\n", "arm/launch/arm.launch.xml": XML})
+    repository.commit({"arm/launch/arm.launch.xml": XML.replace("config/arm", "installed/robot")})
+    result = compare(repository, "HEAD~..HEAD")
+    assert breaking(result) == ["names 'installed/robot.yaml' of 'arm', which does not exist"]
 
 
 TEST = """<launch>

@@ -55,3 +55,18 @@ def test_file_that_names_a_removed_controller_is_breaking(find_breaking_lines, p
 
 def test_controller_that_another_file_still_has_is_not_lost(find_breaking_lines):
     assert find_breaking_lines({"arm/launch/arm.launch.py": START, "arm/config/other.yaml": MANAGER}) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "is_breaking"),
+    [
+        ("arm_controller", "arm_controller:\n  type: a/B\n  joint: a\n", True),
+        ("arm_controller", "pid_gains:\n  joint: {p: 1}\n", True),
+        ("pid_gains", "arm_controller:\n  type: a/B\npid_gains:\n  joint: {p: 1}\n", False),
+    ],
+)
+def test_spawner_of_a_group_that_is_not_a_controller_started_nothing(repository, compare, name, settings, is_breaking):
+    node = f'<node name="s" pkg="controller_manager" type="spawner" args="{name}"/>'
+    repository.commit({"arm/launch/arm.launch": f"<launch>{node}</launch>\n", "arm/config/arm.yaml": settings})
+    repository.write({"arm/launch/arm.launch": "<launch/>\n"})
+    assert bool(breaking(compare(repository))) == is_breaking

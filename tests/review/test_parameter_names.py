@@ -96,6 +96,19 @@ def test_frames_that_a_filter_no_longer_publishes(repository, compare, old, new,
     assert [str(change.reason) for _, change in compare(repository).breaking_changes] == reasons
 
 
+@pytest.mark.parametrize(
+    ("text", "reasons"),
+    [
+        ("odom_frame: odom\nbase_link_frame: base_link\nworld_frame: odom\n", [LOST.format("odom")]),
+        ("base_link_frame: base_link\nworld_frame: odom\n", []),
+    ],
+)
+def test_frame_of_a_filter_of_ros1_whose_file_has_no_node_name(repository, compare, text, reasons):
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: text})
+    repository.write({PATH: text.replace(": odom", ": wheels")})
+    assert [str(change.reason) for _, change in compare(repository).breaking_changes] == reasons
+
+
 def test_node_that_claims_interfaces_is_a_controller(review_changes):
     start = CONTROLLERS.index("arm:\n  ros__parameters:\n    joints")
     text = CONTROLLERS[start:]

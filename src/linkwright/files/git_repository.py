@@ -251,6 +251,17 @@ class GitRepository:
         )
         raise LinkwrightError(Diagnostic("CLI345", message))
 
+    def ignores(self, path: str, folder: Path) -> bool:
+        """Return whether git ignores a path by the patterns of a version, or whether git cannot tell.
+
+        Args:
+            path: the path of a file that may be missing, relative to the root.
+            folder: the folder with the files of the version, such as ``.gitignore``.
+        """
+        git_folder = self.run("rev-parse", "--absolute-git-dir").stdout.rstrip("\r\n")
+        options = ("-C", str(folder), f"--git-dir={git_folder}", f"--work-tree={folder}")
+        return self.run(*options, "check-ignore", "--no-index", "--quiet", "--", path).returncode != 1
+
     def has_ignored_files(self) -> bool:
         """Return whether the working tree contains files that git ignores.
 

@@ -36,12 +36,14 @@ class Version:
         name: the commit in git's notation, or empty for the working tree.
         root: the folder with the files of the version, which corresponds to the root of the repository.
         commit: the files of the commit; None for the working tree.
+        repository: the repository of both versions.
         is_old: whether it is the old version.
     """
 
     name: str
     root: Path
     commit: CommitFiles | None
+    repository: GitRepository
     is_old: bool
 
     def file(self, path: str) -> Path:
@@ -52,6 +54,10 @@ class Version:
         """Return the path of a file relative to the root, or None for a file outside it."""
         real_path = Path(os.path.realpath(file))
         return real_path.relative_to(self.root).as_posix() if real_path.is_relative_to(self.root) else None
+
+    def ignores(self, path: str) -> bool:
+        """Return whether git ignores a path relative to the root, such as that of a generated file."""
+        return self.repository.ignores(path, self.root)
 
     def text(self, path: str) -> str:
         """Return the text of a file at a path relative to the root.
@@ -250,13 +256,13 @@ def open_versions(folder: Path, range_text: str) -> Versions:
     with ExitStack() as stack:
         old_files = CommitFiles(repository, old_commit, old_name, must_be_complete=False, find_unused=find_unused)
         stack.callback(old_files.close)
-        old = Version(old_name, old_files.root, old_files, is_old=True)
+        old = Version(old_name, old_files.root, old_files, repository, is_old=True)
         if new_commit is None or _is_checked_out(repository, new_commit):
-            new = Version(new_name, repository.root, None, is_old=False)
+            new = Version(new_name, repository.root, None, repository, is_old=False)
         else:
             new_files = CommitFiles(repository, new_commit, new_name, must_be_complete=False, find_unused=find_unused)
             stack.callback(new_files.close)
-            new = Version(new_name, new_files.root, new_files, is_old=False)
+            new = Version(new_name, new_files.root, new_files, repository, is_old=False)
         stack.pop_all()
         return Versions(old, new, changed_files)
 

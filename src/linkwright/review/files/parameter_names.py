@@ -23,8 +23,10 @@ _TRANSFORM_SWITCH = re.compile(
     r"(^|[._])(publish_tf|tf[._]send|enable_odom_tf|broadcast_tf|publish_odom_tf|pub_tf|tf_broadcast)$"
 )
 """The parameters that enable and disable a transform of a node."""
-_FILTER_FRAME = re.compile(r"(?P<node>.*)\.world_frame")
-"""The parameter of robot_localization with the frame whose transform the filter publishes."""
+_FILTER_FRAME = re.compile(r"(?P<node>(?:.*\.)?)world_frame")
+"""The parameter of robot_localization with the frame whose transform the filter publishes.
+
+A file of ROS 1 may contain the parameters of one node without its name."""
 _FILTER_FRAMES = ("odom_frame", "base_link_frame")
 """The other frames of a filter of robot_localization."""
 _CLAIM = re.compile(r"(?:[^.]+\.)*(?P<controller>[^.]+)\.ros__parameters\.(command|state)_interfaces")
@@ -165,11 +167,11 @@ class NameRules:
     def _is_lost_filter_frame(self, parameter: str, frame: str) -> bool:
         """Return whether no filter of robot_localization in the file publishes the transform of a frame any more."""
         match = _FILTER_FRAME.fullmatch(parameter)
-        if match is None or any(f"{match['node']}.{name}" not in self._new for name in _FILTER_FRAMES):
+        if match is None or any(f"{match['node']}{name}" not in self._new for name in _FILTER_FRAMES):
             return False
-        switch = self._new.get(f"{match['node']}.publish_tf")
+        switch = self._new.get(f"{match['node']}publish_tf")
         filters = [other["node"] for name in self._new if (other := _FILTER_FRAME.fullmatch(name)) is not None]
-        frames = (self._new.get(f"{node}.{name}") for node in filters for name in ("world_frame", *_FILTER_FRAMES))
+        frames = (self._new.get(f"{node}{name}") for node in filters for name in ("world_frame", *_FILTER_FRAMES))
         is_used = any(value is not None and value.text == frame for value in frames)
         return not is_used and (switch is None or switch.text.lower() != "false")
 

@@ -29,6 +29,7 @@ from linkwright.review.launches.outlines import (
     without_condition,
 )
 from linkwright.review.launches.sides import Side, find_side, is_new_name
+from linkwright.review.launches.spawned_names import is_other_group
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names, format_title
 from linkwright.review.launches.topic_tools import find_forwarding_reason
 from linkwright.review.list_changes import list_items
@@ -136,6 +137,9 @@ def find_removal_reason(
         if entry.name.startswith(TRANSFORM_PUBLISHERS):
             return phrase("programs that look up the frame of the node do not find it")
         return phrase("the topics and services of the node are missing")
+    is_transform = entry.name.startswith(TRANSFORM_PUBLISHERS)
+    if old.is_ros1 and not is_transform and all(is_other_group(name, old.root) for name in names):
+        return None  # the spawner cannot start them
     return _find_served_name_reason(entry, names, new)
 
 

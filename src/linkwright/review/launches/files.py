@@ -87,7 +87,7 @@ def compare_launch_files(pair: FilePair) -> None:
     new_paths = {
         file.old_path: file.new_path for file in pair.versions.changed_files if file.old_path and file.new_path
     }
-    replaced = find_replacements(removed, added, new_paths)
+    replaced = find_replacements(removed, added, new_paths, (old, new))
     for old_entry, new_entry in replaced:
         _report_replaced(pair, rename_in_entry(old_entry, old_names), new_entry, outlines)
         settings.compare(old_entry, new_entry)
@@ -96,7 +96,11 @@ def compare_launch_files(pair: FilePair) -> None:
     removed = [entry for entry in removed if all(entry is not other for other, _ in replaced)]
     added = [entry for entry in added if all(entry is not other for _, other in replaced)]
     _report_undeclared(pair, undeclared, removed)
-    removed = [entry for entry in removed if entry.kind != "argument" or entry.name not in undeclared]
+    removed = [
+        entry
+        for entry in removed
+        if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
+    ]
     report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)])
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)

@@ -144,6 +144,28 @@ class HelperFunctions:
             and not self.find(python, call)
         )
 
+    def is_imported(self, python: PythonFile, name: str) -> bool:
+        """Return whether a name is imported from a module that is not part of launch."""
+        return any(not _LAUNCH_MODULE.match(module) for module, _ in _find_import_sources(python, name))
+
+    def find_imported_value(self, python: PythonFile, name: str, depth: int = 0) -> tuple[PythonFile, ast.expr] | None:
+        """Return the expression that a module of the repository assigns to an imported name, with the module.
+
+        The result is None if the name is not imported, or not assigned exactly once.
+        """
+        for module, imported in _find_import_sources(python, name) if depth < _MAX_IMPORT_DEPTH else ():
+            if _LAUNCH_MODULE.match(module):
+                continue
+            for path in self._find_module_files(module, Path(python.source.name)):
+                file = _try_parse(path)
+                if file is None:
+                    continue
+                value = file.assigned_expression(imported)
+                found = (file, value) if value is not None else self.find_imported_value(file, imported, depth + 1)
+                if found is not None:
+                    return found
+        return None
+
     def _find(self, python: PythonFile, name: str) -> Function | None:
         first_name, _, method = name.partition(".")
         if not first_name or "." in method:

@@ -193,7 +193,9 @@ class IncludedActions:
         Arguments that a file of another package may declare, and actions that cannot be read, are left out.
         """
         entries = self.outline.entries
-        if any(entry.kind == "action" or (entry.has_value and "$(" in entry.name) for entry in entries):
+        if self.outline.has_unknown_actions or any(
+            entry.kind == "action" or (entry.has_value and "$(" in entry.name) for entry in entries
+        ):
             return {}
         outlines = [self.outline, *self._included.values()]
         declared = {entry.name for outline in outlines for entry in outline.entries if entry.has_value}

@@ -7,7 +7,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
-from linkwright.review.launches.outlines import CONDITION, NAMESPACE_OF_INCLUDED, SERVER_PARAMETER, Entry
+from linkwright.review.launches.outlines import (
+    CONDITION,
+    NAMESPACE,
+    NAMESPACE_OF_INCLUDED,
+    SERVER_PARAMETER,
+    Entry,
+    LaunchOutline,
+)
 from linkwright.review.launches.titles import find_served_names
 
 MIN_SIMILARITY = 0.5
@@ -34,7 +41,10 @@ def match_entries(old: Sequence[Entry], new: Sequence[Entry]) -> Iterator[Match]
 
 
 def find_replacements(
-    removed: Sequence[Entry], added: Sequence[Entry], new_paths: Mapping[str, str]
+    removed: Sequence[Entry],
+    added: Sequence[Entry],
+    new_paths: Mapping[str, str],
+    outlines: tuple[LaunchOutline, LaunchOutline],
 ) -> list[tuple[Entry, Entry]]:
     """Return the pairs of a removed action and an added one that replaces it.
 
@@ -42,10 +52,13 @@ def find_replacements(
         removed: the actions that only the old version has.
         added: the actions that only the new version has.
         new_paths: the new paths of renamed files, by old path.
+        outlines: the outlines of the old and the new file, which have the defaults of arguments.
     """
     names = {PurePosixPath(old).name: PurePosixPath(new).name for old, new in new_paths.items()}
     scores = [
-        (_compute_replacement_score(a, b, names), i, k) for i, a in enumerate(removed) for k, b in enumerate(added)
+        (_compute_replacement_score(a, b, names, outlines), i, k)
+        for i, a in enumerate(removed)
+        for k, b in enumerate(added)
     ]
     pairs: dict[int, int] = {}
     for score, i, k in sorted(scores, key=lambda item: (-item[0], item[1], item[2])):
@@ -83,7 +96,9 @@ def _group_includes(entries: Mapping[int, Entry]) -> dict[tuple[str | None, ...]
     return groups
 
 
-def _compute_replacement_score(old: Entry, new: Entry, new_names: Mapping[str, str]) -> float:
+def _compute_replacement_score(
+    old: Entry, new: Entry, new_names: Mapping[str, str], outlines: tuple[LaunchOutline, LaunchOutline]
+) -> float:
     """Return a score for how certainly one action replaces another; 0 if it does not."""
     if old.kind != new.kind:
         return 0.0
@@ -108,7 +123,7 @@ def _compute_replacement_score(old: Entry, new: Entry, new_names: Mapping[str, s
         return 0.0
     (old_package, old_program), (new_package, new_program) = _split_program_name(old), _split_program_name(new)
     name = old.settings.get("name")
-    if name and name == new.settings.get("name") and old.settings.get("namespace") == new.settings.get("namespace"):
+    if name and name == new.settings.get("name") and _have_same_namespace(old, new, outlines):
         return 3.0 + similarity
     if old_program == new_program:
         return 2.0 + similarity if similarity >= MIN_SIMILARITY or not (old.settings and new.settings) else 0.0
@@ -119,6 +134,13 @@ def _compute_replacement_score(old: Entry, new: Entry, new_names: Mapping[str, s
         similarity >= MIN_SIMILARITY or name_similarity == 1.0
     )
     return name_similarity + similarity if is_similar and is_renamed else 0.0
+
+
+def _have_same_namespace(old: Entry, new: Entry, outlines: tuple[LaunchOutline, LaunchOutline]) -> bool:
+    """Return whether two nodes have the same namespace, as they are written or with the defaults of arguments."""
+    old_namespace, new_namespace = (entry.settings.get(NAMESPACE, "") for entry in (old, new))
+    resolved = outlines[0].resolve(old_namespace), outlines[1].resolve(new_namespace)
+    return old_namespace == new_namespace or resolved[0].strip("/") == resolved[1].strip("/")
 
 
 def _are_files_of_same_package(old: Entry, new: Entry) -> bool:

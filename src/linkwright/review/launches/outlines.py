@@ -146,6 +146,7 @@ class LaunchOutline:
         definitions: the statements that assign a name. Its value is compared where the name is used.
         is_ros1: whether it is a launch file of ROS 1.
         root: the folder of the repository; None if it is unknown.
+        has_unknown_actions: whether the file has imported actions whose values are unknown.
     """
 
     entries: list[Entry]
@@ -153,6 +154,7 @@ class LaunchOutline:
     definitions: list[CodePart] = field(default_factory=list)
     is_ros1: bool = False
     root: Path | None = None
+    has_unknown_actions: bool = False
 
     def resolve(self, text: str) -> str:
         """Return a text with values in place of ``$(var NAME)``.

@@ -9,6 +9,7 @@ from linkwright.diagnostics import SourceText, foreign, phrase
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launches.environment import find_python_readings
 from linkwright.review.launches.helpers import HelperFunctions
+from linkwright.review.launches.imported_values import assign_imported_values, uses_unknown_actions
 from linkwright.review.launches.markup import read_markup_outline, read_yaml_tags, tag_from_xml
 from linkwright.review.launches.names import LaunchPythonFile
 from linkwright.review.launches.outlines import LaunchOutline, join_namespaces
@@ -43,5 +44,11 @@ def _read(path: Path, root: Path) -> LaunchOutline:
         line, reason = error.lineno or 1, foreign(error.msg)
         message = phrase("line {line} is not valid Python: {reason}", line=line, reason=reason)
         raise UnreadableFileError(message) from None
-    outline = read_python_outline(python, HelperFunctions(root, ACTIONS))
-    return replace(outline, entries=[*outline.entries, *find_python_readings(python)])
+    helpers = HelperFunctions(root, ACTIONS)
+    python = assign_imported_values(python, helpers)
+    outline = read_python_outline(python, helpers)
+    return replace(
+        outline,
+        entries=[*outline.entries, *find_python_readings(python)],
+        has_unknown_actions=uses_unknown_actions(python, helpers),
+    )

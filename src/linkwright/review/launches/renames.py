@@ -15,15 +15,17 @@ _MIN_SHARE_OF_USES = 0.5
 """The minimum share of the uses of a name that must be uses of the new name."""
 _MIN_SIMILARITY_OF_NAMES = 0.6
 _MIN_SIMILARITY_OF_USES = 0.8
-_Use = tuple[str, str]
-"""The kind of an action, and a value that contains a variable."""
+_COMMON_DEFAULTS = frozenset({"", "''", "true", "false"})
+"""The defaults that arguments of different meanings have."""
+_Use = tuple[str, str, str]
+"""The kind of an action, the setting, and its value, which contains a variable."""
 
 
 def find_renamed_names(old: LaunchOutline, new: LaunchOutline) -> dict[str, str]:
     """Return the new names of renamed arguments and variables, by old name.
 
-    A name is a new name if the actions that used the old name use it. If no action does, it must be similar and have
-    the same settings.
+    A name is a new name if the actions that used the old name use it. If neither the names nor the settings are alike,
+    the same settings of actions must use it. If no action does, it must be similar and have the same settings.
     """
     renamed: dict[str, str] = {}
     for kind in _NAMED_KINDS:
@@ -64,10 +66,17 @@ def _index_entries(outline: LaunchOutline, kind: str) -> dict[str, Entry]:
 def _compute_rename_score(old_entry: Entry, new_entry: Entry, old: LaunchOutline, new: LaunchOutline) -> float:
     """Return a score for how likely an argument was renamed; 0 if it was not."""
     names = {old_entry.name: new_entry.name}
-    old_uses = Counter((kind, rename_in_text(value, names)) for kind, value in _find_uses(old, old_entry.name))
-    new_uses = Counter(_find_uses(new, new_entry.name))
     similarity = SequenceMatcher(None, old_entry.name, new_entry.name, autojunk=False).ratio()
     has_equal_settings = old_entry.settings == new_entry.settings
+    value = old_entry.settings.get("default", old_entry.settings.get("value", ""))
+    is_alike = similarity >= _MIN_SIMILARITY_OF_NAMES or (has_equal_settings and value.lower() not in _COMMON_DEFAULTS)
+    old_uses, new_uses = (
+        Counter(
+            (kind, "" if is_alike else setting, rename_in_text(text, names))
+            for kind, setting, text in _find_uses(outline, entry.name)
+        )
+        for outline, entry in ((old, old_entry), (new, new_entry))
+    )
     if not old_uses:
         return similarity if has_equal_settings and similarity >= _MIN_SIMILARITY_OF_NAMES and not new_uses else 0.0
     common_uses = old_uses & new_uses
@@ -84,15 +93,17 @@ def _are_similar(old: _Use, new: _Use) -> bool:
 
     Examples are command lines that differ in one option.
     """
-    return old[0] == new[0] and SequenceMatcher(None, old[1], new[1], autojunk=False).ratio() >= _MIN_SIMILARITY_OF_USES
+    return (
+        old[:2] == new[:2] and SequenceMatcher(None, old[2], new[2], autojunk=False).ratio() >= _MIN_SIMILARITY_OF_USES
+    )
 
 
 def _find_uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
     pattern = re.compile(rf"\$\((?:var|arg) {re.escape(name)}[ )]")
     for entry in outline.entries:
-        for text in (entry.name, *entry.settings.values()):
+        for setting, text in (("", entry.name), *entry.settings.items()):
             if pattern.search(text):
-                yield entry.kind, text
+                yield entry.kind, setting, text
 
 
 def rename_in_text(text: str, renamed: Mapping[str, str]) -> str:

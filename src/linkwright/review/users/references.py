@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import SourceText, Span, phrase
@@ -23,6 +24,7 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
     """Yield launch files with paths to missing files or refused options, and the changes.
 
     A missing file exists only in the old version, or a changed launch file in XML or YAML names it for the first time.
+    The latter is not breaking in an added launch file, which has no users yet.
     A script does not accept a refused option.
     """
     yield from find_refused_options(versions, changed_files)
@@ -44,7 +46,9 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
             if is_user and _is_lost(versions, path, package, subpath, lost):
                 yield path, _make_change(path, package, subpath, span, is_lost=True)
             elif known is not None and (package, subpath) not in known and _is_missing(versions.new, package, subpath):
-                yield path, _make_change(path, package, subpath, span, is_lost=False)
+                change = _make_change(path, package, subpath, span, is_lost=False)
+                is_added = changed[path] is None  # the file has no users yet
+                yield path, replace(change, effect=Effect.CHANGED, reason=None) if is_added else change
 
 
 def _list_known_paths(version: Version, path: str | None) -> set[tuple[str, str]] | None:
@@ -80,14 +84,12 @@ def _is_missing(version: Version, package: str, subpath: str) -> bool:
         return False
     path = PurePosixPath(owner.folder) / subpath
     is_unknown = version.commit is not None and bool(version.commit.removed_links or version.commit.missing_files)
-    ignored = "\n".join(map(version.text, (".gitignore", f"{owner.folder}/.gitignore")))
-    parts = {*path.parts, path.suffix} - {"", "launch", "config", "urdf"}
     return (
         not owner.may_generate
         and owner.facts is not None
         and path.name not in owner.build_text
         and not is_unknown
-        and not any(part in ignored for part in parts)
+        and not version.ignores(path.as_posix())
     )
 
 
