@@ -14,13 +14,13 @@ from linkwright.packages.readers.cmake import CMakeFile, read_cmake
 from linkwright.packages.readers.cmake_language import BUILD, Argument, CMakeProgram, Command, to_package_path
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.build_comparison import compare_build_files
 from linkwright.review.files.build_facts import (
     ANY_VERSION,
     BuildFacts,
     EnvironmentVariables,
     Fact,
     FactKind,
-    compare_build_files,
 )
 from linkwright.review.files.cmake_branches import find_conditions, iterate_conditional_commands
 from linkwright.review.files.cmake_headers import find_header_paths
