@@ -14,6 +14,9 @@ from linkwright.review.file_pair import FilePair
 _MIN_FOLDER_PARTS = 3
 """The minimum number of path parts of a folder that replaces its files in a report."""
 
+_HEADER_FOLDER = "include"
+"""The folder of a package below which its own sources find headers."""
+
 
 class FactKind(Enum):
     """The kind of a fact: its title, and the reason why removing such a fact is breaking."""
@@ -164,6 +167,7 @@ class BuildFacts:
         targets: the parts of targets, by target.
         header_paths: the headers and folders of headers relative to the package that other packages find although
             `files` does not contain them.
+        include_folders: the folders relative to the prefix below which other packages find headers.
     """
 
     facts: list[Fact] = field(default_factory=list)
@@ -175,11 +179,18 @@ class BuildFacts:
     environment: EnvironmentVariables = field(default_factory=lambda: EnvironmentVariables(()))
     targets: dict[str, TargetParts] = field(default_factory=dict)
     header_paths: frozenset[str] = frozenset()
+    include_folders: frozenset[str] = frozenset()
 
     @property
     def is_complete(self) -> bool:
         """Whether `files` contains all installed files."""
         return not self.unknown
+
+    def find_include_texts(self, target: str) -> set[str]:
+        """Return the texts by which other packages include an installed header; empty if they are unknown."""
+        path = PurePosixPath(target)
+        folders = [folder for folder in self.include_folders if path.is_relative_to(folder)]
+        return {path.relative_to(folder).as_posix() for folder in folders}
 
     def strip_project(self, path: str) -> str:
         """Return an installed path without the name of the package.
@@ -207,6 +218,17 @@ def find_new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: st
     new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), None)
     is_inside = new_path is not None and PurePosixPath(new_path).is_relative_to(new.package)
     return PurePosixPath(new_path).relative_to(new.package).as_posix() if new_path and is_inside else source
+
+
+def find_own_include_text(source: str) -> str:
+    """Return the path of a header below the folder ``include`` of its package; empty if it is elsewhere.
+
+    Args:
+        source: the path relative to the package.
+    """
+    path = PurePosixPath(source)
+    folder = next((parent for parent in path.parents if parent.name == _HEADER_FOLDER), None)
+    return "" if folder is None else path.relative_to(folder).as_posix()
 
 
 def list_names(names: Sequence[str]) -> Phrase:

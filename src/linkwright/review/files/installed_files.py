@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import phrase
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.build_facts import BuildFacts, list_names, summarize_files
+from linkwright.review.files.build_facts import BuildFacts, find_own_include_text, list_names, summarize_files
 
 
 def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
@@ -24,7 +24,11 @@ def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) ->
         if new_target is None:
             if new.unknown <= old.unknown:
                 removed.append(target)
-        elif installed_source == source and old.strip_project(target) != new.strip_project(new_target):
+        elif (
+            installed_source == source
+            and old.strip_project(target) != new.strip_project(new_target)
+            and not _keeps_include_text(source, old.find_include_texts(target), new.find_include_texts(new_target))
+        ):
             folders = _get_folder(target), _get_folder(new_target)
             is_renamed = folders[0] == folders[1]
             moved.setdefault(folders, []).append(
@@ -38,6 +42,18 @@ def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) ->
         names = summarize_files(removed, new.files)
         text = phrase("no longer installed: {names}", names=list_names(names))
         pair.add(text, None, phrase("programs that look for the files do not find them"))
+
+
+def _keeps_include_text(source: str, old: Collection[str], new: Collection[str]) -> bool:
+    """Return whether other packages include an installed header as before, or as the sources do, which failed before.
+
+    Args:
+        source: the path of the header relative to the package.
+        old: the texts by which other packages include the old file.
+        new: the texts by which they include the new file.
+    """
+    own_text = find_own_include_text(source)
+    return bool(old) and (set(new).issuperset(old) or (own_text in new and own_text not in old))
 
 
 def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence[str]]) -> None:

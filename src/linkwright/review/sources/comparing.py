@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location, Problem, Subject, SubjectKind
-from linkwright.review.installed_paths import is_exported_header
+from linkwright.review.installed_paths import find_include_text, is_exported_header
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
@@ -64,7 +64,6 @@ from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.used_packages import compare_usage
 from linkwright.review.versions import Versions
 
-_HEADER_FOLDER = "include"
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -556,8 +555,9 @@ class _SourcePair:
         """Yield a line with the text by which other packages include an added header."""
         path = PurePosixPath(self.file.path)
         if self.file.old_path is None and path.suffix in HEADER_SUFFIXES and self._is_interface(self.file.path):
-            folder = next((folder for folder in path.parents if folder.name == _HEADER_FOLDER), path.parent)
-            text = phrase("header added: other packages include '{path}'", path=path.relative_to(folder).as_posix())
+            package = self.new.find_package(self.file.path) or ""
+            include = find_include_text(self.new.version, package, self.file.path)
+            text = phrase("header added: other packages can include '{path}'", path=include)
             yield Change(text, location=Location(self.file.path, 1, 1))
 
     def _compare_packages(self, *, are_headers_told: bool) -> Iterator[Change]:
