@@ -104,6 +104,25 @@ def test_many_functions_with_other_arguments_are_one_line(repository, compare):
 
 
 @pytest.mark.parametrize(
+    ("change", "merged"),
+    [
+        ((" const;", ";"), "functions that are no longer const: "),
+        (("bool ", "Result "), "functions with other results: "),
+    ],
+)
+def test_many_functions_with_the_same_other_change_are_one_line(repository, compare, change, merged):
+    names = ["open", "close", "move", "hold"]
+    lines = "".join(f"  bool {name}(int x) const;\n" for name in names)
+    text = f"class Gripper {{\npublic:\n{lines}}};\n"
+    repository.commit({**FILES, "a/include/arm/driver.hpp": text})
+    repository.write({"a/include/arm/driver.hpp": text.replace(*change).replace("open(int x)", "open(char * x)")})
+    assert sorted(breaking(compare(repository))) == [
+        "function 'Gripper::open': (int) -> (char*)",
+        merged + "Gripper::open, Gripper::close, Gripper::move, Gripper::hold",
+    ]
+
+
+@pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
         ("int rate() const {", "int rate() {", ["function 'Driver::rate': const yes -> no"]),

@@ -54,3 +54,22 @@ def test_remapping_of_a_name_that_is_new_in_the_node_breaks_nobody(repository, c
     repository.write({"arm/launch/arm.launch": text, "arm/scripts/n.py": SOURCE})
     (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
     assert change.reason is None
+
+
+@pytest.mark.parametrize(("has_controller", "is_breaking"), [(False, False), (True, True)])
+def test_remapping_of_a_name_of_a_controller_breaks_nobody_if_the_controller_is_new(
+    repository, compare, has_controller, is_breaking
+):
+    remap = '<remap from="base_controller/transition_event" to="base_controller/_event"/>'
+    node = '<launch><node pkg="controller_manager" exec="ros2_control_node" name="m">{}</node></launch>'
+    controllers = "base_controller:\n  ros__parameters:\n    rate: 1\n"
+    repository.commit(
+        {
+            "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+            "arm/launch/arm.launch.xml": node.format(""),
+            "arm/config/controllers.yaml": controllers if has_controller else "other: 1\n",
+        }
+    )
+    repository.write({"arm/launch/arm.launch.xml": node.format(remap), "arm/config/controllers.yaml": controllers})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch.xml").changes
+    assert (change.reason is not None) is is_breaking

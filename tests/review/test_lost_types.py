@@ -72,3 +72,24 @@ def test_users_of_a_lost_enumerator_do_not_build(repository, compare, old, new, 
     assert used == {
         path: f"uses '{name}', which 'lib/include/m/registers.h' no longer has" for path, name in found.items()
     }
+
+
+def test_an_enumeration_that_moves_to_a_base_class_is_not_lost(repository, compare):
+    enumeration = "  enum class Stream { kPlay, kRecord, kBoth };\n"
+    derived = '#pragma once\n#include "base.h"\nclass Derived : public Base {\n public:\n%s  int n;\n};\n'
+    use = '#include "derived.h"\nbool f(%s s) { return s == %s::kPlay || s == %s::kRecord || s == %s::kBoth; }\n'
+    repository.commit(
+        {
+            "lib/src/base.h": "#pragma once\nclass Base {\n public:\n};\n",
+            "lib/src/derived.h": derived % enumeration,
+            "lib/src/main.cpp": use % (("Derived::Stream",) * 4),
+        }
+    )
+    repository.write(
+        {
+            "lib/src/base.h": f"#pragma once\nclass Base {{\n public:\n{enumeration}}};\n",
+            "lib/src/derived.h": derived % "",
+            "lib/src/main.cpp": use % (("Base::Stream",) * 4),
+        }
+    )
+    assert breaking(compare(repository)) == []

@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.build_facts import BuildFacts, FactKind
+from linkwright.review.files.build_facts import BuildFacts, FactKind, find_own_include_text
 from linkwright.review.files.cmake_files import CMAKE_FILE, read_cmake_facts
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.files.setup_files import SETUP_FILE, read_setup_facts
@@ -126,3 +126,16 @@ def is_exported_header(version: Version, package: str, path: str) -> bool:
     if not facts.is_complete:
         folders |= {fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER}
     return any(PurePosixPath(source).is_relative_to(folder) for folder in folders)
+
+
+def find_include_text(version: Version, package: str, path: str) -> str:
+    """Return the text by which other packages include a header that they find.
+
+    This is its installed path below an exported folder, or else its path below the folder ``include`` of the package.
+    """
+    facts = read_package_facts(version, package)
+    source = PurePosixPath(path).relative_to(package)
+    own_text = find_own_include_text(source.as_posix()) or source.name
+    targets = [] if facts is None else [target for target, other in facts.files.items() if other == source.as_posix()]
+    texts = [text for target in targets if facts is not None for text in facts.find_include_texts(target)]
+    return own_text if own_text in texts or not texts else min(texts, key=len)

@@ -14,16 +14,16 @@ from linkwright.packages.readers.cmake import CMakeFile, read_cmake
 from linkwright.packages.readers.cmake_language import BUILD, Argument, CMakeProgram, Command, to_package_path
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.build_comparison import compare_build_files
 from linkwright.review.files.build_facts import (
     ANY_VERSION,
     BuildFacts,
     EnvironmentVariables,
     Fact,
     FactKind,
-    compare_build_files,
 )
 from linkwright.review.files.cmake_branches import find_conditions, iterate_conditional_commands
-from linkwright.review.files.cmake_headers import find_header_paths
+from linkwright.review.files.cmake_headers import find_header_paths, find_include_folders
 from linkwright.review.files.cmake_targets import builds_test, compare_targets, read_targets
 from linkwright.review.versions import Version
 
@@ -108,6 +108,7 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     facts.targets = read_targets(commands)
     exported_folders = [fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER]
     facts.header_paths = frozenset(find_header_paths(commands, exported_folders))
+    facts.include_folders = frozenset(find_include_folders(commands))
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     facts.environment = EnvironmentVariables(
         (match[1], source.span(match.start(), match.end())) for match in _ENVIRONMENT.finditer(text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import takewhile
 
@@ -10,6 +11,7 @@ from linkwright.packages.readers.cmake_values import split_items
 
 _FILE_SET = "FILE_SET"
 _PUBLIC_HEADER = "PUBLIC_HEADER"
+_INSTALL_INTERFACE = re.compile(r"\$<INSTALL_INTERFACE:(?P<folder>[^>$]+)>")
 _AUTO_FOLDER = "include"
 """The folder that ``ament_auto_package`` installs."""
 
@@ -33,6 +35,26 @@ def find_header_paths(commands: Sequence[Command], exported_folders: Iterable[st
         part, paths = _read_headers_of_target(command)
         if paths and _is_installed(commands, command.words[0], part):
             yield from (to_package_path(path, command.folder) for path in paths)
+
+
+def find_include_folders(commands: Sequence[Command]) -> Iterator[str]:
+    """Yield the folders below which other packages find installed headers, relative to the prefix.
+
+    Args:
+        commands: the commands of the build file.
+    """
+    for command in commands:
+        words = command.words
+        if command.name == "ament_export_include_directories":
+            yield from (word.strip("/") for word in words if "$" not in word)
+        elif command.name == "catkin_package":
+            yield _AUTO_FOLDER
+        elif command.name == "install" and "INCLUDES" in words:
+            index = words.index("INCLUDES")
+            yield from (word.strip("/") for word in takewhile(lambda text: not text.isupper(), words[index + 2 :]))
+        elif command.name == "target_include_directories":
+            matches = (_INSTALL_INTERFACE.search(word) for word in words)
+            yield from (match["folder"].strip("/") for match in matches if match)
 
 
 def _read_headers_of_target(command: Command) -> tuple[str, list[str]]:

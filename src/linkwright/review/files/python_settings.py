@@ -11,7 +11,8 @@ from linkwright.diagnostics import foreign
 from linkwright.packages.readers.entry_points import parse_toml
 from linkwright.packages.readers.installed import PROGRAM_GROUP
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, compare_build_files
+from linkwright.review.files.build_comparison import compare_build_files
+from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind
 from linkwright.review.versions import Version
 
 SETUP_CFG = "setup.cfg"

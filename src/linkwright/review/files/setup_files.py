@@ -12,7 +12,8 @@ from linkwright.packages.readers.installed import PROGRAM_GROUP
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.packages.readers.setup_py import SetupFile, read_setup
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind, compare_build_files
+from linkwright.review.files.build_comparison import compare_build_files
+from linkwright.review.files.build_facts import BuildFacts, Fact, FactKind
 from linkwright.review.versions import Version
 
 SETUP_FILE = "setup.py"

@@ -25,6 +25,10 @@ _NAMED_OUTPUT = re.compile(r"(.*[/_])?(out|output)([/_].*)?")
 _OFFERING_KINDS = frozenset({NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION})
 _USING_KINDS = frozenset({NameKind.SUBSCRIPTION, NameKind.CLIENT, NameKind.ACTION_CLIENT})
 _MAX_SOURCES = 80
+_CONTROLLER_MANAGER = "controller_manager/ros2_control_node"
+_KEY, _QUOTED_WORD = re.compile(r"^\s*(\w+):", re.MULTILINE), re.compile(r"[\"'](\w+)[\"']")
+_KEY_PATTERNS = {".yaml": _KEY, ".yml": _KEY, ".py": _QUOTED_WORD, ".xml": _QUOTED_WORD, ".launch": _QUOTED_WORD}
+"""The names of controllers in parameter files and, for spawners, in launch files, by suffix."""
 
 
 class Side(Enum):
@@ -59,7 +63,8 @@ def find_side(program: str, name: str, root: Path | None) -> Side:
 def is_new_name(program: str, name: str, old_root: Path | None, new_root: Path | None) -> bool:
     """Return whether only the new sources of a package have a topic or service.
 
-    No other program can use such a name yet.
+    This also holds for a topic of a controller that only the new parameter files have. No other program can use such a
+    name yet.
 
     Args:
         program: the package and the executable of the node.
@@ -68,11 +73,27 @@ def is_new_name(program: str, name: str, old_root: Path | None, new_root: Path |
         new_root: the folder of the new repository; None if it is unknown.
     """
     package, relative_name = program.partition("/")[0], name.lstrip("~/")
-    if old_root is None or new_root is None or package not in find_package_folders(old_root):
+    if old_root is None or new_root is None:
+        return False
+    controller, separator, _ = relative_name.partition("/")
+    if program == _CONTROLLER_MANAGER and separator and controller in _list_parameter_keys(new_root):
+        return controller not in _list_parameter_keys(old_root)
+    if package not in find_package_folders(old_root):
         return False
     return relative_name in _read_kinds_by_name(new_root, package) and relative_name not in _read_kinds_by_name(
         old_root, package
     )
+
+
+@lru_cache(maxsize=4)
+def _list_parameter_keys(root: Path) -> frozenset[str]:
+    """Return the keys in the YAML files of a repository, and the quoted words in its launch files and programs."""
+    keys: set[str] = set()
+    for file in root.rglob("*"):
+        pattern = _KEY_PATTERNS.get(file.suffix)
+        if pattern is not None and file.is_file():
+            keys |= set(pattern.findall(file.read_text("utf-8", "replace")))
+    return frozenset(keys)
 
 
 @lru_cache(maxsize=64)

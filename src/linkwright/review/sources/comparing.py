@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, Span, joined_first, phrase
+from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Problem, Subject, SubjectKind
-from linkwright.review.installed_paths import is_exported_header
+from linkwright.review.changes import Change, Effect, Location, Problem, Subject, SubjectKind
+from linkwright.review.installed_paths import find_include_text, is_exported_header
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
@@ -26,6 +26,7 @@ from linkwright.review.sources.details import (
     format_rename,
 )
 from linkwright.review.sources.enumerators import compare_enumerations
+from linkwright.review.sources.function_changes import NameChange, merge_function_changes
 from linkwright.review.sources.name_patterns import can_make, extract_pattern
 from linkwright.review.sources.names import (
     HEADER_SUFFIXES,
@@ -63,9 +64,6 @@ from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.used_packages import compare_usage
 from linkwright.review.versions import Versions
 
-_HEADER_FOLDER = "include"
-_MAX_FUNCTION_CHANGES = 3
-"""The maximum number of functions with changed arguments in a file that have lines of their own."""
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -155,7 +153,7 @@ class _SourcePair:
         scoped = self._find_scoped(before, after, old_names, new_names) if kind is NameKind.PARAMETER else []
         shown = {get_comparison_name(item): item.type for _, item in scoped}  # the lines of these have their defaults
         changed = [
-            (item, *detail)
+            NameChange(item, *detail)
             for name, item in after.items()
             if name in before and not has_same_types(before[name], item, old_names, new_names)
             for detail in compare_details(replace(before[name], type=shown.get(name, before[name].type)), item)
@@ -314,7 +312,7 @@ class _SourcePair:
         return [(item, other) for item in removed for other in added if renamed.get(item.name) == other.name]
 
     def _report_details(
-        self, kind: NameKind, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]], old_names: SourceNames
+        self, kind: NameKind, changed: Sequence[NameChange], old_names: SourceNames
     ) -> Iterator[Change]:
         """Yield the changes to names that both versions have.
 
@@ -324,10 +322,9 @@ class _SourcePair:
         is_called = not is_program and self._is_interface(self.file.old_path or self.file.path)
         if kind in (NameKind.FUNCTION, NameKind.MEMBER) and not is_called:
             return
-        if kind is NameKind.FUNCTION and len(changed) > _MAX_FUNCTION_CHANGES:
-            yield self._merge_functions(changed)
-            return
-        for item, text, reason in changed:
+        if kind is NameKind.FUNCTION:
+            changed = list(merge_function_changes(changed, is_python=self.file.path.endswith(PYTHON_SUFFIX)))
+        for item, text, reason, _ in changed:
             is_breaking = is_called or kind is not NameKind.CLASS
             if kind is NameKind.PARAMETER and reason is None:
                 reason = self._find_parameter_reason(item, old_names)
@@ -346,17 +343,6 @@ class _SourcePair:
             ),
         )
         return None if reason is None or is_set_in_package(self.new.version, package, item.name) else reason
-
-    def _merge_functions(self, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]]) -> Change:
-        """Return one change for many functions whose arguments changed."""
-        names = joined_first(dict.fromkeys(item.name for item, _, _ in changed), MAX_NAMES)
-        text = phrase("functions with other arguments: {names}", names=names)
-        reason = next((reason for _, _, reason in changed if reason is not None), None)
-        if reason is not None:
-            reason = phrase("code that calls them with the old arguments does not build")
-            if self.file.path.endswith(PYTHON_SUFFIX):
-                reason = phrase("programs that call them with the old arguments fail")
-        return self._make_change(text, changed[0][0].span, self.new, reason)
 
     def _is_interface(self, path: str) -> bool:
         """Return whether other packages can use the definitions of a file.
@@ -493,7 +479,7 @@ class _SourcePair:
             matching = [[expression for expression in items if expression.name == item.name] for items in (old, new)]
             if len(matching[0]) == len(matching[1]) == 1 and matching[0][0].type and item.type:
                 defaults = [names.defaults.get(item.name, "") for names in sources]
-                for text, reason in compare_computed(matching[0][0], item, defaults):
+                for text, reason, _ in compare_computed(matching[0][0], item, defaults):
                     yield self._make_change(text, item.span, self.new, reason)
 
     def _compare_patterns(self, old: SourceName, new: SourceName) -> Iterator[Change]:
@@ -569,8 +555,9 @@ class _SourcePair:
         """Yield a line with the text by which other packages include an added header."""
         path = PurePosixPath(self.file.path)
         if self.file.old_path is None and path.suffix in HEADER_SUFFIXES and self._is_interface(self.file.path):
-            folder = next((folder for folder in path.parents if folder.name == _HEADER_FOLDER), path.parent)
-            text = phrase("header added: other packages include '{path}'", path=path.relative_to(folder).as_posix())
+            package = self.new.find_package(self.file.path) or ""
+            include = find_include_text(self.new.version, package, self.file.path)
+            text = phrase("header added: other packages can include '{path}'", path=include)
             yield Change(text, location=Location(self.file.path, 1, 1))
 
     def _compare_packages(self, *, are_headers_told: bool) -> Iterator[Change]:

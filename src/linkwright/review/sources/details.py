@@ -47,8 +47,8 @@ def format_rename(old: SourceName, new: SourceName) -> Phrase:
 
 def compare_computed(
     old: SourceName, new: SourceName, defaults: Sequence[str]
-) -> Iterator[tuple[Phrase, Phrase | None]]:
-    """Yield the changes to a name that the same expression computes, each with the reason why it is breaking or None.
+) -> Iterator[tuple[Phrase, Phrase | None, Detail | None]]:
+    """Yield the changes to a name that the same expression computes, as `compare_details` does.
 
     Args:
         old: the old name.
@@ -63,8 +63,10 @@ def compare_computed(
 
 def compare_details(
     old: SourceName, new: SourceName, *, is_computed: bool = False
-) -> Iterator[tuple[Phrase, Phrase | None]]:
-    """Yield the changes to a name, each with the reason why it is breaking or None.
+) -> Iterator[tuple[Phrase, Phrase | None, Detail | None]]:
+    """Yield the changes to a name, each with the reason why it is breaking or None, and the property that changed.
+
+    The property is None if the type changed.
 
     Args:
         old: the old name.
@@ -72,7 +74,8 @@ def compare_details(
         is_computed: whether the name is the text of an expression, which others do not know.
     """
     if not new.has_type_of(old):
-        yield from _compare_types(old, new, is_computed=is_computed)
+        for text, reason in _compare_types(old, new, is_computed=is_computed):
+            yield text, reason, None
     old_details, new_details = dict(old.details), dict(new.details)
     for detail in Detail:
         before, after = old_details.get(detail), new_details.get(detail)
@@ -93,7 +96,7 @@ def compare_details(
             old=before or missing,
             new=after or missing,
         )
-        yield text, _find_detail_reason(new, detail, before, after)
+        yield text, _find_detail_reason(new, detail, before, after), detail
 
 
 def _compare_types(old: SourceName, new: SourceName, *, is_computed: bool) -> Iterator[tuple[Phrase, Phrase | None]]:

@@ -21,6 +21,7 @@ _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<path>[^">\n]+)[">]', 
 _TYPE_USE = r"(?=\s*(?:[&*]\s*|\s)\w|\s*::|\s*[>&*])"
 _ENUMERATOR_USE = r"(?!\s*(?:\w|[({]|::))"
 """The patterns of the code behind the name of a type and of an enumerator."""
+_ENUMERATION = re.compile(r"\benum\b[^;{}()]*\{(?P<body>[^{}]*)\}")
 
 
 def find_lost_types(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
@@ -49,9 +50,15 @@ def _find_declared(names: Sequence[str], codes: Iterable[str]) -> set[str]:
     pattern = re.compile(
         rf"\b(?:class|struct|union|enum|typename|define|using)\s+(?:[A-Z]\w*_\w+\s+|class\s+|struct\s+|(?:\w+::)+)?"
         rf"(?P<name>{any_name})\b|(?:\}}|\btypedef\b[^;{{}}]*)\s*\b(?P<alias>{any_name})\s*;|"
-        rf"(?:\benum\b[^;{{}}()]*\{{[^;{{}}]*?|\b(?:const|constexpr)\b[^;{{}}()=]*)\b(?P<value>{any_name})\b(?=\s*[=,}}{{])"
+        rf"\b(?:const|constexpr)\b[^;{{}}()=]*\b(?P<value>{any_name})\b(?=\s*[=,}}{{])"
     )
-    return {match[match.lastgroup or 0] for code in codes for match in pattern.finditer(code)}
+    enumerator = re.compile(rf"(?:^|,)\s*(?P<name>{any_name})\b(?=\s*(?:[=,]|$))")
+    declared = set()
+    for code in codes:
+        declared |= {match[match.lastgroup or 0] for match in pattern.finditer(code)}
+        for enumeration in _ENUMERATION.finditer(code):
+            declared |= {match["name"] for match in enumerator.finditer(enumeration["body"])}
+    return declared
 
 
 def _find_uses(

@@ -1,0 +1,303 @@
+"""Compare two versions of a build file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import PurePosixPath
+from typing import TypeAlias
+
+from linkwright.diagnostics import Phrase, Span, joined, phrase
+from linkwright.review.file_pair import FilePair
+from linkwright.review.files.build_commands import compare_other_commands
+from linkwright.review.files.build_facts import (
+    ANY_VERSION,
+    BUILT_KINDS,
+    INSTALLED_KINDS,
+    BuildFacts,
+    Fact,
+    FactKind,
+    TargetParts,
+    find_new_source,
+    list_names,
+)
+from linkwright.review.files.cmake_branches import is_test_condition
+from linkwright.review.files.installed_files import compare_installed_files
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
+from linkwright.review.versions import Version
+
+_PATH_FOLDER = "bin"
+"""The folder below the prefix that is in ``PATH``."""
+_PROGRAM_FOLDER_PREFIX = "lib/"
+"""The start of the folders in which launch files find programs."""
+_CONDITIONAL_KINDS = (*INSTALLED_KINDS, *BUILT_KINDS, FactKind.COMPONENT, FactKind.STOP, FactKind.PACKAGE)
+"""The kinds whose conditions are shown when they are added or removed."""
+
+
+def compare_build_files(
+    pair: FilePair,
+    read: Callable[[Version, str], BuildFacts],
+    compare_more: Callable[[FilePair, BuildFacts, BuildFacts], None] | None = None,
+) -> None:
+    """Compare two versions of a build file.
+
+    Args:
+        pair: both versions of the build file.
+        read: the function that returns the facts of a version, from its path in the repository.
+        compare_more: a function that compares parts specific to this kind of build file.
+    """
+    sides = ((pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path))
+    versions = {version.file(path): (version, path) for version, path in sides}
+    facts = pair.read(lambda file: read(*versions[file]))
+    if facts is not None:
+        _compare_facts(pair, *facts)
+        if compare_more is not None:
+            compare_more(pair, *facts)
+
+
+def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+    """Report the differences between the facts of two versions of a build file."""
+    conditions: dict[tuple[str, str], list[Fact]] = {}
+    for kind in FactKind:
+        old_facts, new_facts = _index_facts(
+            *(
+                [fact for fact in facts.facts if fact.kind is kind and _is_reported(pair, facts, fact)]
+                for facts in (old, new)
+            )
+        )
+        for name, fact in new_facts.items():
+            if name in old_facts:
+                _compare_values(pair, (old, old_facts[name]), (new, fact))
+        for name, fact in new_facts.items():
+            if name in old_facts and old_facts[name].condition != fact.condition:
+                conditions.setdefault((old_facts[name].condition, fact.condition), []).append(fact)
+        added = [fact for name, fact in new_facts.items() if name not in old_facts]
+        removed = [fact for name, fact in old_facts.items() if name not in new_facts]
+        if kind in BUILT_KINDS:
+            installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
+            added = [fact for fact in added if fact.name not in installed | _find_test_programs(old)]
+            removed = [fact for fact in removed if fact.name not in installed | _find_test_programs(new)]
+        _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new))
+        if kind is FactKind.STOP:
+            _report_reworded_errors(pair, removed, added)
+        _report_unpaired(pair, kind, removed, added, is_replaced=_exports_folders_otherwise(kind, new))
+    _report_conditions(pair, conditions)
+    _report_repeated_exports(pair, old, new)
+    compare_installed_files(pair, old, new)
+    compare_other_commands(pair, old.other_commands, new.other_commands)
+    old.environment.compare(pair, new.environment)
+
+
+_FactIndex: TypeAlias = "dict[tuple[str, str | None], Fact]"
+"""The facts of a kind in a version, by name and, for some calls of find_package, condition."""
+
+
+def _index_facts(old: Sequence[Fact], new: Sequence[Fact]) -> tuple[_FactIndex, _FactIndex]:
+    """Return the facts of a kind in two versions. Facts that belong together have the same key.
+
+    The last fact of a name counts, except for packages: calls of find_package under different conditions are
+    different facts. If both versions have a package under conditions that the other lacks, these calls are one fact.
+    """
+    sides = old, new
+    if not any(fact.kind is FactKind.PACKAGE for fact in (*old, *new)):
+        return {(fact.name, None): fact for fact in old}, {(fact.name, None): fact for fact in new}
+    old_keys, new_keys = ({(fact.name, fact.condition) for fact in facts} for facts in sides)
+    changed = {name for name, _ in old_keys - new_keys} & {name for name, _ in new_keys - old_keys}
+    indexes: list[_FactIndex] = []
+    for facts in sides:
+        index: _FactIndex = {}
+        conditions: dict[str, dict[str, None]] = {}
+        for fact in facts:
+            key = fact.name, fact.condition
+            if fact.name in changed and key not in old_keys & new_keys:
+                conditions.setdefault(fact.name, {})[fact.condition] = None
+                index[fact.name, None] = replace(fact, condition=_join_conditions(list(conditions[fact.name])))
+            else:
+                index[key] = fact
+        indexes.append(index)
+    return indexes[0], indexes[1]
+
+
+def _join_conditions(conditions: Sequence[str]) -> str:
+    """Return the condition under which one of several conditions holds. An empty condition always holds."""
+    if "" in conditions:
+        return ""
+    if len(conditions) == 1:
+        return conditions[0]
+    return " OR ".join(f"({text})" if " AND " in text else text for text in conditions)
+
+
+def _find_test_programs(facts: BuildFacts) -> set[str]:
+    """Return the targets that are built as programs of tests."""
+    return {name for name, parts in facts.targets.items() if parts.is_test_program}
+
+
+def _compare_values(pair: FilePair, old: tuple[BuildFacts, Fact], new: tuple[BuildFacts, Fact]) -> None:
+    """Report a changed value of a fact, unless only the name of the package in a path changed."""
+    (old_facts, old_fact), (new_facts, new_fact) = old, new
+    if not old_fact.value or not new_fact.value:
+        return
+    if old_facts.strip_project(old_fact.value) == new_facts.strip_project(new_fact.value):
+        return
+    kind = new_fact.kind
+    text = phrase(
+        "{kind}: '{name}': {old} -> {new}",
+        kind=kind.title,
+        name=new_fact.name,
+        old=old_fact.value,
+        new=new_fact.value,
+    )
+    reason = kind.reason if new_fact.is_value_used else None
+    is_executable = kind is FactKind.EXECUTABLE
+    if is_executable and old_fact.value == _PATH_FOLDER and new_fact.value.startswith(_PROGRAM_FOLDER_PREFIX):
+        reason = phrase("commands that find it through PATH fail; launch files find it only now")
+    pair.add(text, pair.location(new_fact.span), reason)
+
+
+def _exports_folders_otherwise(kind: FactKind, new: BuildFacts) -> bool:
+    """Return whether exported targets bring folders of headers with them."""
+    return kind is FactKind.EXPORTED_FOLDER and any(name == "ament_export_targets" for name, _ in new.other_commands)
+
+
+def _report_unpaired(
+    pair: FilePair, kind: FactKind, removed: Sequence[Fact], added: Sequence[Fact], *, is_replaced: bool
+) -> None:
+    """Report the facts of a kind that only one version has. Removed facts that others replace are not breaking."""
+    if added:
+        reason = None
+        if kind is FactKind.STOP:
+            reason = phrase("the build fails under a condition under which it did not fail before")
+        pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
+    if removed:
+        location = pair.location(removed[0].span, is_old=True)
+        is_harmless = is_replaced or all(is_test_condition(fact.condition) for fact in removed)
+        reason = None if is_harmless else kind.reason
+        pair.add(_format_facts(kind, removed, is_added=False), location, reason)
+
+
+def _report_repeated_exports(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+    """Report the plugin descriptions that the new version exports more than once under the same condition."""
+    spans: dict[tuple[str, str, str], list[Span | None]] = {}
+    old_counts: dict[tuple[str, str, str], int] = {}
+    for fact in old.facts:
+        key = fact.name, fact.value, fact.condition
+        old_counts[key] = old_counts.get(key, 0) + (fact.kind is FactKind.PLUGIN_DESCRIPTION)
+    for fact in new.facts:
+        if fact.kind is FactKind.PLUGIN_DESCRIPTION:
+            spans.setdefault((fact.name, fact.value, fact.condition), []).append(fact.span)
+    for key, found in spans.items():
+        if len(found) > max(old_counts.get(key, 0), 1):
+            text = phrase("plugin description '{name}' is exported {count} times", name=key[0], count=len(found))
+            pair.add(text, pair.location(found[-1]))
+
+
+def _report_renamed(
+    pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact], targets: Mapping[str, str]
+) -> None:
+    """Report the renamed facts, and remove them from both lists.
+
+    Args:
+        pair: both versions of the build file.
+        kind: the common kind of all facts.
+        removed: the facts of the old version.
+        added: the facts of the new version.
+        targets: the new names of targets that have the same sources, by old name.
+    """
+    names = PackageNames(find_renamed_packages(pair.versions))
+    for old in list(removed):
+        new = next((fact for fact in added if fact.name == names.rename_derived(old.name)), None)
+        new = new or next((fact for fact in added if names.has_same_edit(old.name, fact.name)), None)
+        new = new or next((fact for fact in added if fact.name == targets.get(old.name)), None)
+        if kind is FactKind.TEST:
+            new = new or next((fact for fact in added if fact.value == old.name), None)
+        if new is not None:
+            removed.remove(old)
+            added.remove(new)
+            text = phrase("{kind}: '{old}' renamed to '{new}'", kind=kind.title, old=old.name, new=new.name)
+            pair.add(text, pair.location(new.span), None if is_test_condition(old.condition) else kind.reason)
+
+
+def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:
+    """Report errors with a different text under the same condition.
+
+    They are removed from both lists.
+    """
+    for old in list(removed):
+        new = next((fact for fact in added if fact.condition == old.condition), None)
+        if new is not None:
+            removed.remove(old)
+            added.remove(new)
+            text = phrase("the error '{old}' has another text: '{new}'", old=old.name, new=new.name)
+            pair.add(text, pair.location(new.span))
+
+
+def _find_renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
+    """Return the new names of renamed targets by old name.
+
+    A renamed target keeps its first source.
+    """
+    sources = {
+        next(iter(parts.sources)): name
+        for name, parts in new.targets.items()
+        if parts.sources and not old.targets.get(name, TargetParts()).sources
+    }
+    renamed = {}
+    for name, parts in old.targets.items():
+        source = next((find_new_source(pair, old, new, item) for item in parts.sources), None)
+        if source in sources and not new.targets.get(name, TargetParts()).sources:
+            renamed[name] = sources[source]
+    return renamed
+
+
+def _format_facts(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:
+    texts = [_format_fact(fact) for fact in facts]
+    return _format_list(kind.title, texts, is_added=is_added)
+
+
+def _format_fact(fact: Fact) -> str:
+    """Return the name of a fact, with its value or condition if a reader needs it."""
+    has_version = fact.kind is FactKind.PACKAGE and fact.value not in ("", ANY_VERSION)
+    text = f"{fact.name} {fact.value}" if has_version or fact.kind is FactKind.SETTING else fact.name
+    is_unconditional = not fact.condition or fact.kind not in _CONDITIONAL_KINDS
+    return text if is_unconditional else f"{text} (if {fact.condition})"
+
+
+def _report_conditions(pair: FilePair, conditions: Mapping[tuple[str, str], Sequence[Fact]]) -> None:
+    """Report facts whose condition changed. Facts with the same change share a line."""
+    for (old_condition, new_condition), facts in conditions.items():
+        kinds = dict.fromkeys(fact.kind for fact in facts)
+        groups = (
+            phrase(
+                "{kind} {names}", kind=kind.title, names=list_names([fact.name for fact in facts if fact.kind is kind])
+            )
+            for kind in kinds
+        )
+        text = phrase(
+            "{subjects}: {old} -> {new}",
+            subjects=joined(groups, "; "),
+            old=_format_condition(old_condition),
+            new=_format_condition(new_condition),
+        )
+        pair.add(text, pair.location(facts[0].span))
+
+
+def _format_condition(condition: str) -> Phrase:
+    return phrase("if {condition}", condition=condition) if condition else phrase("always")
+
+
+def _format_list(title: Phrase, names: Sequence[str], *, is_added: bool) -> Phrase:
+    names_text = list_names(names)
+    if is_added:
+        return phrase("{kind} added: {names}", kind=title, names=names_text)
+    return phrase("{kind} removed: {names}", kind=title, names=names_text)
+
+
+def _is_reported(pair: FilePair, facts: BuildFacts, fact: Fact) -> bool:
+    """Return whether a difference in a fact is reported here.
+
+    An interface file that only one version has is reported as a file instead.
+    """
+    if fact.kind is not FactKind.INTERFACE:
+        return True
+    path = (PurePosixPath(facts.package) / fact.name).as_posix()
+    return pair.versions.old.file(path).is_file() == pair.versions.new.file(path).is_file()

@@ -1,0 +1,102 @@
+"""Compare the files that two versions of a build file install."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import phrase
+from linkwright.review.file_pair import FilePair
+from linkwright.review.files.build_facts import BuildFacts, find_own_include_text, list_names, summarize_files
+
+
+def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+    """Report files of both versions that only one installs, or whose destination differs."""
+    old_sources, new_sources = ({source: target for target, source in facts.files.items()} for facts in (old, new))
+    new_sources_by_old = {source: _find_installed_source(pair, old, new, source) for source in old_sources}
+    moved: dict[tuple[str, str], list[str]] = {}
+    removed: list[str] = []
+    for source, target in old_sources.items():
+        installed_source = new_sources_by_old[source]
+        new_target = None if installed_source is None else new_sources.get(installed_source)
+        if installed_source is None or target in new.files:
+            continue
+        if new_target is None:
+            if new.unknown <= old.unknown:
+                removed.append(target)
+        elif (
+            installed_source == source
+            and old.strip_project(target) != new.strip_project(new_target)
+            and not _keeps_include_text(source, old.find_include_texts(target), new.find_include_texts(new_target))
+        ):
+            folders = _get_folder(target), _get_folder(new_target)
+            is_renamed = folders[0] == folders[1]
+            moved.setdefault(folders, []).append(
+                f"{_get_file_name(target)} -> {_get_file_name(new_target)}" if is_renamed else _get_file_name(target)
+            )
+    added = [target for source, target in new_sources.items() if target not in old.files and source not in old_sources]
+    _report_moved_files(pair, moved)
+    if added and old.unknown <= new.unknown:
+        _report_newly_installed_files(pair, old, new, added)
+    if removed:
+        names = summarize_files(removed, new.files)
+        text = phrase("no longer installed: {names}", names=list_names(names))
+        pair.add(text, None, phrase("programs that look for the files do not find them"))
+
+
+def _keeps_include_text(source: str, old: Collection[str], new: Collection[str]) -> bool:
+    """Return whether other packages include an installed header as before, or as the sources do, which failed before.
+
+    Args:
+        source: the path of the header relative to the package.
+        old: the texts by which other packages include the old file.
+        new: the texts by which they include the new file.
+    """
+    own_text = find_own_include_text(source)
+    return bool(old) and (set(new).issuperset(old) or (own_text in new and own_text not in old))
+
+
+def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence[str]]) -> None:
+    """Report installed files with a different destination, by their old and new folders."""
+    for (old_folder, new_folder), names in moved.items():
+        text = phrase(
+            "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=list_names(names)
+        )
+        if old_folder == new_folder:
+            text = phrase(
+                "installed under another name in {folder}: {names}", folder=old_folder, names=list_names(names)
+            )
+        pair.add(text, None, phrase("programs that look for the files do not find them"))
+
+
+def _report_newly_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts, added: Sequence[str]) -> None:
+    """Report newly installed folders, newly installed files of the old version, and files of other folders."""
+    read = {_get_folder(source) for source in old.files.values()}
+    known = [name for name in added if _is_in_old_version(pair, old, new.files[name])]
+    known += [name for name in added if name not in known and _get_folder(new.files[name]) not in read]
+    folders = [name for name in summarize_files(added, old.files) if name.endswith("/")]
+    names = list(dict.fromkeys([*folders, *summarize_files(known, old.files)]))
+    if names:
+        pair.add(phrase("installed now: {names}", names=list_names(names)), None)
+
+
+def _find_installed_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str | None:
+    """Return the path of an installed file in the new version; None if it is absent there."""
+    path = (PurePosixPath(old.package) / source).as_posix()
+    new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), path)
+    if new_path is None or not pair.versions.new.file(new_path).is_file():
+        return None
+    pure_path = PurePosixPath(new_path)
+    return pure_path.relative_to(new.package).as_posix() if pure_path.is_relative_to(new.package) else None
+
+
+def _is_in_old_version(pair: FilePair, old: BuildFacts, source: str) -> bool:
+    return pair.versions.old.file((PurePosixPath(old.package) / source).as_posix()).is_file()
+
+
+def _get_folder(path: str) -> str:
+    return PurePosixPath(path).parent.as_posix()
+
+
+def _get_file_name(path: str) -> str:
+    return PurePosixPath(path).name
