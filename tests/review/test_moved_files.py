@@ -136,10 +136,11 @@ def test_module_with_another_import_path_is_not_at_the_same_place(repository, co
 ament_python_install_package(${{PROJECT_NAME}})
 ament_python_install_module(${{PROJECT_NAME}}/launch_common.py)
 """
-    text = "from launch_ros.actions import Node\n\n\ndef make_arm(name):\n    return Node(package='arm', executable=name)\n"
+    text = "from launch_ros.actions import Node\n\n\ndef make_arm():\n    return Node(package='arm', executable='a')\n"
     repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake.format(name="arm"),
                        "arm/arm/__init__.py": "", "arm/arm/launch_common.py": text})  # fmt: skip
     repository.commit({"arm/CMakeLists.txt": cmake.format(name="hand"), "arm/arm/__init__.py": None,
-                      "arm/hand/__init__.py": "", "arm/arm/launch_common.py": None, "arm/hand/launch_common.py": text})  # fmt: skip
+                      "arm/hand/__init__.py": "", "arm/arm/launch_common.py": None,
+                      "arm/hand/launch_common.py": text})  # fmt: skip
     result = compare(repository, "HEAD~1..HEAD")
     assert "renamed from arm/arm/launch_common.py" in sentences(subject(result, "arm/hand/launch_common.py"))
