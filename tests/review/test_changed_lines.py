@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+LONG_OPTIONS = " ".join(f"_option_{number}:=value" for number in range(15))
+
 
 @pytest.mark.parametrize(
     ("path", "old", "new", "expected"),
@@ -41,6 +43,11 @@ ExecStart=/bin/bash -c 'source setup.bash && rosrun arm driver __ns:=left'
             "arm/start",
             '#!/usr/bin/env bash\n# starts the arm\nros2 run arm driver "$@"\n',
             '`ros2 run arm driver "$@"`',
+        ),
+        (
+            "arm/pose.service",
+            f"[Service]\nExecStart=/bin/bash -c 'rosrun arm pose {LONG_OPTIONS} image:=front/image'\n",
+            f"`rosrun arm pose {LONG_OPTIONS} image:=front/image`",
         ),
         ("arm/notes", "ros2 run arm driver\n", None),
     ],

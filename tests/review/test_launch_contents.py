@@ -55,6 +55,16 @@ def test_added_and_removed_node_has_its_contents(review_changes, is_added, word)
     ]
 
 
+def test_all_remappings_of_an_added_node_are_shown(review_changes):
+    topics = [f"camera/stream_{number}/image_raw" for number in range(20)]
+    node = "".join(f'<remap from="{topic}" to="front/{topic}"/>' for topic in topics)
+    (change,), _ = review_changes(
+        "", f'<node pkg="cam" type="driver" name="cam">{node}<param name="a" value="1"/></node>'
+    )
+    assert change.count("remapping") == len(topics)
+    assert change.endswith("and 1 more")
+
+
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [

@@ -186,6 +186,13 @@ def test_robot_that_is_no_longer_spawned_is_breaking(review_changes, new, is_bre
     assert bool(review_changes("arm.launch.xml", SPAWNS, SPAWN, new)[1]) is is_breaking
 
 
+@pytest.mark.parametrize(("new", "is_breaking"), [("", True), (SPAWN, False)])
+def test_spawner_of_the_repository_is_replaced_by_another_one(review_changes, new, is_breaking):
+    old = '<node pkg="arm" exec="spawn_camera" args="camera.urdf"/>'
+    _, found = review_changes("arm.launch.xml", SPAWNS.replace(SPAWN, old), old, new)
+    assert bool(found) is is_breaking
+
+
 LOOP = """import os
 from launch import LaunchDescription
 from launch_ros.actions import Node

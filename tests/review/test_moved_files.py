@@ -129,3 +129,18 @@ def test_renamed_file_that_only_tests_use_is_breaking_if_its_old_name_is_used(
     result = compare(repository, "HEAD~1..HEAD")
     assert sentences(subject(result, "arm/test/new_grip.yaml")) == ["renamed from arm/test/grip.yaml"]
     assert ("renamed from arm/test/grip.yaml" in breaking(result)) is is_breaking
+
+
+def test_module_with_another_import_path_is_not_at_the_same_place(repository, compare):
+    cmake = """project({name})
+ament_python_install_package(${{PROJECT_NAME}})
+ament_python_install_module(${{PROJECT_NAME}}/launch_common.py)
+"""
+    text = "from launch_ros.actions import Node\n\n\ndef make_arm():\n    return Node(package='arm', executable='a')\n"
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake.format(name="arm"),
+                       "arm/arm/__init__.py": "", "arm/arm/launch_common.py": text})  # fmt: skip
+    repository.commit({"arm/CMakeLists.txt": cmake.format(name="hand"), "arm/arm/__init__.py": None,
+                      "arm/hand/__init__.py": "", "arm/arm/launch_common.py": None,
+                      "arm/hand/launch_common.py": text})  # fmt: skip
+    result = compare(repository, "HEAD~1..HEAD")
+    assert "renamed from arm/arm/launch_common.py" in sentences(subject(result, "arm/hand/launch_common.py"))

@@ -275,6 +275,20 @@ def test_frame_that_others_still_offer_and_transform_that_is_switched_off(review
     assert found_breaking == ["odometry.ros__parameters.tf.send true -> false"]
 
 
+@pytest.mark.parametrize(("node", "is_breaking"), [("head_client", False), ("clients_view", True), ("head", True)])
+def test_frame_of_a_client_is_only_used(review_changes, node, is_breaking):
+    text = f"{node}:\n  ros__parameters: {{frame_id: left/base}}\n"
+    _, found = review_changes(text, text.replace("left/base", "base"))
+    assert bool(found) is is_breaking
+
+
+def test_frame_in_a_file_of_a_client_is_only_used(repository, compare):
+    path = "a/config/head_client.yaml"
+    repository.commit({"a/package.xml": PACKAGE_XML, path: "frame_id: left/base\n"})
+    repository.write({path: "frame_id: base\n"})
+    assert breaking(compare(repository)) == []
+
+
 def test_long_list_of_names_has_the_added_and_removed_ones(review_changes):
     names = [f"left_gripper_inner_finger_joint_{number}" for number in range(8)]
     text = "hand: {joints: [finger_joint, old_joint]}\n"

@@ -1,4 +1,4 @@
-"""The lines of a review about the options of removed programs."""
+"""The lines of a review about removed programs: their options, and the names of their nodes."""
 
 from __future__ import annotations
 
@@ -32,3 +32,20 @@ def test_options_are_not_breaking_beside_the_removal_of_their_program(repository
     assert breaking(result) == expected
     (found,) = (subject for subject in result.subjects if subject.path == program)
     assert [str(change.sentence) for change in found.changes] == ["command-line options removed: '--speed' (1.0)"]
+
+
+@pytest.mark.parametrize(("line", "is_breaking"), [("", False), ("node.create_publisher(String, 'state', 10)", True)])
+def test_node_that_only_sends_requests_is_not_missed(repository, compare, line, is_breaking):
+    text = f"""import rclpy
+from gazebo_msgs.srv import SpawnEntity
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node('spawn_camera')
+client = node.create_client(SpawnEntity, '/spawn_entity')
+{line}
+"""
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/arm/spawn.py": text})
+    repository.write({"arm/arm/spawn.py": None})
+    found = breaking(compare(repository))
+    assert ("nodes removed: 'spawn_camera'" in found) is is_breaking

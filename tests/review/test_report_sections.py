@@ -47,6 +47,14 @@ def test_each_kind_of_file_has_a_section(kind):
         assert "link added" in report
 
 
+def test_summary_does_not_deny_the_files_that_are_listed_above_it():
+    files = ["a/arm.service", "a/notes.md"]
+    review = Review("main", "topic", other_files=files, file_states={files[0]: phrase("removed")})
+    assert as_text(review).splitlines()[-1] == "only 2 other files changed"
+    review = Review("main", "topic", other_files=files)
+    assert as_text(review).splitlines()[-1] == "nothing that a review compares changed from main to topic"
+
+
 def test_sources_with_only_other_code_share_a_section():
     subjects = [
         make_subject(f"src/{name}.cpp", [make_code_change(name, f"src/{name}.cpp")], SubjectKind.SOURCE)

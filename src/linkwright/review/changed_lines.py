@@ -31,6 +31,8 @@ _ROS_COMMAND = re.compile(r"\b(?:ros2 (?:run|launch)|rosrun|roslaunch)\b.*")
 _MAX_LINES = 6
 """The maximum number of changed lines that are shown, except in a list of packages."""
 _MAX_LINE_LENGTH = 160
+_MAX_COMMAND_LENGTH = 500
+"""The maximum number of characters of a command, whose last words are its remappings."""
 _MAX_BYTES = 1 << 18
 _MIN_SIMILARITY = 0.5
 
@@ -73,7 +75,7 @@ def list_commands(version: Version, path: str) -> Phrase | None:
         return None
     lines = [*_split_content_lines(version.text(path))]
     lines = [_find_started_program(line) for line in lines if _UNIT_COMMAND.match(line)] if is_unit else lines
-    return joined_first([f"`{shorten(line, _MAX_LINE_LENGTH)}`" for line in lines], _MAX_LINES) if lines else None
+    return joined_first([f"`{shorten(line, _MAX_COMMAND_LENGTH)}`" for line in lines], _MAX_LINES) if lines else None
 
 
 def _find_started_program(line: str) -> str:

@@ -74,6 +74,9 @@ WELL_KNOWN_PACKAGES = frozenset(
     }
 )
 _XML_SUFFIXES = (".launch", ".launch.xml", "_launch.xml")
+_LAUNCH_FOLDER = "launch"
+"""The folder of launch files. Those that others include are often called ``NAME.xml``."""
+_LAUNCH_ROOT = lazy_pattern(r"<launch[\s>]")
 _SETUP_ASSISTANT = ".setup_assistant"
 """The file of a package whose launch files MoveIt generates; they start packages for every possible use."""
 _TEST_FOLDERS = frozenset({"test", "tests"})
@@ -270,6 +273,13 @@ class UndeclaredLaunchDependency(Rule):
         yield self.report(message, manifest.root, notes=[missing_packages[name] for name in names], hint=hint, fix=fix)
 
 
+def _may_be_launch_file(path: str) -> bool:
+    """Return whether a path may be that of a launch file in XML: by its suffix or its folder."""
+    folders = path.split("/")[:-1]
+    is_named = path.endswith(_XML_SUFFIXES) or (path.endswith(".xml") and _LAUNCH_FOLDER in folders)
+    return is_named and _TEST_FOLDERS.isdisjoint(folders)
+
+
 def _find_packages_in_xml(source: SourceText) -> Iterator[tuple[str, Note]]:
     """Yield the packages that a launch file in XML uses, each with a note."""
     text = _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
@@ -314,8 +324,10 @@ def _find_used_packages(package: PackageContext) -> dict[str, Note]:
             span = file.source.span(match.end() - len("xacro"), match.end())
             first_uses.setdefault("xacro", Note(phrase("'xacro' is run here"), span))
     for file_path in () if package.has(_SETUP_ASSISTANT) else package.files:
-        if file_path.endswith(_XML_SUFFIXES) and _TEST_FOLDERS.isdisjoint(file_path.split("/")):
+        if _may_be_launch_file(file_path):
             source = package.text(file_path)
+            if source is not None and not file_path.endswith(_XML_SUFFIXES) and not _LAUNCH_ROOT.search(source.text):
+                continue
             for name, note in () if source is None else _find_packages_in_xml(source):
                 first_uses.setdefault(name, note)
     first_uses.pop(package.name, None)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Mapping
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.breaking import name_reason
@@ -19,6 +20,8 @@ _FRAME_PARAMETER = re.compile(r"(^|[._])frame_id$")
 """The parameters that name a frame which the node publishes."""
 _USED_FRAME_PARAMETER = re.compile(r"(^|[._])(base|odom|map|global|world|target|reference)_frame_id$")
 """The parameters that name a frame which localization and navigation use but do not publish."""
+_CLIENT = re.compile(r"(^|[_.])client(_|$)")
+"""The names of programs that send requests, and of their files."""
 _TRANSFORM_SWITCH = re.compile(
     r"(^|[._])(publish_tf|tf[._]send|enable_odom_tf|broadcast_tf|publish_odom_tf|pub_tf|tf_broadcast)$"
 )
@@ -99,7 +102,7 @@ class NameRules:
             return phrase("the node no longer publishes its transform")
         if removed and self._is_lost_filter_frame(parameter, old):
             return phrase("the filter no longer publishes the transform of the frame '{name}'", name=old)
-        is_offered = offers_frame(parameter)
+        is_offered = offers_frame(parameter) and not self._belongs_to_client(parameter)
         if is_offered:
             removed -= self._new_frames
         if self._belongs_to_controller(parameter):
@@ -180,6 +183,12 @@ class NameRules:
         node = _NODE.match(parameter)
         name = node["node"].rpartition(".")[2] if node else parameter.partition(".")[0]
         return name in self._controllers or name.endswith("controller")
+
+    def _belongs_to_client(self, parameter: str) -> bool:
+        """Return whether a parameter belongs to a client, by the name of its node or file. Clients use frames."""
+        return any(
+            _CLIENT.search(name) for name in (find_node_name(parameter) or "", PurePosixPath(self._readers.path).stem)
+        )
 
     def _has_node(self, parameter: str) -> bool:
         """Return whether the new version has other parameters of the same node."""

@@ -39,7 +39,7 @@ _USER_INTERFACE_PROGRAM = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|pl
 _JOINT_STATE_PREFIX = "joint_state_publisher"
 """The common prefix of the names of two packages that publish the same topics."""
 _SPAWN_PROGRAM = re.compile(
-    r"(ros_gz_sim|ros_ign_gazebo)/(create|remove)|(gazebo_ros|gazebo)/(spawn_entity\.py|spawn_model)|webots_ros2\w*/.*spawn.*"
+    r"(ros_gz_sim|ros_ign_gazebo)/(create|remove)|(gazebo_ros|gazebo)/(spawn_entity\.py|spawn_model)|webots_ros2\w*/.*spawn.*|[^/]+/spawn_\w+(\.py)?"
 )
 """Programs that request a robot from another program and exit. They offer nothing themselves."""
 _SPAWN_FILE_NAME = re.compile(r"spawn|create")

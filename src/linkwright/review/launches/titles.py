@@ -23,10 +23,12 @@ from linkwright.review.launches.outlines import (
 )
 from linkwright.review.list_changes import EMPTY, list_items
 
-_SETTING_ORDER = (CONDITION, "name", NAMESPACE, "default", "value", "arguments", REMAPPING, ENVIRONMENT, "parameter")
-"""The beginnings of the names of settings in the order in which they are shown."""
 _MAX_SETTINGS = 16
 """The maximum number of settings in the line about an added or removed action."""
+_WHOLE_SETTINGS = (CONDITION, "name", NAMESPACE, "default", "value", "arguments", REMAPPING)
+"""The beginnings of the names of settings that are always shown, because other programs depend on them."""
+_SETTING_ORDER = (*_WHOLE_SETTINGS, ENVIRONMENT, "parameter")
+"""The beginnings of the names of settings in the order in which they are shown."""
 _VALUE_SETTINGS = ("to", "value", "appended value")
 """The settings that are the only value of an action."""
 _MAX_SETTING_CHARACTERS = 160
@@ -173,7 +175,8 @@ def format_settings(entry: Entry, limit: int = _MAX_SETTINGS) -> Phrase | None:
     names = sorted((name for name in entry.settings if name != "description"), key=_find_setting_rank)
     if not names:
         return None
-    return joined_first([_format_setting(name, entry.settings[name]) for name in names], limit)
+    count = max(limit, sum(name.startswith(_WHOLE_SETTINGS) for name in names))
+    return joined_first([_format_setting(name, entry.settings[name]) for name in names], count)
 
 
 def _find_setting_rank(setting: str) -> int:

@@ -17,6 +17,7 @@ from linkwright.review.breaking import (
     world_reason,
 )
 from linkwright.review.changes import Change, Effect
+from linkwright.review.controller_files import find_controller_file_reason
 from linkwright.review.element_values import format_values
 from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.files.semantics import find_removal_reason
@@ -305,9 +306,8 @@ class _ReportedDifference:
             return self._find_lost_name_reason(old)
         if difference.is_whole and not name:
             return find_extension_reason(Difference("extension", root, "removed"))
-        return find_extension_reason(
-            Difference("extension", root, "changed", name, difference.old or "-", difference.new)
-        )
+        changed = Difference("extension", root, "changed", name, difference.old or "-", difference.new)
+        return find_extension_reason(changed) or find_controller_file_reason(changed, self.pair.versions)
 
     def _find_joint_reason(self, old: Element) -> Phrase | None:
         """Return the reason why a changed type or limit of a joint is breaking; None if it is not."""

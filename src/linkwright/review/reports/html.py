@@ -32,7 +32,7 @@ from linkwright.review.reports.sentences import (
     list_other_files,
 )
 
-_MAX_CHARACTERS = 400
+_MAX_CHARACTERS = 1000
 """The maximum number of characters of a change that are shown without a click."""
 
 _STYLE = """

@@ -233,6 +233,10 @@ def format_summary(review: Review) -> Phrase:
         total += count * (len(section.changes) + repeated)
         breaking += count * sum(change.effect is Effect.BREAKING for change in section.changes)
     if not (total or review.new_findings or review.fixed_findings):
+        if review.file_states:
+            return counted(
+                "only {count} other file changed", "only {count} other files changed", len(review.other_files)
+            )
         new = review.new_name or phrase("the working tree")
         return phrase("nothing that a review compares changed from {old} to {new}", old=review.old_name, new=new)
     return phrase(

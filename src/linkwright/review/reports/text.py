@@ -22,7 +22,7 @@ from linkwright.review.reports.sentences import (
 
 _MAX_OTHER_FILES = 20
 """The maximum number of files that are listed although they were not compared."""
-_MAX_CHARACTERS = 600
+_MAX_CHARACTERS = 1000
 """The maximum number of characters of a change or reason."""
 _NEWLINE = "\N{SYMBOL FOR NEWLINE}"
 """The character that replaces a newline in the name of a file."""

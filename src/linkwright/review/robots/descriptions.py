@@ -13,6 +13,7 @@ from linkwright.diagnostics.phrase import as_phrase
 from linkwright.geometry.single import Pose, pose_quaternion
 from linkwright.review.breaking import find_breaking_reason, frame_reason
 from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.controller_files import find_controller_file_reason
 from linkwright.review.drawings.images import render_collisions, render_views
 from linkwright.review.drawings.scenes import build_robot_scene
 from linkwright.review.element_values import format_own_content
@@ -20,18 +21,24 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import find_disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.joint_limits import find_limits_reason
-from linkwright.review.merging import merge_reasons, merge_changes
+from linkwright.review.left_names import find_left_names
+from linkwright.review.merging import merge_changes, merge_reasons
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.parts.expanded import find_expanded_elements
-from linkwright.review.left_names import find_left_names
-from linkwright.review.plugins import find_added_topics, find_default_topic_reason, format_contents, is_still_offered, find_missing_topics_reason
+from linkwright.review.plugins import (
+    find_added_topics,
+    find_default_topic_reason,
+    find_missing_topics_reason,
+    format_contents,
+    is_still_offered,
+)
 from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
 from linkwright.review.robots.added_links import AddedLinks
 from linkwright.review.robots.cases import Case, find_cases, find_switched_cases
 from linkwright.review.robots.collisions import compare_collisions, may_change_collisions
 from linkwright.review.robots.figures import RobotMeasures, compare_figures
-from linkwright.review.robots.omitted_calls import find_lost_call_reason, find_passed_name_reason, find_title
 from linkwright.review.robots.joined_values import JoinedDifferences, join_value_differences
+from linkwright.review.robots.omitted_calls import find_lost_call_reason, find_passed_name_reason, find_title
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
@@ -113,7 +120,9 @@ def _merge_groups(groups: Iterable[_Group]) -> Iterable[_Group]:
             continue
         existing.cases |= group.cases
         if group.first.location is not None:
-            existing.first = replace(existing.first, other_locations=(*existing.first.other_locations, group.first.location))
+            existing.first = replace(
+                existing.first, other_locations=(*existing.first.other_locations, group.first.location)
+            )
     return merged.values()
 
 
@@ -143,15 +152,23 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             or find_default_topic_reason(difference, new.extensions)
             or find_lost_call_reason(difference, comparison.differences)
             or find_passed_name_reason(difference)
+            or find_controller_file_reason(difference, pair.versions)
             or _find_expression_reason(difference)
-            or find_limits_reason(difference.values if isinstance(difference, JoinedDifferences) else (difference,), new)
+            or find_limits_reason(
+                difference.values if isinstance(difference, JoinedDifferences) else (difference,), new
+            )
         )
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         text = added_links.sentence(difference) or format_difference(difference)
         if difference.subject == "link" and difference.kind == "renamed":
             has_known_poses = partial is None or not partial.has_stand_ins
             text = _add_motion(text, frames.distance(difference.old or "") if has_known_poses else None)
-        yield Change(text, effect, reason, _find_mesh_location(pair, case, difference) or _find_difference_location(pair, difference))
+        yield Change(
+            text,
+            effect,
+            reason,
+            _find_mesh_location(pair, case, difference) or _find_difference_location(pair, difference),
+        )
     if partial is None:
         links, joints = old.links.keys() - new.links.keys(), old.joints.keys() - new.joints.keys()
         yield from find_left_names(new.extensions, links, joints, pair.location)

@@ -14,6 +14,7 @@ _HARMLESS_KINDS = (
     *(NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME),
     *(NameKind.CLAIMED_INTERFACE, NameKind.PLUGINLIB_CLASS),
 )
+_REQUESTS = frozenset({NameKind.CLIENT, NameKind.ACTION_CLIENT})
 _HEADER_FOLDER = "include"
 
 
@@ -47,7 +48,7 @@ def find_removal_reason(
         path: the path of the old source.
     """
     kind = items[0].kind
-    if kind in _HARMLESS_KINDS:
+    if kind in _HARMLESS_KINDS or (kind is NameKind.NODE and _only_sends_requests(names)):
         return None
     text = joined_first([item.name for item in items], MAX_NAMES)
     if kind is NameKind.PARAMETER:
@@ -82,6 +83,12 @@ def find_removal_reason(
             return phrase("programs that import '{name}' do not find it", name=text)
         return phrase("code of other packages that uses '{name}' does not build", name=text)
     return name_reason(str(text))
+
+
+def _only_sends_requests(names: SourceNames) -> bool:
+    """Return whether all names of a source are those of its node and of services and actions that it requests."""
+    kinds = {item.kind for item in (*names.names, *names.expressions)} - {NameKind.FUNCTION, NameKind.OPTION}
+    return bool(kinds & _REQUESTS) and kinds <= {NameKind.NODE, *_REQUESTS}
 
 
 def find_message_frame_reason(item: SourceName, names: SourceNames) -> Phrase | None:
