@@ -235,16 +235,21 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
             return True
         if all(text and re.search(rf"= {re.escape(text)}(?![\w.])", line) for text in (item.old, item.new)):
             return True  # a removed and an added constant
+        if _is_text(item.old) != _is_text(item.new) and all(text and _has_word(line, text) for text in (old, new)):
+            return True  # a name that is computed now, or no longer
     if item.new.endswith(("]", ")", "}")):
         texts = set(_QUOTED.findall(item.old)) ^ set(_QUOTED.findall(item.new))
         words = [text[1:-1].rpartition(":=")[2] for text in texts]  # without the old name of a remapping
         return bool(words) and all(any(_has_word(line, word, "") for line in reported) for word in words)
-    is_text = item.new.endswith(("'", '"'))
     # the line may show the name in the namespace of its node handle, such as '~' for a private one, or the namespace,
     # or an option with its dashes, without its letter
     names = [max(_OPTION_SEPARATOR.split(text), key=len) for text in (old, new)]
     patterns = [re.compile(rf"'(?:[\w~/]*[~/]|--?)?{re.escape(name)}(?:/[\w~/]*)?'") for name in names]
-    return is_text and all(any(pattern.search(line) for line in reported) for pattern in patterns)
+    return _is_text(item.new) and all(any(pattern.search(line) for line in reported) for pattern in patterns)
+
+
+def _is_text(value: str) -> bool:
+    return value.endswith(("'", '"'))
 
 
 def _has_word(line: str, word: str, joiner: str = ".") -> bool:
