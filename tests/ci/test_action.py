@@ -95,7 +95,7 @@ def test_empty_report_posts_no_comment(example: Example, service: Service, runne
     assert service.comments == []
     service.add(f"{MARKER}\nan older report")
     runner.run("review", example_without_changes.event())
-    assert "nothing that a review compares changed" in service.bodies[0]
+    assert "only 1 other file changed" in service.bodies[0]
 
 
 def test_read_only_token_is_reported_in_one_notice(example: Example, service: Service, runner: Runner) -> None:
