@@ -232,9 +232,9 @@ def send(text):
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("import math\n", "", "'math' is used, but is no longer defined or imported"),
-        ("def send(text)", "def post(text)", "'send' is used, but is no longer defined or imported"),
-        ("import math\n", "from std_msgs.msg import *\n", "'math' is used, but is no longer defined or imported"),
+        ("import math\n", "", "uses 'math', which it no longer defines or imports"),
+        ("def send(text)", "def post(text)", "uses 'send', which it no longer defines or imports"),
+        ("import math\n", "from std_msgs.msg import *\n", "uses 'math', which it no longer defines or imports"),
     ],
 )
 def test_name_that_is_no_longer_defined_is_breaking(repository, compare, old, new, expected):

@@ -126,7 +126,7 @@ def test_the_condition_of_a_failure_has_the_conditions_around_it(repository, com
 
 def test_a_launch_file_that_lost_an_import_fails(review_changes):
     line = "from launch.substitutions import LaunchConfiguration\n"
-    expected = "'LaunchConfiguration' is used, but is no longer defined or imported"
+    expected = "uses 'LaunchConfiguration', which it no longer defines or imports"
     assert review_changes("arm.launch.py", LAUNCH, line, "") == ([expected], [expected])
 
 
@@ -166,7 +166,7 @@ def generate_launch_description():
 @pytest.mark.parametrize(
     ("new", "expected"),
     [
-        ("[driver, hand]", ["'hand' is used, but is not defined or imported"]),
+        ("[driver, hand]", ["uses 'hand', which it does not define or import"]),
         ("[driver, map]", ["the built-in function 'map' is in a list of actions"]),
         ("list([driver])", []),
     ],

@@ -24,7 +24,7 @@ def report_undefined_names(pair: FilePair) -> None:
     old, new = read_source_names(pair.old_file), read_source_names(pair.new_file)
     for name, span in new.undefined_names.items():
         if name in old.bound_names:
-            text = phrase("'{name}' is used, but is no longer defined or imported", name=name)
+            text = phrase("uses '{name}', which it no longer defines or imports", name=name)
             pair.add(text, pair.location(span), phrase("the code that uses the name fails"))
     known = {*old.bound_names, *(name for name, _ in _find_unbound_actions(try_read_source(pair.old_file)))}
     for name, span in _find_unbound_actions(try_read_source(pair.new_file)):
@@ -33,7 +33,7 @@ def report_undefined_names(pair: FilePair) -> None:
         if callable(getattr(builtins, name, None)):
             text = phrase("the built-in function '{name}' is in a list of actions", name=name)
         elif name in new.undefined_names:
-            text = phrase("'{name}' is used, but is not defined or imported", name=name)
+            text = phrase("uses '{name}', which it does not define or import", name=name)
         else:
             continue
         pair.add(text, pair.location(span), phrase("the launch file fails"))

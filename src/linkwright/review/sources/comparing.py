@@ -544,7 +544,7 @@ class _SourcePair:
         """Yield the names and methods that are still used but no longer defined or imported."""
         for name, span in new_names.undefined_names.items() if self.file.old_path is not None else ():
             if name in old_names.bound_names:
-                text = phrase("'{name}' is used, but is no longer defined or imported", name=name)
+                text = phrase("uses '{name}', which it no longer defines or imports", name=name)
                 yield self._make_change(text, span, self.new, phrase("the code that uses the name fails"))
         for name, span in new_names.undefined_methods.items():
             if name in old_names.attributes:
