@@ -7,12 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.lint.dependencies import is_covered
-from linkwright.packages.manifest import MANIFEST
-from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.files.yaml_values import YamlValue
-from linkwright.review.versions import Version, Versions
-from linkwright.xacro.cache import read_document
+from linkwright.review.required_packages import is_undeclared_and_new
+from linkwright.review.versions import Versions
 
 _CLASS = re.compile(r"(?P<package>[a-z][a-z0-9]*(?:_[a-z0-9]+)+)(?:/|::)(?:\w+::)*[A-Z]\w*")
 """The class of a plugin, such as ``nav2_smac_planner/SmacPlanner2D``.
@@ -29,7 +26,6 @@ _OTHER_NAMES = frozenset(
     }
 )
 """The first names of classes that belong to packages with other names."""
-_SUFFIXES = (".yaml", ".yml", ".launch", ".xml", ".xacro", ".py", ".cpp", ".hpp", ".h", ".repos", ".rosinstall")
 
 
 @dataclass(frozen=True)
@@ -63,27 +59,9 @@ class PluginPackages:
 
     def _find_reason(self, package: str) -> Phrase | None:
         """Return the reason why a package is missing, or None if it is not certainly missing."""
-        if self._is_declared(package) or self._is_named_before(package):
+        if not is_undeclared_and_new(self.versions, self.path, package):
             return None
         return phrase("package.xml does not name '{name}', without which the plugin is not loaded", name=package)
-
-    def _is_declared(self, package: str) -> bool:
-        """Return whether a package of the new version is the package, or depends on it."""
-        version = self.versions.new
-        manifests = [_read_manifest(version, path) for path in version.paths((MANIFEST,))]
-        if package in version.shares or not manifests or version.package_of(self.path) is None:
-            return True
-        return any(
-            "$" in "".join(dependency.name for dependency in manifest.dependencies)
-            or is_covered(package, manifest, version.finder(version.root))
-            for manifest in manifests
-        )
-
-    def _is_named_before(self, package: str) -> bool:
-        """Return whether a file of the old version already names the package."""
-        word = re.compile(rf"(?<![\w]){re.escape(package)}(?![\w])")
-        old = self.versions.old
-        return any(word.search(old.text(path)) for path in old.paths(_SUFFIXES))
 
 
 def _find_package(parameter: str, value: YamlValue) -> str | None:
@@ -94,7 +72,3 @@ def _find_package(parameter: str, value: YamlValue) -> str | None:
 
 def _split(text: str) -> list[str]:
     return re.split(r"/|::", text)
-
-
-def _read_manifest(version: Version, path: str) -> Manifest:
-    return Manifest(read_document(str(version.file(path))))

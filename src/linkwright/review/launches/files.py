@@ -18,7 +18,8 @@ from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.effects import find_addition_reason, find_removal_reason
+from linkwright.review.launches.added_nodes import explain_addition
+from linkwright.review.launches.effects import find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.imports import compare_imports
@@ -172,7 +173,8 @@ def _report_unpaired_entries(
                 continue
         file = file or other_file
         if file is None:
-            pair.add(format_added_entry(entry), pair.location(entry.span), find_addition_reason(entry))
+            reason = explain_addition(pair, entry, removed, old_included.outline, new_included.outline)
+            pair.add(format_added_entry(entry), pair.location(entry.span), reason)
         else:
             moved.setdefault((file, False), []).append(entry)
     for entry in removed:
