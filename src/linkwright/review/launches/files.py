@@ -29,6 +29,7 @@ from linkwright.review.launches.included import (
     find_file_with_moved_action,
     find_moved_settings,
 )
+from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
@@ -102,7 +103,7 @@ def compare_launch_files(pair: FilePair) -> None:
         for entry in removed
         if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
     ]
-    report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)])
+    report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)], removed)
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
@@ -202,11 +203,9 @@ def _report_unpaired_entries(
             pair.add(phrase("{change}; the file did not use it", change=text), location)
             continue
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
-        pair.add(
-            text,
-            location,
-            find_removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes),
-        )
+        outlines = old_included.outline, new_included.outline
+        reason = find_removal_reason(entry, *outlines, stops_nodes=stops_nodes)
+        pair.add(text, location, reason or explain_lost_value(entry, *outlines))
     _report_moved(pair, moved)
 
 
