@@ -168,8 +168,8 @@ def generate_launch_description():
 def test_boolean_argument_of_moveit_has_a_default(review_changes):
     line = next(line for line in CONDITIONAL.splitlines() if "IncludeLaunchDescription(" in line)
     assert review_changes("arm.launch.py", CONDITIONAL, f"{line}\n", "") == (
-        ["include of 'db.launch.py' removed: if $(var db)"],
-        [],
+        ["argument 'db' is no longer used", "include of 'db.launch.py' removed: if $(var db)"],
+        ["argument 'db' is no longer used"],
     )
 
 

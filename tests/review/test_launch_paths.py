@@ -70,6 +70,34 @@ def test_file_that_may_exist_is_not_told(repository, compare, changes):
     assert breaking(compare(repository)) == []
 
 
+LEFT_OUT = CMAKE.replace("launch config", "launch")
+CATKIN = """<package format="2"><name>arm</name><version>1.0.0</version>
+  <buildtool_depend>catkin</buildtool_depend></package>
+"""
+
+
+@pytest.mark.parametrize(
+    ("changes", "reasons"),
+    [
+        ({}, ["the launch file does not find the file"]),
+        ({"arm/package.xml": CATKIN}, ["the launch file does not find the file in an installed workspace"]),
+        ({"arm/CMakeLists.txt": CMAKE}, []),
+        (
+            {"arm/CMakeLists.txt": LEFT_OUT + "externalproject_add(driver)\n"},
+            ["the launch file does not find the file"],
+        ),
+        ({"arm/CMakeLists.txt": LEFT_OUT + "externalproject_add(config)\n"}, []),
+        ({"arm/CMakeLists.txt": LEFT_OUT.replace(" launch ", " meshes ")}, []),
+    ],
+)
+def test_launch_file_that_newly_names_a_file_which_is_not_installed(repository, compare, changes, reasons):
+    text = XML.replace("config/arm", "launch/arm")
+    files = {**FILES, "arm/launch/arm.yaml": "a: 1\n", "arm/CMakeLists.txt": LEFT_OUT, **changes}
+    repository.commit({**files, "arm/launch/arm.launch.xml": text})
+    repository.write({"arm/launch/arm.launch.xml": XML})
+    assert [str(change.reason) for _, change in compare(repository).breaking_changes] == reasons
+
+
 def test_missing_file_of_an_added_launch_file_breaks_nobody(repository, compare):
     repository.commit(FILES)
     repository.write({"arm/launch/arm.launch.xml": XML.replace("arm.yaml", "robot.yaml")})

@@ -132,8 +132,11 @@ def test_nodelet_of_another_class_is_another_node(review_changes):
 def test_removed_remapping_that_did_not_hold_is_not_breaking(review_changes):
     line = NODELETS.splitlines()[2]
     assert review_changes("arm.launch", NODELETS, f"{line}\n", "") == (
-        ["remapping of 'scan' for the nodes that follow removed: if $(arg simulation), to front/scan"],
-        [],
+        [
+            "argument 'simulation' is no longer used",
+            "remapping of 'scan' for the nodes that follow removed: if $(arg simulation), to front/scan",
+        ],
+        ["argument 'simulation' is no longer used"],
     )
 
 

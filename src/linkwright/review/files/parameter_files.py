@@ -24,6 +24,7 @@ from linkwright.review.files.parameter_names import (
     is_parameter,
     list_part_paths,
 )
+from linkwright.review.files.plugin_packages import PluginPackages
 from linkwright.review.files.renamed_parts import find_edit, find_renamed_parts, get_parent, rename_parts
 from linkwright.review.files.value_changes import ValueChange, merge_values
 from linkwright.review.files.yaml_includes import resolve_includes
@@ -119,6 +120,7 @@ def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Nod
     readers = KeyReaders(pair.versions, pair.new_path)
     old = _report_renamed(pair, old_values, new, moveit, readers)
     rules = NameRules(old, new, readers)
+    plugins = PluginPackages(pair.versions, pair.new_path)
     new_keys = frozenset(_get_last_key(part) for name in new for part in list_part_paths(name))
     for name, value in new.items():
         old_value = old.get(name)
@@ -133,11 +135,13 @@ def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Nod
                 name, old_value, value
             )
             reason = reason or readers.find_name_reason(name, old_value, value)
+            reason = reason or plugins.find_change_reason(name, old_value, value)
             yield ValueChange(name, "changed", value_texts, location, reason)
     for name, values_below in _find_unpaired_parts(new, old):
         first = next(iter(values_below.values()))
         location = Location(pair.new_path, first.line, first.column)
-        yield ValueChange(name, "added", _list_values(name, values_below), location)
+        reason = plugins.find_addition_reason(values_below) if old else None
+        yield ValueChange(name, "added", _list_values(name, values_below), location, reason)
     for name, values_below in _find_unpaired_parts(old, new):
         first = next(iter(values_below.values()))
         location = Location(pair.old_path, first.line, first.column, is_old=True)

@@ -18,7 +18,8 @@ from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.effects import find_addition_reason, find_removal_reason
+from linkwright.review.launches.added_nodes import explain_addition
+from linkwright.review.launches.effects import find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.imports import compare_imports
@@ -28,6 +29,7 @@ from linkwright.review.launches.included import (
     find_file_with_moved_action,
     find_moved_settings,
 )
+from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
@@ -101,7 +103,7 @@ def compare_launch_files(pair: FilePair) -> None:
         for entry in removed
         if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
     ]
-    report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)])
+    report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)], removed)
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
@@ -172,7 +174,8 @@ def _report_unpaired_entries(
                 continue
         file = file or other_file
         if file is None:
-            pair.add(format_added_entry(entry), pair.location(entry.span), find_addition_reason(entry))
+            reason = explain_addition(pair, entry, removed, old_included.outline, new_included.outline)
+            pair.add(format_added_entry(entry), pair.location(entry.span), reason)
         else:
             moved.setdefault((file, False), []).append(entry)
     for entry in removed:
@@ -200,11 +203,9 @@ def _report_unpaired_entries(
             pair.add(phrase("{change}; the file did not use it", change=text), location)
             continue
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
-        pair.add(
-            text,
-            location,
-            find_removal_reason(entry, old_included.outline, new_included.outline, stops_nodes=stops_nodes),
-        )
+        outlines = old_included.outline, new_included.outline
+        reason = find_removal_reason(entry, *outlines, stops_nodes=stops_nodes)
+        pair.add(text, location, reason or explain_lost_value(entry, *outlines))
     _report_moved(pair, moved)
 
 

@@ -15,6 +15,7 @@ from linkwright.review.launches.conditional_settings import SettingPair, find_ch
 from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
 from linkwright.review.launches.included import IncludedActions, Program
+from linkwright.review.launches.lost_values import explain_lost_frames
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
@@ -161,6 +162,7 @@ class SettingChanges:
             defaults = pair.old_default, pair.new_default
             has_different_default = pair.has_defaults and defaults[0] != defaults[1]
             reason = self._find_reason(new, pair.name, *defaults) if has_different_default else None
+            reason = reason or explain_lost_frames(new, pair.name, pair.old, pair.new, self._old)
             if new.kind == READING and reason is None:
                 continue
             old_text = None if pair.old is None else rename_in_text(pair.old, self._old_names)

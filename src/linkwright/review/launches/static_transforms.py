@@ -68,6 +68,12 @@ def compare_transforms(old_program: str, new_program: str, old: str | None, new:
     return joined(changes)
 
 
+def find_child_frame(program: str, text: str) -> str:
+    """Return the child frame in the arguments of a program, as it is written; empty if it is unknown."""
+    transform = _read_transform(program, text)
+    return "" if transform is None else transform.child
+
+
 def _read_transform(program: str, text: str) -> _Transform | None:
     if not program.startswith(TRANSFORM_PUBLISHERS):
         return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
@@ -11,7 +12,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.readers.launch_files import read_launch_file
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.launch_paths import find_launch_files
-from linkwright.review.launches.missing_programs import find_packages
+from linkwright.review.launches.missing_programs import RepositoryPackage, find_packages
 from linkwright.review.launches.script_options import find_refused_options
 from linkwright.review.users.installed_readers import find_named_paths
 from linkwright.review.versions import Version, Versions
@@ -20,11 +21,16 @@ LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".l
 """The ends of the names of launch files whose paths are searched."""
 
 
+_COMMENT = re.compile(r"#[^\n]*")
+_WORD = re.compile(r"[\w.-]+")
+
+
 def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield launch files with paths to missing files or refused options, and the changes.
 
     A missing file exists only in the old version, or a changed launch file in XML or YAML names it for the first time.
-    The latter is not breaking in an added launch file, which has no users yet.
+    So is a file that the build file does not install, although it installs the launch file. Both are not breaking in an
+    added launch file, which has no users yet.
     A script does not accept a refused option.
     """
     yield from find_refused_options(versions, changed_files)
@@ -45,10 +51,11 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
             reported.add((package, subpath))
             if is_user and _is_lost(versions, path, package, subpath, lost):
                 yield path, _make_change(path, package, subpath, span, is_lost=True)
-            elif known is not None and (package, subpath) not in known and _is_missing(versions.new, package, subpath):
-                change = _make_change(path, package, subpath, span, is_lost=False)
-                is_added = changed[path] is None  # the file has no users yet
-                yield path, replace(change, effect=Effect.CHANGED, reason=None) if is_added else change
+            elif known is not None and (package, subpath) not in known:
+                change = _explain_missing(versions.new, path, package, subpath, span)
+                if change is not None:
+                    is_added = changed[path] is None  # the file has no users yet
+                    yield path, replace(change, effect=Effect.CHANGED, reason=None) if is_added else change
 
 
 def _list_known_paths(version: Version, path: str | None) -> set[tuple[str, str]] | None:
@@ -74,6 +81,33 @@ def find_share_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, 
     for named_path in find_named_paths(source, path):
         if named_path.package and named_path.path and named_path.is_complete:
             yield named_path.package, named_path.path, named_path.span
+
+
+def _explain_missing(version: Version, path: str, package: str, subpath: str, span: Span) -> Change | None:
+    """Return the change that a launch file names a missing file, or None if the file may exist."""
+    if _is_missing(version, package, subpath):
+        return _make_change(path, package, subpath, span, is_lost=False)
+    owner = find_packages(version).get(package)
+    if owner is None or not _is_left_out(version, owner, path, subpath):
+        return None
+    text = phrase("names '{file}' of '{package}', which is not installed", file=subpath, package=package)
+    reason = phrase("the launch file does not find the file")
+    if owner.is_ros1:
+        reason = phrase("the launch file does not find the file in an installed workspace")
+    return Change(text, Effect.BREAKING, reason, Location(path, span.line, span.column))
+
+
+def _is_left_out(version: Version, owner: RepositoryPackage, path: str, subpath: str) -> bool:
+    """Return whether a build file installs a launch file of its package, but not another file that exists."""
+    facts = owner.facts
+    file = PurePosixPath(owner.folder) / subpath
+    if facts is None or not version.file(file.as_posix()).is_file():
+        return False
+    words = set(_WORD.findall(_COMMENT.sub("", owner.build_text)))
+    if not facts.is_complete and words.intersection(PurePosixPath(subpath).parts):
+        return False  # a command whose effect is unknown may install it
+    sources = {(PurePosixPath(owner.folder) / source).as_posix() for source in facts.files.values()}
+    return path in sources and file.as_posix() not in sources and f"share/{facts.project}/{subpath}" not in facts.files
 
 
 def _is_missing(version: Version, package: str, subpath: str) -> bool:

@@ -1,0 +1,74 @@
+"""Find plugins of packages that a parameter file needs for the first time and that no ``package.xml`` names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.required_packages import is_undeclared_and_new
+from linkwright.review.versions import Versions
+
+_CLASS = re.compile(r"(?P<package>[a-z][a-z0-9]*(?:_[a-z0-9]+)+)(?:/|::)(?:\w+::)*[A-Z]\w*")
+"""The class of a plugin, such as ``nav2_smac_planner/SmacPlanner2D``.
+
+The namespace of a class without an underscore is often not the package.
+"""
+_CLASS_PARAMETER = re.compile(r"(^|[._])(plugin|type|kinematics_solver|planning_plugin|base_\w+_planner)$")
+_PLUGIN = re.compile(r"(^|[._])plugin$")
+_OTHER_NAMES = frozenset(
+    {
+        *("cached_ik_kinematics_plugin", "chomp_interface", "default_planner_request_adapters", "fake_components"),
+        *("kdl_kinematics_plugin", "lma_kinematics_plugin", "mock_components", "occupancy_map_monitor"),
+        *("ompl_interface", "srv_kinematics_plugin"),
+    }
+)
+"""The first names of classes that belong to packages with other names."""
+
+
+@dataclass(frozen=True)
+class PluginPackages:
+    """The packages of the plugins that a parameter file loads.
+
+    Attributes:
+        versions: the repository before and after the change.
+        path: the path of the parameter file in the new version.
+    """
+
+    versions: Versions
+    path: str
+
+    def find_change_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
+        """Return the reason why another class of a plugin is breaking, or None if it is not."""
+        package = _find_package(parameter, new)
+        if package is None or package in (_find_package(parameter, old), *_split(old.text)):
+            return None
+        return self._find_reason(package)
+
+    def find_addition_reason(self, values: Mapping[str, YamlValue]) -> Phrase | None:
+        """Return the reason why added values are breaking, or None if they are not.
+
+        An added controller, which has a type, may not be started.
+        """
+        plugins = {name: value for name, value in values.items() if _PLUGIN.search(name)}
+        packages = dict.fromkeys(_find_package(name, value) for name, value in plugins.items())
+        reasons = (self._find_reason(package) for package in packages if package is not None)
+        return next((reason for reason in reasons if reason is not None), None)
+
+    def _find_reason(self, package: str) -> Phrase | None:
+        """Return the reason why a package is missing, or None if it is not certainly missing."""
+        if not is_undeclared_and_new(self.versions, self.path, package):
+            return None
+        return phrase("package.xml does not name '{name}', without which the plugin is not loaded", name=package)
+
+
+def _find_package(parameter: str, value: YamlValue) -> str | None:
+    """Return the package of the plugin that a value names; None for other values."""
+    match = _CLASS.fullmatch(value.text) if _CLASS_PARAMETER.search(parameter) else None
+    return None if match is None or match["package"] in _OTHER_NAMES else match["package"]
+
+
+def _split(text: str) -> list[str]:
+    return re.split(r"/|::", text)

@@ -1,0 +1,82 @@
+"""Decide which added actions of a launch file are breaking: they may fail, or take the place of others."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.review.file_pair import FilePair
+from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.effects import find_addition_reason, offers_nothing
+from linkwright.review.launches.outlines import CONDITION, REMAPPING, Entry, LaunchOutline, without_condition
+from linkwright.review.required_packages import is_undeclared_and_new
+
+_PROGRAM = re.compile(r"(?P<package>[a-z][a-z0-9_]*)/\S+")
+_INCLUDED_FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w-]+)\)/.+")
+
+
+def explain_addition(
+    pair: FilePair, entry: Entry, removed: Sequence[Entry], old: LaunchOutline, new: LaunchOutline
+) -> Phrase | None:
+    """Return the reason why an added action is breaking, or None if it is not.
+
+    Args:
+        pair: both versions of the launch file.
+        entry: the action that only the new version has.
+        removed: the actions that only the old version has.
+        old: the actions of the old version.
+        new: the actions of the new version.
+    """
+    reason = find_addition_reason(entry) or _find_missing_package_reason(pair, entry, new)
+    return reason or _find_remapping_reason(entry, removed, old, new)
+
+
+def _find_missing_package_reason(pair: FilePair, entry: Entry, outline: LaunchOutline) -> Phrase | None:
+    """Return the reason why the package of an action is missing, or None if it is not certainly missing.
+
+    The action must start if callers pass no values.
+    """
+    package = _find_package(entry, outline)
+    if package is None or offers_nothing(entry):
+        return None
+    if evaluate_condition(outline.resolve(entry.settings.get(CONDITION, ""))) is not True:
+        return None
+    if not is_undeclared_and_new(pair.versions, pair.new_path, package):
+        return None
+    if entry.kind == "include":
+        return phrase("package.xml does not name '{name}', without which the launch file fails", name=package)
+    return phrase("package.xml does not name '{name}', without which the node does not start", name=package)
+
+
+def _find_remapping_reason(
+    entry: Entry, removed: Sequence[Entry], old: LaunchOutline, new: LaunchOutline
+) -> Phrase | None:
+    """Return the reason why the remappings of a node are breaking that takes the place of an included file.
+
+    Only absolute names of the node, which it had before, count.
+    """
+    package = _find_package(entry, new) if entry.kind == "node" else None
+    included = [other for other in removed if other.kind == "include" and _find_package(other, old) == package]
+    conditions = {other.settings.get(CONDITION) for other in included}
+    if package is None or conditions != {entry.settings.get(CONDITION)}:
+        return None
+    names = {
+        without_condition(setting).removeprefix(REMAPPING): value
+        for setting, value in entry.settings.items()
+        if setting.startswith(REMAPPING)
+    }
+    lost = [name for name, value in names.items() if name.startswith("/") and new.resolve(value) != name]
+    if not lost:
+        return None
+    return phrase(
+        "if the included file published or served {names}, programs that use the names do not find them",
+        names=quoted_names(lost),
+    )
+
+
+def _find_package(entry: Entry, outline: LaunchOutline) -> str | None:
+    """Return the package of a program or of an included file; None for other actions."""
+    pattern = {"node": _PROGRAM, "include": _INCLUDED_FILE}.get(entry.kind)
+    match = None if pattern is None else pattern.fullmatch(outline.resolve(entry.name))
+    return None if match is None else match["package"]

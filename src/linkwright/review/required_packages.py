@@ -1,0 +1,51 @@
+"""Tell whether a version needs a package for the first time although no ``package.xml`` names it."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from linkwright.lint.dependencies import is_covered
+from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.readers.package_xml import Manifest
+from linkwright.review.versions import Version, Versions
+from linkwright.xacro.cache import read_document
+
+_SUFFIXES = (".yaml", ".yml", ".launch", ".xml", ".xacro", ".py", ".cpp", ".hpp", ".h", ".repos", ".rosinstall")
+"""The ends of the names of files that may name a package."""
+
+
+def is_undeclared_and_new(versions: Versions, path: str, package: str) -> bool:
+    """Return whether no manifest of the new version brings a package, and no file of the old version names it.
+
+    The result is False for a file of a package that only the new version has, because nothing depends on it yet.
+
+    Args:
+        versions: the repository before and after the change.
+        path: the path of the file that needs the package, in the new version.
+        package: the name of the package.
+    """
+    folder = versions.new.package_of(path)
+    if folder is None or not (versions.old.file(folder) / MANIFEST).is_file():
+        return False
+    return not _is_declared(versions.new, package) and not _is_named(versions.old, package)
+
+
+@lru_cache(maxsize=256)
+def _is_declared(version: Version, package: str) -> bool:
+    """Return whether a package of a version is the package, or depends on it."""
+    if package in version.shares:
+        return True
+    finder = version.finder(version.root)
+    manifests = [Manifest(read_document(str(version.file(path)))) for path in version.paths((MANIFEST,))]
+    return any(
+        any("$" in dependency.name for dependency in manifest.dependencies) or is_covered(package, manifest, finder)
+        for manifest in manifests
+    )
+
+
+@lru_cache(maxsize=256)
+def _is_named(version: Version, package: str) -> bool:
+    """Return whether a file of a version names a package."""
+    word = re.compile(rf"(?<!\w){re.escape(package)}(?!\w)")
+    return any(word.search(version.text(path)) for path in version.paths(_SUFFIXES))

@@ -1,0 +1,67 @@
+"""The lines of a review about added nodes of launch files whose packages are missing, or that replace an include."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import subject
+
+MANIFEST = "<package format='3'><name>lamp</name><version>1.0.0</version>{}</package>\n"
+FILE = """<launch>
+  <arg name="camera" default="true"/>
+  <arg name="debug" default="false"/>
+  <node pkg="lamp" exec="lamp" if="$(var camera)" unless="$(var debug)"/>
+</launch>
+"""
+NODE = '<node pkg="eye" exec="eye_node"{}/>'
+INCLUDE = '<include file="$(find-pkg-share eye)/launch/eye.launch.xml"/>'
+NO_START = "package.xml does not name '{}', without which the node does not start"
+
+
+@pytest.mark.parametrize(
+    ("added", "depend", "reason"),
+    [
+        (NODE.format(""), "", NO_START.format("eye")),
+        (NODE.format(' if="$(var camera)"'), "", NO_START.format("eye")),
+        (NODE.format(' if="$(var debug)"'), "", None),
+        (NODE.format(""), "eye", None),
+        (INCLUDE, "", "package.xml does not name 'eye', without which the launch file fails"),
+        ('<node pkg="rviz2" exec="rviz2"/>', "", None),
+        ('<node pkg="robot_state_publisher" exec="robot_state_publisher"/>', "", None),
+    ],
+)
+def test_an_added_node_of_an_undeclared_package_is_breaking(repository, compare, added, depend, reason):
+    dependency = f"<exec_depend>{depend}</exec_depend>" if depend else ""
+    path = "lamp/launch/lamp.launch.xml"
+    repository.commit({"lamp/package.xml": MANIFEST.format(dependency), path: FILE})
+    repository.write({path: FILE.replace("</launch>", f"{added}</launch>")})
+    (change,) = subject(compare(repository), path).changes
+    assert (None if change.reason is None else str(change.reason)) == reason
+
+
+REMAPPED = """<node pkg="eye" exec="eye_node"{}>
+  <remap from="/eye/image" to="/lamp/image"/>
+  <remap from="/eye/info" to="/eye/info"/>
+  <remap from="depth" to="/lamp/depth"/>
+</node>
+"""
+REASON = "if the included file published or served '/eye/image', programs that use the names do not find them"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        (INCLUDE, REMAPPED.format(""), REASON),
+        (INCLUDE, REMAPPED.format(' if="$(var camera)"'), None),
+        (INCLUDE, NODE.format(""), None),
+        (INCLUDE.replace(" eye)", " ear)"), REMAPPED.format(""), None),
+    ],
+)
+def test_remappings_of_a_node_that_replaces_an_include(repository, compare, old, new, reason):
+    path = "lamp/launch/lamp.launch.xml"
+    text = FILE.replace("</launch>", f"{old}</launch>")
+    repository.commit({"lamp/package.xml": MANIFEST.format("<depend>eye</depend>"), path: text})
+    repository.write({path: text.replace(old, new)})
+    changes = subject(compare(repository), path).changes
+    (added,) = [change for change in changes if str(change.sentence).startswith("node 'eye/eye_node' added")]
+    assert (None if added.reason is None else str(added.reason)) == reason

@@ -1,0 +1,55 @@
+"""The lines of a review about plugins in parameter files whose packages are not declared."""
+
+from __future__ import annotations
+
+import pytest
+
+MANIFEST = "<package format='2'><name>lamp</name><version>1.0.0</version>{}</package>\n"
+PLANNER = "planner_server:\n  ros__parameters:\n    Grid:\n      plugin: lamp_planner/Lamp\n      tolerance: 0.5\n"
+KINEMATICS = "arm:\n  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin\n  timeout: 0.1\n"
+CONTROLLERS = "controller_manager:\n  ros__parameters:\n    rate: 10\n"
+DEPENDENCY = "<depend>{}</depend>"
+REASON = "package.xml does not name '{}', without which the plugin is not loaded"
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "depend", "reasons"),
+    [
+        (PLANNER, "lamp_planner/Lamp", "sun_planner/Sun", "", [REASON.format("sun_planner")]),
+        (PLANNER, "lamp_planner/Lamp", "sun_planner::deep::Sun", "", [REASON.format("sun_planner")]),
+        (PLANNER, "lamp_planner/Lamp", "sun_planner/Sun", "sun_planner", []),
+        (PLANNER, "lamp_planner/Lamp", "nav2_smac_planner/Grid", "navigation2", []),
+        (PLANNER, "lamp_planner/Lamp", "lamp_planner/Candle", "", []),
+        (PLANNER, "lamp_planner/Lamp", "lamp_planner::Lamp", "", []),
+        (
+            PLANNER,
+            "tolerance: 0.5",
+            "tolerance: 0.5\n      layer: {plugin: sun_layer/Sun}",
+            "",
+            [REASON.format("sun_layer")],
+        ),
+        (PLANNER, "tolerance: 0.5", "tolerance: 0.5\n      note: sun_layer/Sun", "", []),
+        (KINEMATICS, "kdl_kinematics_plugin/KDL", "fast_ik/Fast", "", [REASON.format("fast_ik")]),
+        (KINEMATICS, "kdl_kinematics_plugin/KDL", "lma_kinematics_plugin/LMA", "", []),
+        (CONTROLLERS, "rate: 10\n", "rate: 10\n    arm: {type: sun_controllers/Sun}\n", "", []),
+    ],
+)
+def test_a_plugin_of_an_undeclared_package_is_breaking(repository, compare, text, old, new, depend, reasons):
+    dependency = DEPENDENCY.format(depend) if depend else ""
+    repository.commit({"lamp/package.xml": MANIFEST.format(dependency), "lamp/config/a.yaml": text})
+    repository.write({"lamp/config/a.yaml": text.replace(old, new)})
+    result = compare(repository)
+    assert [str(change.reason) for _, change in result.breaking_changes] == reasons
+
+
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        ("sun_planner/package.xml", "<package format='2'><name>sun_planner</name><version>1.0.0</version></package>\n"),
+        ("lamp/config/other.yaml", "planner: {plugin: sun_planner/Sun}\n"),
+    ],
+)
+def test_a_package_that_the_old_version_has_or_names(repository, compare, path, text):
+    repository.commit({"lamp/package.xml": MANIFEST.format(""), "lamp/config/a.yaml": PLANNER, path: text})
+    repository.write({"lamp/config/a.yaml": PLANNER.replace("lamp_planner/Lamp", "sun_planner/Sun")})
+    assert [change for _, change in compare(repository).breaking_changes] == []
