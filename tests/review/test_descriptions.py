@@ -342,3 +342,25 @@ def test_equal_changes_of_several_parts_of_hardware_are_one_line(package, compar
     (change,) = subject(compare(package), PATH).changes
     assert str(change.sentence) == "extension 'ros2_control hardware': gpio a param gain 1 -> 2"
     assert change.other_names == ("gpio b", "gpio c")
+
+
+EXTENSIONS = """
+  <gazebo reference="{prefix}probe"><sensor name="scan" type="ray"><update_rate>{rate}</update_rate>
+    <plugin name="scan" filename="scan.so"><frame_name>{prefix}probe</frame_name></plugin></sensor></gazebo>
+  <transmission name="{prefix}drive"><joint name="{prefix}probe_joint"/><ratio>50</ratio></transmission>
+</robot>"""
+
+
+def test_extensions_of_renamed_links_and_joints_are_compared_with_the_old_ones(package, compare):
+    """What only follows the new names has no line."""
+    robot = ARM.replace('default="none"', 'default="probe"')
+    renamed = robot.replace('"probe"/>\n    <', '"arm_probe"/>\n    <').replace('link="probe"', 'link="arm_probe"')
+    renamed = renamed.replace('"probe_joint"', '"arm_probe_joint"')
+    package.commit({PATH: robot.replace("</robot>", EXTENSIONS.format(prefix="", rate=10))})
+    package.write({PATH: renamed.replace("</robot>", EXTENSIONS.format(prefix="arm_", rate=30))})
+    assert sentences(subject(compare(package), PATH)) == [
+        "link 'probe' renamed to 'arm_probe'",
+        "joint 'probe_joint' renamed to 'arm_probe_joint'",
+        "extension 'transmission arm_drive': @name drive -> arm_drive",
+        "extension 'gazebo arm_probe': sensor scan update_rate 10 -> 30",
+    ]

@@ -138,6 +138,26 @@ def calls(package):
     return package
 
 
+def test_renamed_links_and_joints_are_known_before_groups_are_compared(package, compare):
+    """Everything that only follows the new prefix has no line."""
+    names = ("upper_joint", "left", "right", "upper", "lower", "base_link")
+    prefixed = SRDF
+    for name in names:
+        prefixed = prefixed.replace(f'"{name}"', f'"arm_{name}"')
+    prefixed = prefixed.replace("manipulator", "arm").replace('value="0"', 'value="1.5"')
+    package.commit({PATH: SRDF})
+    package.write({PATH: prefixed})
+    result = compare(package)
+    assert sentences(subject(result, PATH)) == [
+        (
+            "links and joints renamed: left -> arm_left, base_link -> arm_base_link, lower -> arm_lower, "
+            "right -> arm_right and 2 more"
+        ),
+        "group_state 'arm/home': arm_upper_joint 0 -> 1.5",
+        "group 'manipulator' renamed to 'arm'",
+    ]
+
+
 def test_other_spelling_of_the_same_expansion_is_no_change(calls, compare):
     calls.write({CALLED: LOOP})
     assert [sentences(part) for part in compare(calls).subjects] == []
@@ -146,8 +166,7 @@ def test_other_spelling_of_the_same_expansion_is_no_change(calls, compare):
 def test_included_file_changes_the_semantic_description(calls, compare):
     calls.write({DEFINED: MACROS.replace('link2="${second}"', 'link2="${second}_link"')})
     assert sentences(subject(compare(calls), CALLED)) == [
-        "disable_collisions: 2 pairs added: base_link - lower_link, base_link - upper_link",
-        "disable_collisions: 2 pairs removed: base_link - lower, base_link - upper",
+        "links and joints renamed: lower -> lower_link, upper -> upper_link",
     ]
 
 

@@ -182,7 +182,7 @@ class _Comparer:
         yield from _compare_named("joint", old, new, self.matches.joints, inside)
 
     def _extension_differences(self) -> Iterator[Difference]:
-        comparison = ElementComparison(self.old.normalize, self.new.normalize)
+        comparison = ElementComparison(self.old.normalize, self.new.normalize, self._find_renamed())
         old, new = list(self.old.robot.extensions), list(self.new.robot.extensions)
         for old_element, new_element in list(find_renamed_hardware(old, new)):
             old.remove(old_element)
@@ -196,6 +196,12 @@ class _Comparer:
                 if difference.property != "@name"
             )
         yield from comparison.child_differences(old, new)
+
+    def _find_renamed(self) -> dict[str, str]:
+        """Return the new names of renamed links and joints, without names that have several new names."""
+        links, joints = self.matches.links, self.matches.joints
+        pairs = ((name, links.get(name, joints.get(name, name))) for name in (*links, *joints))
+        return {old: new for old, new in pairs if old != new and joints.get(old, new) == new}
 
     def _follows_a_name(self, difference: Difference) -> bool:
         """Return whether a value differs only because it names a renamed link or joint."""

@@ -13,7 +13,7 @@ from linkwright.descriptions.comparison.difference import Difference, Kind, loca
 from linkwright.descriptions.comparison.gazebo_blocks import GAZEBO, joined_block
 from linkwright.descriptions.comparison.numbers import normalize_numbers
 from linkwright.descriptions.comparison.renamed_elements import renamed_elements
-from linkwright.loading.lean_dataclasses import dataclass
+from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.xmltree import Element
 
 _ATTRIBUTES_WITHOUT_NUMBERS = frozenset({"name", "reference", "filename", "version"})
@@ -30,10 +30,12 @@ class ElementComparison:
     Attributes:
         normalize_old: a function that makes texts of the old version comparable.
         normalize_new: a function that makes texts of the new version comparable.
+        renamed: the new names of renamed links and joints, by old name. Values that follow a new name are equal.
     """
 
     normalize_old: Callable[[str], str] = str
     normalize_new: Callable[[str], str] = str
+    renamed: Mapping[str, str] = field(default_factory=dict)
 
     def child_differences(
         self,
@@ -84,8 +86,8 @@ class ElementComparison:
         contents = [[self._content(element, side) for element in elements] for side, elements in enumerate((old, new))]
         common = Counter(contents[0]) & Counter(contents[1])
         old_rest, new_rest = (
-            _remove_common(_index_by_key(elements), keys, common)
-            for elements, keys in zip((old, new), contents, strict=True)
+            _remove_common(_index_by_key(elements), keys, common, names)
+            for elements, keys, names in zip((old, new), contents, (self.renamed, {}), strict=True)
         )
         yield from self._take_renamed(old, new, old_rest, new_rest)
         for base in dict.fromkeys([*new_rest, *old_rest]):
@@ -122,7 +124,7 @@ class ElementComparison:
             side: 0 or 1.
             parent: the tag of the element's parent.
         """
-        normalize = (self.normalize_old, self.normalize_new)[side]
+        normalize = (self._normalize_old_text, self.normalize_new)[side]
         attributes = frozenset(
             (name, _to_comparable(name, normalize(value))) for name, value in element.attributes.items()
         )
@@ -153,10 +155,15 @@ class ElementComparison:
             yield Difference("extension", name, "changed", path, *texts, "", location_of(old), location_of(new))
         yield from self.child_differences(list(old.elements()), list(new.elements()), path, (name, old, new))
 
+    def _normalize_old_text(self, text: str) -> str:
+        return self.renamed.get(text.strip()) or self.normalize_old(text)
+
     def _same_text(self, old: str | None, new: str | None, attribute: str = "") -> bool:
         if old is None or new is None:
             return old is new
-        return _to_comparable(attribute, self.normalize_old(old)) == _to_comparable(attribute, self.normalize_new(new))
+        return _to_comparable(attribute, self._normalize_old_text(old)) == _to_comparable(
+            attribute, self.normalize_new(new)
+        )
 
 
 def _complete_namespace(path: str, text: str) -> str:
@@ -194,13 +201,19 @@ def _index_by_key(elements: Sequence[Element]) -> dict[str, Element]:
     return keyed_elements
 
 
-def _remove_common(elements: Mapping[str, Element], contents: Sequence[Hashable], common: Counter[Hashable]) -> _Rest:
+def _remove_common(
+    elements: Mapping[str, Element],
+    contents: Sequence[Hashable],
+    common: Counter[Hashable],
+    renamed: Mapping[str, str],
+) -> _Rest:
     """Return the elements that have no counterpart, with their keys, by tag and name.
 
     Args:
         elements: the elements by key.
         contents: the contents of the elements.
         common: the number of counterparts of each content.
+        renamed: the new names of renamed links and joints, by old name.
     """
     remaining = Counter(common)
     unmatched: _Rest = {}
@@ -208,7 +221,8 @@ def _remove_common(elements: Mapping[str, Element], contents: Sequence[Hashable]
         if remaining[content]:
             remaining[content] -= 1
         else:
-            unmatched.setdefault(f"{element.tag} {_find_name(element) or ''}", []).append((key, element))
+            name = _find_name(element) or ""
+            unmatched.setdefault(f"{element.tag} {renamed.get(name, name)}", []).append((key, element))
     return unmatched
 
 

@@ -12,6 +12,7 @@ from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined, joi
 from linkwright.lint.targets import find_files_and_packages
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.semantic_names import find_renamed_names, report_renamed_names
 from linkwright.review.lenient_xml import read_lenient_root
 from linkwright.review.versions import Version
 from linkwright.xmltree import Element
@@ -57,16 +58,27 @@ def compare_semantics(pair: FilePair) -> None:
 
 def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
     """Compare two semantic descriptions by their root elements."""
-    old, new = ({(entry.tag, entry.name): entry for entry in _read_entries(root)} for root in (old_root, new_root))
+    new_names = find_renamed_names(old_root, new_root)
+    old, new = (
+        {(entry.tag, entry.name): entry for entry in _read_entries(root, names)}
+        for root, names in ((old_root, new_names), (new_root, {}))
+    )
     renamed = dict(_find_renamed(old, new))
     passive_joints = {name for tag, name in new if tag == "passive_joint"}
+    if new_names:
+        fixed_joints = {*passive_joints, *_find_fixed_joints(pair.versions.old)}
+        report_renamed_names(pair, new_root, new_names, fixed_joints)
+    moved_states = dict(_find_states_of_renamed_groups(old, new, renamed))
+    old_keys = {new_key: old_key for old_key, new_key in (renamed | moved_states).items()}
     for key, entry in new.items():
-        if key in old:
-            _compare_entries(pair, old[key], entry, passive_joints)
+        if key in old or key in moved_states.values():
+            _compare_entries(pair, old[old_keys.get(key, key)], entry, passive_joints)
         elif key not in renamed.values():
             text = phrase("{entry} added", entry=_format_title(entry))
             pair.add(_add_values(text, entry), pair.location(entry.element.span()))
     for key, entry in old.items():
+        if key in moved_states:
+            continue
         if key in renamed:
             text = phrase("{entry} renamed to '{name}'", entry=_format_title(entry), name=new[renamed[key]].name)
             location = pair.location(new[renamed[key]].element.span())
@@ -77,12 +89,12 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
             text = phrase("{entry} removed", entry=_format_title(entry))
             pair.add(_add_values(text, entry), location, reason)
     for tag in _PAIR_TAGS:
-        _compare_pairs(pair, tag, *(_group_by_pair(root, tag) for root in (old_root, new_root)))
+        _compare_pairs(pair, tag, _group_by_pair(old_root, tag, new_names), _group_by_pair(new_root, tag))
 
 
 def semantic_contents(version: Version, path: str) -> Phrase | None:
     """Return the named elements of a semantic description; None if there are none."""
-    titles = [_format_title(entry) for entry in _read_entries(read_lenient_root(version.file(path)))]
+    titles = [_format_title(entry) for entry in _read_entries(read_lenient_root(version.file(path)), {})]
     return joined_first(titles, MAX_NAMES) if titles else None
 
 
@@ -113,24 +125,27 @@ def find_removal_reason(tag: str, name: str) -> Phrase | None:
     return None
 
 
-def _read_entries(root: Element) -> Iterator[_Entry]:
+def _read_entries(root: Element, new_names: Mapping[str, str]) -> Iterator[_Entry]:
+    """Yield the named elements, with the new names of renamed links and joints."""
     for element in root.elements():
         name = element.attributes.get("name", "")
         if element.tag not in _NAMED_TAGS:
             continue
         if element.tag == "group_state":
             name = f"{element.attributes.get('group', '')}/{name}"
-            values = {part.attributes.get("name", ""): part.attributes.get("value", "") for part in element.elements()}
+            parts = [(part.attributes.get("name", ""), part.attributes.get("value", "")) for part in element.elements()]
+            values = {new_names.get(part_name, part_name): value for part_name, value in parts}
         elif element.tag == "group":
-            values = {_format_member(part): "" for part in element.elements()}
+            values = {_format_member(part, new_names): "" for part in element.elements()}
         else:
-            values = {key: value for key, value in element.attributes.items() if key != "name"}
+            name = new_names.get(name, name) if element.tag == "passive_joint" else name
+            values = {key: new_names.get(text, text) for key, text in element.attributes.items() if key != "name"}
         yield _Entry(element.tag, name, values, element)
 
 
-def _format_member(element: Element) -> str:
+def _format_member(element: Element, new_names: Mapping[str, str]) -> str:
     """Return a member of a group in one line, such as ``chain base tip``."""
-    return " ".join([element.tag, *element.attributes.values()])
+    return " ".join([element.tag, *(new_names.get(value, value) for value in element.attributes.values())])
 
 
 def _find_renamed(
@@ -145,6 +160,20 @@ def _find_renamed(
         if match is not None:
             added.remove(match)
             yield key, match
+
+
+def _find_states_of_renamed_groups(
+    old: Mapping[tuple[str, str], _Entry],
+    new: Mapping[tuple[str, str], _Entry],
+    renamed: Mapping[tuple[str, str], tuple[str, str]],
+) -> Iterator[tuple[tuple[str, str], tuple[str, str]]]:
+    """Yield the old and new keys of states that kept their name, but whose group has another one."""
+    for tag, name in old:
+        group, _, state = name.partition("/")
+        _, new_group = renamed.get(("group", group), ("", ""))
+        new_key = tag, f"{new_group}/{state}"
+        if tag == "group_state" and new_group and new_key in new and new_key not in old:
+            yield (tag, name), new_key
 
 
 def _have_equal_values(old: _Entry, new: _Entry) -> bool:
@@ -251,12 +280,13 @@ def _are_equal(old: str, new: str) -> bool:
         return False
 
 
-def _group_by_pair(root: Element, tag: str) -> dict[tuple[str, ...], Element]:
+def _group_by_pair(
+    root: Element, tag: str, new_names: Mapping[str, str] | None = None
+) -> dict[tuple[str, ...], Element]:
     """Return the elements about pairs of links, by the sorted names of the links."""
-    return {
-        tuple(sorted((element.attributes.get("link1", ""), element.attributes.get("link2", "")))): element
-        for element in root.elements(tag)
-    }
+    pairs = ([element.attributes.get(name, "") for name in ("link1", "link2")] for element in root.elements(tag))
+    names = ([(new_names or {}).get(link, link) for link in links] for links in pairs)
+    return {tuple(sorted(links)): element for links, element in zip(names, root.elements(tag), strict=True)}
 
 
 def _compare_pairs(
