@@ -12,7 +12,8 @@ from linkwright.lint.dependencies import is_covered
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
-from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX
+from linkwright.review.sources.names import CPP_SUFFIXES
+from linkwright.review.sources.used_packages import is_python_source
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 
@@ -104,7 +105,7 @@ class _Marker:
             return
         text = self._version.text(self._path)
         for name in names:
-            if self._path.endswith(PYTHON_SUFFIX):
+            if is_python_source(self._path):
                 word = _PYTHON_PROJECTS.get(name)
                 is_used = re.search(rf"^(?:import|from)[ \t]+{re.escape(name)}\b", text, re.MULTILINE) is not None
                 if word is not None and is_used and not self._is_listed(word, manifest):

@@ -15,6 +15,7 @@ from linkwright.review.sources.code_changes import find_added_code, find_code_ch
 from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
+from linkwright.review.sources.replaced_literals import find_replaced_literals
 
 
 def compare_statements(
@@ -46,7 +47,9 @@ def _compare_values(
     if file.old_path is None or file.new_path is None:
         return
     paths = old.version.file(file.old_path), new.version.file(file.new_path)
-    for text, span in find_value_changes(*paths, [str(change.sentence) for change in reported]):
+    replaced = [] if file.path.endswith(CPP_SUFFIXES) else [*find_replaced_literals(*paths)]
+    sentences = [*(str(change.sentence) for change in reported), *(str(text) for text, _ in replaced)]
+    for text, span in (*replaced, *find_value_changes(*paths, sentences)):
         yield Change(text, location=Location(file.new_path, span.line, span.column))
     for change in find_text_changes(*paths):
         path = file.old_path if change.is_old else file.new_path
