@@ -10,6 +10,7 @@ import yaml
 
 from linkwright.messages import get_message
 from tests.browser.conftest import count_frames, state, until, wait_until_equal
+from tests.browser.live import POLL_PERIOD_S
 from tests.browser.pixels import Color, colors_at
 from tests.images.test_images import image
 from tests.rviz.clouds.test_clouds import make_cloud, make_depth_image, make_scan, xyz_array
@@ -225,6 +226,22 @@ def test_image_has_its_own_panel(start_viewer, open_page):
     assert page.locator(".image-panel").count() == 1
 
 
+_CHANGE_LAYERS = """() => {
+  const id = "changing-layer";
+  const mark = document.getElementById(id) ?? document.body.appendChild(document.createElement("div"));
+  const layer = mark.style.willChange === "transform" ? "auto" : "transform";
+  mark.id = id;
+  mark.style.cssText =
+    `position: fixed; right: 0; bottom: 0; width: 1px; height: 1px; z-index: 2147483647; will-change: ${layer}`;
+  return true;
+}"""
+"""Adds or removes a layer above all others, which changes no other layer.
+
+Chromium reports its layers only when they change. Without this change, a page that had drawn its last frame before the
+report was requested would never report them.
+"""
+
+
 def compositing_layers(page: Any) -> list[str]:
     """Return the browser's compositing layers of the page, by the attributes of their elements."""
     tools = page.context.new_cdp_session(page)
@@ -232,7 +249,7 @@ def compositing_layers(page: Any) -> list[str]:
     tools.on("LayerTree.layerTreeDidChange", lambda event: messages.append(event.get("layers", [])))
     tools.send("DOM.enable")
     tools.send("LayerTree.enable")
-    wait_until(lambda: page.evaluate("1") and any(messages))
+    wait_until(lambda: page.evaluate(_CHANGE_LAYERS) and any(messages), pause=POLL_PERIOD_S)
     nodes = [layer["backendNodeId"] for layer in next(filter(None, reversed(messages))) if "backendNodeId" in layer]
     elements = [tools.send("DOM.describeNode", {"backendNodeId": node})["node"] for node in nodes]
     tools.detach()
