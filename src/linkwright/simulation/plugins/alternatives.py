@@ -44,8 +44,6 @@ _TRANSFORM_ALTERNATIVE = phrase("robot_state_publisher, or static_transform_publ
 _LOGICAL_CAMERA_ALTERNATIVE = phrase("a <sensor> of type logical_camera")
 _GROUPS = {
     _AUTOPILOT_ALTERNATIVE: (
-        "ArduCopterPlugin",
-        "ArduPilotPlugin",
         "gazebo_mavlink_interface",
         "rotors_gazebo_mavlink_interface",
     ),

@@ -15,8 +15,7 @@ from math import acos, pi
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.single import Vector3
-from linkwright.simulation.plugins.fluids.directions import normalize
+from linkwright.geometry.single import Vector3, add_vectors, cross, dot, length, scaled, subtract_vectors
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
@@ -60,7 +59,7 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
         parameters = self.parameters
         self._link = self.link(parameters.link_name)
         self._control_joint = self.joint(parameters.control_joint_name) if parameters.control_joint_name else ""
-        self._forward, self._upward = normalize(np.array(parameters.forward)), normalize(np.array(parameters.upward))
+        self._forward, self._upward = _normalize(parameters.forward), _normalize(parameters.upward)
         self.simulation.keep_awake(self._link)
         self.every(0.0, self._apply_forces)
         self._apply_forces()
@@ -68,39 +67,39 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
     def _apply_forces(self) -> None:
         simulation = self.simulation
         body, data = simulation.body(self._link), simulation.data
-        rotation = data.xmat[body].reshape(3, 3)
-        offset = rotation @ np.array(self.parameters.cp)
-        linear, angular = simulation.link_velocity(self._link)
-        force = self._compute_force(rotation, linear + np.cross(angular, offset) - np.array(simulation.wind))
-        self.push(self._link, force, at=data.xpos[body] + offset)
+        axes = data.xmat[body].tolist()
+        offset = _to_world(axes, self.parameters.cp)
+        linear, angular = (_to_tuple(velocity) for velocity in simulation.link_velocity(self._link))
+        velocity = subtract_vectors(add_vectors(linear, cross(angular, offset)), simulation.wind)
+        position = add_vectors(_to_tuple(data.xpos[body]), offset)
+        self.push(self._link, self._compute_force(axes, velocity), at=np.array(position))
 
-    def _compute_force(self, rotation: Array, velocity: Array) -> Array:
+    def _compute_force(self, axes: list[float], velocity: Vector3) -> Vector3:
         """Return the force in N, in the axes of the world.
 
         Args:
-            rotation: the orientation of the link, shape (3, 3).
+            axes: the rotation matrix of the link, row by row.
             velocity: the velocity of the center of pressure relative to the air, in m/s and the axes of the world.
         """
         parameters = self.parameters
-        forward = rotation @ self._forward
-        if np.linalg.norm(velocity) <= _MIN_SPEED or forward @ velocity <= 0.0:
-            return np.zeros(3)
-        upward = rotation @ self._upward
+        forward = _to_world(axes, self._forward)
+        if length(velocity) <= _MIN_SPEED or dot(forward, velocity) <= 0.0:
+            return 0.0, 0.0, 0.0
+        upward = _to_world(axes, self._upward)
         if parameters.radial_symmetry:
-            upward = normalize(np.cross(forward, np.cross(forward, velocity)))
-        spanwise = normalize(np.cross(forward, upward))
-        sweep_factor = 1.0 - float(spanwise @ normalize(velocity)) ** 2
-        in_plane = velocity - velocity @ spanwise * spanwise
-        lift_direction = normalize(np.cross(spanwise, in_plane))
-        angle = acos(min(max(float(lift_direction @ upward), -1.0), 1.0))
-        angle_of_attack = parameters.a0 + (angle if lift_direction @ forward >= 0.0 else -angle)
+            upward = _normalize(cross(forward, cross(forward, velocity)))
+        spanwise = _normalize(cross(forward, upward))
+        sweep_factor = 1.0 - dot(spanwise, _normalize(velocity)) ** 2
+        in_plane = subtract_vectors(velocity, scaled(spanwise, dot(velocity, spanwise)))
+        lift_direction = _normalize(cross(spanwise, in_plane))
+        angle = acos(min(max(dot(lift_direction, upward), -1.0), 1.0))
+        angle_of_attack = parameters.a0 + (angle if dot(lift_direction, forward) >= 0.0 else -angle)
         angle_of_attack = (angle_of_attack + pi / 2) % pi - pi / 2
         lift, drag = (sweep_factor * coefficient for coefficient in self._compute_coefficients(angle_of_attack))
         if self._control_joint:
             lift += parameters.control_joint_rad_to_cl * self.simulation.joint_state(self._control_joint)[0]
-        pressure = 0.5 * parameters.air_density * float(in_plane @ in_plane)
-        force: Array = pressure * parameters.area * (lift * lift_direction - drag * normalize(in_plane))
-        return force
+        pressure = 0.5 * parameters.air_density * parameters.area * dot(in_plane, in_plane)
+        return subtract_vectors(scaled(lift_direction, pressure * lift), scaled(_normalize(in_plane), pressure * drag))
 
     def _compute_coefficients(self, angle_of_attack: float) -> tuple[float, float]:
         """Return the coefficients of lift and drag for an angle of attack in rad."""
@@ -112,3 +111,21 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
         if after_stall > 0.0:
             lift = max(lift, 0.0)
         return sign * lift, abs(drag)
+
+
+def _normalize(vector: Vector3) -> Vector3:
+    """Return a vector of length 1, or the zero vector."""
+    size = length(vector)
+    return scaled(vector, 1.0 / size) if size else vector
+
+
+def _to_world(axes: list[float], vector: Vector3) -> Vector3:
+    """Return a vector of a link in the axes of the world, with the rotation matrix of the link row by row."""
+    a, b, c, d, e, f, g, h, i = axes
+    x, y, z = vector
+    return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
+
+
+def _to_tuple(values: Array) -> Vector3:
+    x, y, z = values.tolist()
+    return x, y, z

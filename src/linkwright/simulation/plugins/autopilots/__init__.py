@@ -1,0 +1,1 @@
+"""Vehicles that an autopilot of another process controls."""
