@@ -14,6 +14,9 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from linkwright.geometry.arrays import Array
 from linkwright.planning.robot_model import PlacedShape, RobotModel, Shapes, add_shape, body_name, set_pose
 from linkwright.planning.shapes import scale_shape
@@ -166,6 +169,27 @@ class CollisionScene:
         contact, names = self._model.data.contact, self._names_by_geom
         colliding = contact.geom[contact.dist <= contact.includemargin - self._range]
         return {frozenset((names[first], names[second])) for first, second in colliding.tolist()}
+
+    def find_colliding_pair(self, positions: Array, shapes: NDArray[np.bool_]) -> tuple[str, str] | None:
+        """Return two links or objects that collide, by name, or None.
+
+        Args:
+            positions: the positions of all joints.
+            shapes: the shapes that count, in the order of `shape_frames`.
+        """
+        self._move(positions)
+        contact = self._model.data.contact
+        geoms = contact.geom[contact.dist <= contact.includemargin - self._range]
+        geoms = geoms[shapes[geoms].all(axis=1)]
+        if not len(geoms):
+            return None
+        first, second = sorted(self._names_by_geom[geom] for geom in geoms[0])
+        return first, second
+
+    def shape_frames(self, positions: Array) -> Array:
+        """Return the positions and rotation matrices of all shapes, shape (shapes, 12)."""
+        self._move(positions)
+        return np.hstack((self._model.data.geom_xpos, self._model.data.geom_xmat))
 
     def clearances(self, positions: Array) -> tuple[float, float]:
         """Return the distances in m of the robot to itself and to objects of the world, at most the range.

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.geometry.arrays import Array
+from linkwright.planning.barriers import Barriers
 from linkwright.planning.cartesian import ArcError, ArcPoint, arc_poses, follow_poses, line_poses
 from linkwright.planning.collision_scene import CollisionScene, Contact
 from linkwright.planning.effort import elapsed_s
@@ -170,14 +171,21 @@ class MotionPlanner:
             return not self._is_canceled() and self._is_valid(request, positions)
 
         goals = self._find_goals(request, start, is_valid)
-        while (path := self._find_path(request, start, goals, indexes, is_valid, deadline)) is not None:
+
+        def leave_out_separated() -> list[Array]:
+            return self._find_unseparated_goals(request, start, goals, indexes, is_valid)
+
+        while (
+            path := self._find_path(request, start, goals, indexes, is_valid, deadline, leave_out_separated)
+        ) is not None:
             trajectory = self._find_free_trajectory(request, start, path)
             if trajectory is not None:
                 return Plan(start, path, trajectory)
             if request.method is not Method.SAMPLING or elapsed_s() >= deadline:
                 break
         self._stop_if_canceled()
-        raise PlanError(Failure.PLANNING_FAILED, reason=_explain_turns(request.group, start[indexes], goals, indexes))
+        turns = _explain_turns(request.group, start[indexes], goals, indexes)
+        raise PlanError(Failure.PLANNING_FAILED, reason=f"{Failure.PLANNING_FAILED.value}{turns}")
 
     def time_path(
         self, request: PlanRequest, start: Array, path: Array, scales: tuple[Array, Array] | None = None
@@ -320,8 +328,37 @@ class MotionPlanner:
             raise PlanError(failure, contacts)
         return configurations
 
+    def _find_unseparated_goals(
+        self, request: PlanRequest, start: Array, goals: Sequence[Array], indexes: Any, is_valid: Any
+    ) -> list[Array]:
+        """Return the goals that no barrier separates from the start, or other configurations for their poses.
+
+        Raises:
+            PlanError: there are none.
+        """
+        barriers = Barriers(self._scene, request.group, indexes, start)
+        found = [barriers.find(goal) for goal in goals]
+        reachable = [goal for goal, barrier in zip(goals, found, strict=True) if barrier is None]
+        if reachable:
+            return reachable
+        try:
+            return self._find_goals(request, start, lambda goal: is_valid(goal) and barriers.find(goal) is None)
+        except PlanError as error:
+            if error.failure is Failure.PREEMPTED:
+                raise
+        turns = _explain_turns(request.group, start[indexes], goals, indexes)
+        reason = f"{Failure.PLANNING_FAILED.value}: {found[0]}{turns}"
+        raise PlanError(Failure.PLANNING_FAILED, reason=reason)
+
     def _find_path(
-        self, request: PlanRequest, start: Array, goals: Sequence[Array], indexes: Any, is_valid: Any, deadline: float
+        self,
+        request: PlanRequest,
+        start: Array,
+        goals: Sequence[Array],
+        indexes: Any,
+        is_valid: Any,
+        deadline: float,
+        leave_out_separated: Callable[[], list[Array]],
     ) -> Array | None:
         """Return the corners of a path of the group's joints, shape (n, joints), or None."""
         if request.method in _CARTESIAN:
@@ -338,7 +375,11 @@ class MotionPlanner:
         if request.method is Method.JOINT_LINE:
             path = np.array((start[indexes], min(ends, key=lambda end: float(np.linalg.norm(end - start[indexes])))))
             return path if problem.is_path_free(path, _CHECK_STEP) else None
-        return problem.solve(start[indexes], ends, max(deadline - elapsed_s(), 0.1))
+
+        def revise() -> list[Array]:
+            return [goal[indexes] for goal in leave_out_separated()]
+
+        return problem.solve(start[indexes], ends, max(deadline - elapsed_s(), 0.1), revise)
 
     def _follow_curve(self, request: PlanRequest, start: Array, indexes: Any, is_valid: Any) -> Array | None:
         """Return the path on which the tip of the group moves on a straight line or an arc to the goal."""
@@ -381,7 +422,7 @@ class MotionPlanner:
 
 
 def _explain_turns(group: JointGroup, start: Array, goals: Sequence[Array], indexes: Any) -> str:
-    """Return why there is no path if a goal is the same configuration as a nearer one, up to full turns of joints.
+    """Return a clause that names a nearer configuration which equals a goal up to full turns of joints, or nothing.
 
     Collisions of neighboring links often separate such goals, which then have no path at all.
     """
@@ -393,5 +434,5 @@ def _explain_turns(group: JointGroup, start: Array, goals: Sequence[Array], inde
                 for name, position, is_turned in zip(group.joint_names, nearer, turned, strict=True)
                 if is_turned
             )
-            return f"{Failure.PLANNING_FAILED.value}; the same configuration is nearer to the start with {joints}"
+            return f"; the same configuration is nearer to the start with {joints}"
     return ""

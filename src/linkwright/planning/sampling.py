@@ -32,6 +32,8 @@ _SEARCH_SHARE = 0.3
 """The share of the remaining time for one search; planners that optimize the path use all of it."""
 _MIN_SEARCH_SHARE = 0.05
 """The minimum share of the planning time for one search."""
+_FIRST_SEARCH_S = 0.5
+"""The maximum time in s of the first search, before the goals are revised, of planners that do not optimize."""
 _MAX_SIMPLIFICATION_S = 0.15
 _MAX_EXTENSION = 1000.0
 """The maximum real time of a search whose work is counted, as a share of its time limit."""
@@ -74,13 +76,20 @@ class SamplingProblem:
         self._parameters = parameters
         self._ompl = load_ompl()
 
-    def solve(self, start: Array, goals: Sequence[Array], timeout_s: float) -> Array | None:
+    def solve(
+        self,
+        start: Array,
+        goals: Sequence[Array],
+        timeout_s: float,
+        revise: Callable[[], Sequence[Array]] | None = None,
+    ) -> Array | None:
         """Return a path from a configuration to one of several goals, or None if there is none or it is canceled.
 
         Args:
             start: positions of the joints in rad or m, shape (joints,).
             goals: the positions to reach, each of shape (joints,).
             timeout_s: the maximum time in s.
+            revise: called once after a search without a path, returns the goals of the next searches.
 
         Returns:
             The corners of the path, shape (n, joints). The straight lines between them are free of collisions.
@@ -89,8 +98,12 @@ class SamplingProblem:
         step = _MAX_STEP
         while (remaining := deadline - elapsed_s()) > 0.0 and not self._is_canceled():
             search_s = max(_SEARCH_SHARE * remaining, _MIN_SEARCH_SHARE * timeout_s)
+            if revise is not None and not self._planner.endswith("star"):
+                search_s = min(search_s, _FIRST_SEARCH_S)
             path = self._search(start, goals, step, min(remaining, search_s))
             if path is None:
+                if revise is not None and not self._is_canceled():
+                    goals, revise = revise(), None
                 continue
             if self.is_path_free(path, step / _CHECKS_PER_STEP):
                 return path
