@@ -11,7 +11,7 @@ from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.excerpts import LONG_VALUE, differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings
+from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings, keeps_meaning
 from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
 from linkwright.review.launches.included import IncludedActions, Program
@@ -152,7 +152,8 @@ class SettingChanges:
 
     def compare(self, old: Entry, new: Entry) -> None:
         """Collect the changed settings of an action."""
-        if old.kind == "process" and old.name != new.name:
+        is_same_command = keeps_meaning(old.name, new.name, self._old, self._new)
+        if old.kind == "process" and old.name != new.name and not is_same_command:
             program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
             self._collect(program, change_text("command", rename_in_text(old.name, self._old_names), new.name), None)
         settings = []
@@ -198,6 +199,8 @@ class SettingChanges:
         It may change shared names or stop nodes.
         """
         reason = find_setting_reason(entry, setting, old, new, self._old, self._new)
+        if setting.startswith(REMAPPING) and self._included.offers_bridged_topic(self._old.resolve(old or "")):
+            return None
         if entry.kind == "include":
             if setting == CONDITION:
                 return reason if self._included.count_started_programs(entry) else None
