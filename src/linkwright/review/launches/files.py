@@ -35,6 +35,7 @@ from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodeP
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
+from linkwright.review.launches.repeated_arguments import report_repeated_arguments
 from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.titles import (
     format_added_entry,
@@ -104,6 +105,7 @@ def compare_launch_files(pair: FilePair) -> None:
         for entry in removed
         if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
     ]
+    report_repeated_arguments(pair, new)
     report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)], removed)
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)

@@ -16,6 +16,7 @@ from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
 from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.lost_values import explain_lost_frames
+from linkwright.review.launches.moved_parameters import follow_moved_parameters
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
@@ -157,7 +158,8 @@ class SettingChanges:
             program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
             self._collect(program, change_text("command", rename_in_text(old.name, self._old_names), new.name), None)
         settings = []
-        for pair in find_changed_settings(old, new, self._old, self._new):
+        pairs = list(find_changed_settings(old, new, self._old, self._new))
+        for pair in follow_moved_parameters(pairs, self._new, self._pair.versions.new):
             if self._sets_default_name(new, pair.name, pair.old, pair.new):
                 continue
             defaults = pair.old_default, pair.new_default
