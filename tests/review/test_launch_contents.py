@@ -181,7 +181,7 @@ STATES = '<node pkg="joint_state_publisher" exec="joint_state_publisher"/>'
 @pytest.mark.parametrize(("old", "new", "count"), [("", "", 1), ("", STATES, 0), (STATES, STATES, 1)])
 def test_frame_of_a_joint_whose_position_is_published_now_may_not_be_lost(review_changes, old, new, count):
     _, found_breaking = review_changes(TRANSFORM + old, new)
-    assert len(found_breaking) == count
+    assert len([sentence for sentence in found_breaking if "static_transform_publisher" in sentence]) == count
 
 
 def test_name_to_which_another_topic_of_the_node_is_remapped_is_not_lost(review_changes):

@@ -165,7 +165,7 @@ base_argument = make("base")
     [
         (MODULE, "from arm.common import base_argument", []),
         (MODULE, "from arm.common import mode_argument as base_argument",
-         ["argument 'base' removed", "argument 'mode' added: choices [fast, slow]"]),
+         ["argument 'mode' added: choices [fast, slow]"]),
         (FUNCTION, "from arm.common import base_argument", []),
         ("", "from elsewhere.common import base_argument", []),
     ],

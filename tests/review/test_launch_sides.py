@@ -26,6 +26,8 @@ POSSIBLE = "if the node publishes or serves '{}', programs that use it do not fi
         ("arm", "other", POSSIBLE),
         ("elsewhere", "scan", POSSIBLE),
         ("elsewhere", "cloud_in", None),
+        ("move_base", "odom", None),
+        ("move_base", "cmd_vel", POSSIBLE),
         ("elsewhere", "cloud_out", CERTAIN),
     ],
 )
@@ -37,6 +39,22 @@ def test_remapping_is_breaking_by_the_side_of_the_node(repository, compare, pack
     repository.write({"arm/launch/arm.launch": text})
     (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
     assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
+
+
+BRIDGE = """<launch><node pkg="ros_gz_bridge" exec="parameter_bridge"
+  args="/light@std_msgs/msg/Bool[gz.msgs.Boolean /dark@std_msgs/msg/Bool]gz.msgs.Boolean"/></launch>
+"""
+
+
+@pytest.mark.parametrize(("topic", "is_breaking"), [("light", False), ("dark", True)])
+def test_removed_remapping_to_a_topic_that_a_bridge_publishes_now(repository, compare, topic, is_breaking):
+    text = f'<launch><node pkg="arm" exec="n"><remap from="out" to="{topic}"/></node></launch>'
+    include = '<include file="$(dirname)/bridge.launch.xml"/></launch>'
+    repository.commit({"arm/launch/bridge.launch.xml": BRIDGE, "arm/launch/arm.launch.xml": text})
+    new = text.replace(f'<remap from="out" to="{topic}"/>', "").replace("</launch>", include)
+    repository.write({"arm/launch/arm.launch.xml": new})
+    changes = subject(compare(repository), "arm/launch/arm.launch.xml").changes
+    assert [change for change in changes if change.reason is not None] == changes[: int(is_breaking)]
 
 
 def test_side_of_a_nodelet_is_that_of_its_class(review_changes):

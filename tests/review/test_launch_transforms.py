@@ -43,3 +43,18 @@ def test_static_transform_that_an_added_node_may_publish_is_not_missing(
     else:
         assert removed.reason is None
         assert str(removed.sentence).endswith(f"; node '{publisher}' may publish its transform")
+
+
+@pytest.mark.parametrize(("link", "is_breaking"), [("camera", False), ("lens", True)])
+def test_static_transform_that_the_description_of_a_newly_started_robot_has(repository, compare, link, is_breaking):
+    static = STATIC.replace("PARENT", "base").replace("CHILD", "camera")
+    robot = f'<robot name="a"><link name="base"/><link name="{link}"/></robot>'
+    state = '<node pkg="robot_state_publisher" type="robot_state_publisher" name="state"/>'
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/urdf/arm.urdf": robot}
+    repository.commit({**files, "arm/launch/map.launch": f"<launch>{static}</launch>",
+                       "arm/launch/arm.launch": "<launch></launch>"})  # fmt: skip
+    repository.write(
+        {"arm/launch/map.launch": "<launch></launch>", "arm/launch/arm.launch": f"<launch>{state}</launch>"}
+    )
+    (removed,) = subject(compare(repository), "arm/launch/map.launch").changes
+    assert (removed.reason is not None) is is_breaking

@@ -113,6 +113,14 @@ def test_an_executable_with_the_source_in_a_library(repository, compare, program
     assert found == ([line] if program == "lamp_node" else [])
 
 
+@pytest.mark.parametrize(("target", "is_found"), [("lamp_node", True), ("other_node", False)])
+def test_an_executable_with_another_name_than_its_target(repository, compare, target, is_found):
+    node = '<launch><node pkg="lamp" type="bulb" name="bulb"><param name="level" value="2"/></node></launch>\n'
+    build = f'{CMAKE}set_target_properties({target} PROPERTIES OUTPUT_NAME bulb PREFIX "")\n'
+    files = {"lamp/CMakeLists.txt": build, "lamp/src/main.cpp": "int main() {}\n", "lamp/launch/a.launch": node}
+    assert bool(find_users(repository, compare, files, "lamp/src/lamp.cpp", RCLCPP)) is is_found
+
+
 def test_a_parameter_file_of_a_node_with_the_name_of_another_one(repository, compare):
     other = '<launch><node pkg="other" exec="other" name="lamp"/></launch>\n'
     files = {

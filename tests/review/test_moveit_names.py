@@ -138,3 +138,11 @@ def test_joints_that_are_renamed_alike_are_one_breaking_change(review_changes):
     assert review_reasons == [
         "controllers and programs that name the joint 'left_upper' do not find it; likewise for the others"
     ]
+
+
+@pytest.mark.parametrize(("joint", "is_breaking"), [("elbow", False), ("lower", True)])
+def test_controller_without_a_joint_that_the_semantic_description_lacks(repository, compare, joint, is_breaking):
+    semantics = f'<robot name="a"><group name="arm"><joint name="upper"/><joint name="{joint}"/></group></robot>\n'
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/config/a.srdf": semantics, PATH: SETTINGS})
+    repository.write({PATH: SETTINGS.replace("[upper, lower]", "[upper, elbow]")})
+    assert bool(breaking(compare(repository))) is is_breaking

@@ -356,3 +356,18 @@ def test_components_of_a_vector_are_one_line(review_changes):
         "link:\n  cog:\n    x: 0.5\n    y: 0.2\n    z: 2\n  speed: 3\n",
     )
     assert found == ["link.cog: x 0.0 -> 0.5, y 0.1 -> 0.2", "link.speed 1 -> 3"]
+
+
+@pytest.mark.parametrize(
+    ("text", "is_breaking"),
+    [
+        ("odom_frame: a/odom\nodom_child_frame: base\n", True),
+        ("odom_frame: a/odom\nbase_frame: base\n", False),
+        ("base: {wheel_odom_map_frame: a/odom}\n", True),
+    ],
+)
+def test_a_frame_of_the_odometry_that_the_node_publishes(repository, compare, text, is_breaking):
+    path = "arm/config/odometry.yaml"
+    repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), path: text})
+    repository.write({path: text.replace("a/odom", "odom")})
+    assert bool(compare(repository).breaking_changes) is is_breaking

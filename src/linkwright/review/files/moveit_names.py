@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.breaking import joint_name_reason
@@ -11,6 +11,7 @@ from linkwright.review.files.parameter_names import can_evaluate_to, list_part_p
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.joint_limits import LOWER, UPPER, find_narrower_reason
 from linkwright.review.list_changes import list_items
+from linkwright.review.versions import Versions
 
 _CONTROLLER = re.compile(r"(?:.*[._])?controller_list\[(?!(?:old )?\d+\])(?P<name>[^\]]+)\]")
 """The path of a controller in a list of mappings."""
@@ -32,6 +33,9 @@ _SOLVER = re.compile(r"(?:.*\.)?(?P<name>[^.\[]+)\.kinematics_solver")
 _ACTION_NAMESPACE = re.compile(r"(?:.*[.\[])?(?P<controller>[^.\[\]]+)\]?\.action_ns")
 """The path of the namespace of the action that MoveIt calls."""
 
+_SEMANTIC_SUFFIXES = (".srdf", ".srdf.xacro")
+_WORD = re.compile(r"[\w./-]+")
+
 
 class MoveItRules:
     """Decide which changes in a MoveIt parameter file are breaking.
@@ -39,10 +43,12 @@ class MoveItRules:
     Args:
         old: the old values by their original paths.
         new: the new values by path.
+        versions: the repository before and after the change.
     """
 
-    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
+    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], versions: Versions) -> None:
         self._old = old
+        self._version = versions.new
         self._names = {
             pattern: {match["name"] for part in parts if (match := pattern.fullmatch(part))}
             for parts in [{part for name in new for part in list_part_paths(name)}]
@@ -114,10 +120,19 @@ class MoveItRules:
             ) if is_other else None  # fmt: skip
         names = (name for name in list_items(old.text) if name and name not in self._new_joints)
         lost = [name for name in names if not any(can_evaluate_to(joint, name) for joint in self._new_joints)]
+        if lost and self._are_unknown(lost):
+            return None
         return counted(
             "MoveIt finds no controller for the joint {names}", "MoveIt finds no controller for the joints {names}",
             len(lost), names=quoted_names(lost),
         ) if lost else None  # fmt: skip
+
+    def _are_unknown(self, joints: Collection[str]) -> bool:
+        """Return whether the semantic descriptions of the repository have joints, but none of these."""
+        text = "\n".join(map(self._version.text, self._version.paths(_SEMANTIC_SUFFIXES)))
+        words = set(_WORD.findall(text))
+        has_joints = any(joint in words for joint in self._new_joints)
+        return has_joints and "xacro:include" not in text and words.isdisjoint(joints)
 
     def _is_removed(self, pattern: re.Pattern[str], name: str) -> bool:
         """Return whether the new file has parts of a kind, but none that can have the name.

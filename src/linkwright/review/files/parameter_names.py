@@ -20,6 +20,10 @@ _FRAME_PARAMETER = re.compile(r"(^|[._])frame_id$")
 """The parameters that name a frame which the node publishes."""
 _USED_FRAME_PARAMETER = re.compile(r"(^|[._])(base|odom|map|global|world|target|reference)_frame_id$")
 """The parameters that name a frame which localization and navigation use but do not publish."""
+_ODOMETRY_FRAME = re.compile(r"(^|[._])(odometry_frame|odom_child_frame|wheel_odom_\w+_frame)(_id)?$")
+"""The parameters that name a frame of the odometry which the node publishes."""
+_ODOM_FRAME = re.compile(r"(?P<node>(?:.*\.)?)odom_frame")
+"""A parameter that programs with a child frame of the odometry publish, and others use."""
 _CLIENT = re.compile(r"(^|[_.])client(_|$)")
 """The names of programs that send requests, and of their files."""
 _TRANSFORM_SWITCH = re.compile(
@@ -102,13 +106,13 @@ class NameRules:
             return phrase("the node no longer publishes its transform")
         if removed and self._is_lost_filter_frame(parameter, old):
             return phrase("the filter no longer publishes the transform of the frame '{name}'", name=old)
-        is_offered = offers_frame(parameter) and not self._belongs_to_client(parameter)
+        is_offered = offers_frame(parameter) or self._is_frame_of_odometry(parameter)
+        is_offered = is_offered and not self._belongs_to_client(parameter)
         if is_offered:
             removed -= self._new_frames
         if self._belongs_to_controller(parameter):
-            is_offered = (
-                _FRAME_PARAMETER.search(parameter) is not None or _JOINT_PARAMETER.search(parameter) is not None
-            )
+            patterns = (_FRAME_PARAMETER, _JOINT_PARAMETER, _ODOMETRY_FRAME)
+            is_offered = any(pattern.search(parameter) is not None for pattern in patterns)
         if removed and is_offered:
             return name_reason(", ".join(sorted(removed)))
         if removed and _PLUGIN_LIST.search(parameter):
@@ -184,6 +188,11 @@ class NameRules:
         name = node["node"].rpartition(".")[2] if node else parameter.partition(".")[0]
         return name in self._controllers or name.endswith("controller")
 
+    def _is_frame_of_odometry(self, parameter: str) -> bool:
+        """Return whether a parameter names the parent frame of the odometry that its node publishes."""
+        match = _ODOM_FRAME.fullmatch(parameter)
+        return match is not None and f"{match['node']}odom_child_frame" in self._new
+
     def _belongs_to_client(self, parameter: str) -> bool:
         """Return whether a parameter belongs to a client, by the name of its node or file. Clients use frames."""
         return any(
@@ -198,6 +207,8 @@ class NameRules:
 
 def offers_frame(parameter: str) -> bool:
     """Return whether a parameter names a frame that a node publishes for other programs."""
+    if _ODOMETRY_FRAME.search(parameter) is not None:
+        return True
     return _FRAME_PARAMETER.search(parameter) is not None and not _USED_FRAME_PARAMETER.search(parameter)
 
 

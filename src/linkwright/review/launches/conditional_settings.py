@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.expressions import are_equal_expressions
 from linkwright.review.launches.outlines import Entry, LaunchOutline, extract_condition, without_condition
+
+_INLINE_DEFAULT = re.compile(r"(\$\((?:var|arg) [^() ]+) [^()]*\)")
+"""An argument of a launch file with its default."""
+_BOOLEAN = re.compile(r"\b(True|False)\b")
 
 
 @dataclass(frozen=True)
@@ -45,13 +50,23 @@ def find_changed_settings(
         if old_values.keys() == new_values.keys() or not has_conditions:
             for key in dict.fromkeys([*new_values, *old_values]):
                 before, after = old_values.get(key), new_values.get(key)
-                if before != after and not are_equal_expressions(before, after):
+                is_same = are_equal_expressions(before, after) or keeps_meaning(before, after, old_outline, new_outline)
+                if before != after and not is_same:
                     yield SettingPair(key, before, after, before, after)
             continue
         old_default, is_old_known = _find_default_value(old_values, old_outline)
         new_default, is_new_known = _find_default_value(new_values, new_outline)
         texts = _format_values(old_values), _format_values(new_values)
         yield SettingPair(name, *texts, old_default, new_default, has_defaults=is_old_known and is_new_known)
+
+
+def keeps_meaning(old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline) -> bool:
+    """Return whether two values only differ in where the defaults of their arguments are written."""
+    if old is None or new is None or _INLINE_DEFAULT.sub(r"\1)", old) != _INLINE_DEFAULT.sub(r"\1)", new):
+        return False
+    texts = (outline.resolve(text) for outline, text in ((old_outline, old), (new_outline, new)))
+    before, after = (_BOOLEAN.sub(lambda match: match[0].lower(), text) for text in texts)
+    return before == after
 
 
 def _group_by_name(settings: Mapping[str, str]) -> dict[str, dict[str, str]]:

@@ -24,6 +24,7 @@ from linkwright.review.launches.outlines import (
     PARAMETER,
     READING,
     REMAPPING,
+    SERVER_PARAMETER,
     Entry,
     LaunchOutline,
     without_condition,
@@ -62,6 +63,8 @@ _CALL_IN_NAME = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
 _EXPRESSION = "$(eval "
 """The beginning of an expression, whose value is unknown."""
+_LOOP_VARIABLE = re.compile(r"\$\(eval [a-z_]\w*\)")
+"""The variable of a loop in a name, whose value is not empty."""
 _UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
 """A call, attribute or item of Python in a name, whose value is unknown."""
 _PUBLISHED_TOPIC = re.compile(
@@ -70,6 +73,9 @@ _PUBLISHED_TOPIC = re.compile(
 )
 """The parameters that, judging by their name, contain the name of a published topic."""
 _TOPIC = re.compile(r"[~/\w]+")
+_GAZEBO_ARGUMENTS = ("gz_args", "ign_args")
+"""The arguments of the launch files of Gazebo with the options of its command."""
+_RUN_OPTION = re.compile(r"(?:^|\s)-\w*r\w*(?=\s|$)")
 _FRAME_PREFIXES = (f"{PARAMETER}frame_prefix", f"{PARAMETER}tf_prefix")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
@@ -240,6 +246,11 @@ def find_setting_reason(
         return _find_remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
         return _find_renaming_reason(old, new, old_outline, new_outline)
+    if entry.kind == "include" and setting in _GAZEBO_ARGUMENTS:
+        return _find_pause_reason(old, new, old_outline, new_outline)
+    if entry.kind == SERVER_PARAMETER and setting == "value":
+        name = PARAMETER + entry.name.replace("/", ".")
+        return _find_parameter_reason(name, old, new, old_outline, new_outline)
     if entry.kind in ("node", "include") and setting == CONDITION and (_is_spawner(entry) or not offers_nothing(entry)):
         old_holds = evaluate_condition(old_outline.resolve(old or ""))
         is_stopped = evaluate_condition(new_outline.resolve(new or "")) is False
@@ -283,6 +294,16 @@ def _find_node_remapping_reason(
     if old is not None and old_outline.resolve(old) in _find_remapping_targets(entry, new_outline):
         return None  # the new file gives the name to a different topic of the node
     return _find_remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
+
+
+def _find_pause_reason(
+    old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
+) -> Phrase | None:
+    """Return the reason why other options of Gazebo are breaking, or None if they are not."""
+    before, after = old_outline.resolve(old or ""), new_outline.resolve(new or "")
+    if not _RUN_OPTION.search(before) or _RUN_OPTION.search(after) or _VARIABLE.search(after):
+        return None
+    return phrase("the simulation starts paused")
 
 
 def _find_parameter_reason(
@@ -449,6 +470,8 @@ def _find_renaming_reason(
 ) -> Phrase | None:
     """Return the reason why a changed node name or namespace is breaking, or None."""
     old_name, new_name = _resolve_name(old, old_outline), _resolve_name(new, new_outline)
+    if not old_name and _LOOP_VARIABLE.search(new_name):
+        return phrase("programs that use the names of the node, its topics or its services do not find them")
     if (
         _strip_known_prefix(old_name) == _strip_known_prefix(new_name)
         or _UNKNOWN_NAME.search(new_name)

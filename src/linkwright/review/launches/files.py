@@ -33,7 +33,9 @@ from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
+from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
+from linkwright.review.launches.repeated_arguments import report_repeated_arguments
 from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.titles import (
     format_added_entry,
@@ -86,10 +88,7 @@ def compare_launch_files(pair: FilePair) -> None:
         elif new_entry is not None:
             added.append(new_entry)
     removed, added = ([entry for entry in entries if not _remaps_to_itself(entry)] for entries in (removed, added))
-    new_paths = {
-        file.old_path: file.new_path for file in pair.versions.changed_files if file.old_path and file.new_path
-    }
-    replaced = find_replacements(removed, added, new_paths, (old, new))
+    replaced = find_replacements(removed, added, find_renamed_programs(pair.versions), (old, new))
     for old_entry, new_entry in replaced:
         _report_replaced(pair, rename_in_entry(old_entry, old_names), new_entry, outlines)
         settings.compare(old_entry, new_entry)
@@ -97,12 +96,16 @@ def compare_launch_files(pair: FilePair) -> None:
     settings.report_groups()
     removed = [entry for entry in removed if all(entry is not other for other, _ in replaced)]
     added = [entry for entry in added if all(entry is not other for _, other in replaced)]
+    if pair.new_file.suffix == PYTHON_SUFFIX:  # callers of either version must pass a required argument
+        required = {entry.name for entry in removed if entry.kind == "argument" and "default" not in entry.settings}
+        undeclared = {name: entry for name, entry in undeclared.items() if name not in required}
     _report_undeclared(pair, undeclared, removed)
     removed = [
         entry
         for entry in removed
         if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
     ]
+    report_repeated_arguments(pair, new)
     report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)], removed)
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)
@@ -192,7 +195,7 @@ def _report_unpaired_entries(
         file = find_file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
         if file is not None:
             text = phrase("{entry} moved to {file}", entry=format_title(written), file=file)
-        publisher = find_other_publisher(entry, old_included.outline, new_included.outline, pair.versions.new)
+        publisher = find_other_publisher(entry, old_included.outline, new_included.outline, pair.versions)
         if publisher is not None:
             pair.add(
                 phrase("{change}; {entry} may publish its transform", change=text, entry=format_title(publisher)),
@@ -201,6 +204,10 @@ def _report_unpaired_entries(
             continue
         if _is_unused_argument(pair, entry, old_included.outline):
             pair.add(phrase("{change}; the file did not use it", change=text), location)
+            continue
+        if _is_still_read(pair, entry, new_included.outline):
+            text = phrase("argument '{name}' is no longer declared; the file still uses it", name=entry.name)
+            pair.add(text, location)
             continue
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         outlines = old_included.outline, new_included.outline
@@ -216,6 +223,13 @@ def _is_unused_argument(pair: FilePair, entry: Entry, old: LaunchOutline) -> boo
     """
     is_argument = entry.kind == "argument" and "value" not in entry.settings
     return is_argument and not old.is_ros1 and not uses_argument(pair.old_file, entry.name, old.entries)
+
+
+def _is_still_read(pair: FilePair, entry: Entry, new: LaunchOutline) -> bool:
+    """Return whether a removed action declares an argument that a Python file still reads, which callers can pass."""
+    is_argument = entry.kind == "argument" and "value" not in entry.settings
+    is_python = pair.new_file.suffix == PYTHON_SUFFIX
+    return is_argument and is_python and uses_argument(pair.new_file, entry.name, new.entries, is_declared=False)
 
 
 def _report_changed_move(pair: FilePair, entry: Entry, file: str, changed: Entry, lost: Sequence[str]) -> None:

@@ -36,6 +36,9 @@ _FILE_WITHOUT_NODES = re.compile(
     r"rviz|rqt|[^/]*gui[^/]*$|(^|[/_])(machines?|upload(_\w+)?|params?|parameters)[._]launch"
 )
 """The files that, judging by their name, start no programs for other programs."""
+_BRIDGE = re.compile(r"ros_(gz|ign)_bridge/parameter_bridge")
+_BRIDGED_TOPIC = re.compile(r"(?P<topic>[\w/]+)@[\w/.]+[\[@]")
+"""A topic that a bridge publishes. One that it only sends to Gazebo has a closing bracket."""
 _MoveKey = tuple[str, str, "str | None", tuple[str, ...]]
 """The kind, the name, the name of the node and the names that it serves."""
 _USED_ARGUMENT = re.compile(r"\$\((?:var|arg) (?P<name>[\w./-]+)\)")
@@ -79,6 +82,16 @@ class IncludedActions:
         if entry.kind not in _MOVABLE_KINDS:
             return None
         return None if other._find_file_with(entry) else self._find_file_with(entry)
+
+    def offers_bridged_topic(self, name: str) -> bool:
+        """Return whether a bridge of Gazebo in the file or in its included files publishes a topic."""
+        for outline in (self.outline, *self._included.values()):
+            for entry in outline.entries if name else ():
+                arguments = outline.resolve(entry.settings.get("arguments", ""))
+                bridged = [match["topic"].strip("/") for match in _BRIDGED_TOPIC.finditer(arguments)]
+                if _BRIDGE.fullmatch(entry.name) and name.strip("/") in bridged:
+                    return True
+        return False
 
     def _find_file_with(self, entry: Entry) -> str | None:
         """Return the included file with an equal action, or None if there is none."""

@@ -43,7 +43,7 @@ def match_entries(old: Sequence[Entry], new: Sequence[Entry]) -> Iterator[Match]
 def find_replacements(
     removed: Sequence[Entry],
     added: Sequence[Entry],
-    new_paths: Mapping[str, str],
+    new_names: Mapping[str, str],
     outlines: tuple[LaunchOutline, LaunchOutline],
 ) -> list[tuple[Entry, Entry]]:
     """Return the pairs of a removed action and an added one that replaces it.
@@ -51,12 +51,11 @@ def find_replacements(
     Args:
         removed: the actions that only the old version has.
         added: the actions that only the new version has.
-        new_paths: the new paths of renamed files, by old path.
+        new_names: the new names of renamed files and programs, by old name.
         outlines: the outlines of the old and the new file, which have the defaults of arguments.
     """
-    names = {PurePosixPath(old).name: PurePosixPath(new).name for old, new in new_paths.items()}
     scores = [
-        (_compute_replacement_score(a, b, names, outlines), i, k)
+        (_compute_replacement_score(a, b, new_names, outlines), i, k)
         for i, a in enumerate(removed)
         for k, b in enumerate(added)
     ]
@@ -125,6 +124,9 @@ def _compute_replacement_score(
     name = old.settings.get("name")
     if name and name == new.settings.get("name") and _have_same_namespace(old, new, outlines):
         return 3.0 + similarity
+    old_file, new_file = (entry.name.rpartition("/")[2] for entry in (old, new))
+    if old_package == new_package and old_file != new_file and new_names.get(old_file) == new_file:
+        return 2.0 + similarity
     if old_program == new_program:
         return 2.0 + similarity if similarity >= MIN_SIMILARITY or not (old.settings and new.settings) else 0.0
     name_similarity = compute_name_similarity(old_program.rpartition("::")[2], new_program.rpartition("::")[2])

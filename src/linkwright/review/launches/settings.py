@@ -11,11 +11,12 @@ from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.excerpts import LONG_VALUE, differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings
+from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings, keeps_meaning
 from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
 from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.lost_values import explain_lost_frames
+from linkwright.review.launches.moved_parameters import follow_moved_parameters
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
@@ -152,11 +153,13 @@ class SettingChanges:
 
     def compare(self, old: Entry, new: Entry) -> None:
         """Collect the changed settings of an action."""
-        if old.kind == "process" and old.name != new.name:
+        is_same_command = keeps_meaning(old.name, new.name, self._old, self._new)
+        if old.kind == "process" and old.name != new.name and not is_same_command:
             program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
             self._collect(program, change_text("command", rename_in_text(old.name, self._old_names), new.name), None)
         settings = []
-        for pair in find_changed_settings(old, new, self._old, self._new):
+        pairs = list(find_changed_settings(old, new, self._old, self._new))
+        for pair in follow_moved_parameters(pairs, self._new, self._pair.versions.new):
             if self._sets_default_name(new, pair.name, pair.old, pair.new):
                 continue
             defaults = pair.old_default, pair.new_default
@@ -198,6 +201,8 @@ class SettingChanges:
         It may change shared names or stop nodes.
         """
         reason = find_setting_reason(entry, setting, old, new, self._old, self._new)
+        if setting.startswith(REMAPPING) and self._included.offers_bridged_topic(self._old.resolve(old or "")):
+            return None
         if entry.kind == "include":
             if setting == CONDITION:
                 return reason if self._included.count_started_programs(entry) else None

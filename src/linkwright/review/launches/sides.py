@@ -13,7 +13,7 @@ from linkwright.review.sources.reading import read_source_names
 
 _SUBSCRIBING_PROGRAM = re.compile(
     r"slam_toolbox/|nav2_\w+/|robot_localization/|cartographer_ros/|rtabmap_\w+/|octomap_server2?/|"
-    r"robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/"
+    r"move_base/|amcl/|gmapping/|robot_state_publisher/|depthimage_to_laserscan/|pointcloud_to_laserscan/|laser_filters/|twist_mux/"
 )
 _INPUT_TOPIC = re.compile(
     r"(.*/)?(scan|scan_in|cloud|cloud_in|points|odom|odometry/\w+|imu(/\w+)?|gps/fix|joint_states|depth|"

@@ -18,6 +18,7 @@ _CONFIGURATIONS = "launch_configurations"
 """The attribute of a launch context with the values of the arguments."""
 _Formatter = Callable[[ast.expr | None], str]
 _COMPARISON_CONDITIONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
+_PATH_CLASSES = ("Path", "PurePath", "PosixPath", "PurePosixPath")
 _COMPARISON_SUBSTITUTIONS = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
 _STRING_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
 _PROGRAM_SEARCH = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
@@ -304,7 +305,9 @@ class ExpressionTexts:
             return _join_path(["".join(map(part, self._split_pieces(piece))) for piece in pieces])
         if function == "ParameterFile":
             return part(first) + self._mark_substitutions(argument_of(node, ALLOW_SUBSTITUTIONS))
-        if function in ("TextSubstitution", "str", "ParameterValue", "Path", "PathSubstitution"):
+        if function in _PATH_CLASSES and len(node.args) > 1:
+            return _join_path([part(argument) for argument in node.args])
+        if function in ("TextSubstitution", "str", "ParameterValue", "PathSubstitution", *_PATH_CLASSES):
             return part(first)
         if function == "EnvironmentVariable":
             return f"$(env {' '.join(part(argument) or repr('') for argument in arguments)})"

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from functools import lru_cache
 
+from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
+from linkwright.review.launches.programs import try_read_outline
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names
 from linkwright.review.list_changes import list_items
-from linkwright.review.versions import Version
+from linkwright.review.versions import Version, Versions
 
 _ANY_FRAME_PROGRAM = re.compile(r"robot_state_publisher/|state_publisher/|apriltag\w*/|aruco\w*/|mocap\w*/|vrpn\w*/")
 """Programs that publish the transforms of any frame."""
+_STATE_PUBLISHER = re.compile(r"(robot_)?state_publisher/")
 _LOCALIZATION_PROGRAM = re.compile(
     r"fake_localization/|(nav2_)?amcl/|slam_\w+/|gmapping/|hector_mapping/|cartographer_ros/|rtabmap_\w+/|"
     r"robot_localization/(ekf|ukf)|robot_pose_ekf/|\w*odometry\w*/"
@@ -24,7 +28,7 @@ _FRAME_WORD = re.compile(r"[\w/.-]+")
 _PARENT_FRAME = re.compile(r"--frame-id[ ,]+([^ ,\]]+)")
 
 
-def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutline, version: Version) -> Entry | None:
+def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutline, versions: Versions) -> Entry | None:
     """Return an added node that may publish the transform of a removed publisher, or None.
 
     A node may publish it if its program publishes static transforms, or if its parameters name both frames.
@@ -33,7 +37,7 @@ def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutlin
         transform: the removed static transform publisher.
         old: the outline of the old file.
         new: the outline of the new file.
-        version: the new version, with the parameter files.
+        versions: both versions, with the parameter files and the other launch files.
     """
     frames = {frame.strip("/") for frame in _find_parent_and_child(transform, old)}
     if len(frames) != 2 or not transform.name.startswith(TRANSFORM_PUBLISHERS):
@@ -48,10 +52,40 @@ def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutlin
         if (
             _ANY_FRAME_PROGRAM.match(entry.name)
             or is_localized
-            or frames <= set(_find_parameter_words(entry, new, version))
+            or frames <= set(_find_parameter_words(entry, new, versions.new))
         ):
             return entry
+    return _find_added_robot(frames, versions)
+
+
+def _find_added_robot(frames: Collection[str], versions: Versions) -> Entry | None:
+    """Return a node that another launch file newly starts and that publishes the frames of a robot, or None.
+
+    A description of the repository must have the frames.
+    """
+    for file in versions.changed_files:
+        if file.new_path is None or not is_launch_file(file.new_path):
+            continue
+        names = {entry.name for entry in _read_nodes(versions.old, file.old_path)}
+        added = [entry for entry in _read_nodes(versions.new, file.new_path) if entry.name not in names]
+        publisher = next((entry for entry in added if _STATE_PUBLISHER.match(entry.name)), None)
+        if publisher is not None and _list_description_words(versions.new).issuperset(frames):
+            return publisher
     return None
+
+
+def _read_nodes(version: Version, path: str | None) -> list[Entry]:
+    """Return the nodes of a launch file; none if it cannot be read."""
+    outline = None if path is None else try_read_outline(version, path)
+    return [] if outline is None else [entry for entry in outline.entries if entry.kind == "node"]
+
+
+@lru_cache(maxsize=4)
+def _list_description_words(version: Version) -> frozenset[str]:
+    """Return the words in the descriptions of a version."""
+    return frozenset(
+        word for path in version.paths((".urdf", ".xacro")) for word in _FRAME_WORD.findall(version.text(path))
+    )
 
 
 def _find_parent_and_child(transform: Entry, outline: LaunchOutline) -> list[str]:

@@ -53,15 +53,18 @@ def report_unused_arguments(
             pair.add(text, pair.location(entry.span), reason)
 
 
-def uses_argument(file: Path, name: str, entries: Sequence[Entry]) -> bool:
-    """Return whether a launch file may use an argument that it declares, apart from the files that it includes.
+def uses_argument(file: Path, name: str, entries: Sequence[Entry], *, is_declared: bool = True) -> bool:
+    """Return whether a launch file may use an argument, apart from the files that it includes.
 
     Args:
         file: the launch file.
         name: the name of the argument.
         entries: the actions of the launch file, also those that functions of other files make.
+        is_declared: whether the file declares the argument. Otherwise, only certain uses count.
     """
     others = [entry for entry in entries if entry.kind != "argument" or entry.name != name]
+    if not is_declared:
+        return _is_used(name, others)
     text = _COMMENT.sub("", _read_text(file))
     return _is_used(name, others) or _may_use(text, name) or _COMPUTED_USE.search(text) is not None
 

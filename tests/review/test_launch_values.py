@@ -1,0 +1,89 @@
+"""Values of launch files that change what others find, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import breaking, subject
+
+FRAME = """<launch>
+  <node pkg="arm" type="arm" name="arm"/>
+  <param name="base_controller/{}" value="{}"/>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("odometry_frame", "programs that use the name 'odom_combined' do not find it"),
+        ("frame_id", "programs that use the name 'odom_combined' do not find it"),
+        ("global_frame", None),
+    ],
+)
+def test_a_frame_in_a_parameter_of_no_node(repository, compare, name, reason):
+    repository.commit({"arm/launch/arm.launch": FRAME.format(name, "odom_combined")})
+    repository.write({"arm/launch/arm.launch": FRAME.format(name, "odom")})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert (None if change.reason is None else str(change.reason)) == reason
+
+
+GAZEBO = """<launch>
+  <arg name="world" default="empty.sdf"/>
+  <include file="$(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py"><arg name="gz_args" value="{}"/></include>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_breaking"),
+    [
+        ("-r $(var world)", "$(var world)", True),
+        ("-s -r $(var world)", "-sr $(var world)", False),
+        ("-r $(var world)", "$(var options) $(var world)", False),
+        ("$(var world)", "-r $(var world)", False),
+    ],
+)
+def test_a_simulation_that_starts_paused_is_breaking(repository, compare, old, new, is_breaking):
+    repository.commit({"arm/launch/arm.launch.xml": GAZEBO.format(old)})
+    repository.write({"arm/launch/arm.launch.xml": GAZEBO.format(new)})
+    reasons = [str(change.reason) for change in subject(compare(repository), "arm/launch/arm.launch.xml").changes]
+    assert ("the simulation starts paused" in reasons) is is_breaking
+
+
+ARGUMENT = '<arg name="nav" default="false"/>'
+NODE = '<node pkg="arm" type="arm" name="arm" if="$(arg nav)"/>'
+
+
+@pytest.mark.parametrize(
+    ("added", "is_found"),
+    [
+        (ARGUMENT, True),
+        (ARGUMENT.replace("/>", ' if="true"/>'), False),
+        (f"<group>{ARGUMENT}</group>", False),
+        (f"<!-- {ARGUMENT} -->", False),
+    ],
+)
+def test_an_argument_that_is_declared_twice(repository, compare, added, is_found):
+    repository.commit({"arm/launch/arm.launch": f"<launch>{ARGUMENT}{NODE}</launch>\n"})
+    repository.write({"arm/launch/arm.launch": f"<launch>{ARGUMENT}{added}{NODE}</launch>\n"})
+    assert ("argument 'nav' is declared twice" in breaking(compare(repository))) is is_found
+
+
+LOOP = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    ld = LaunchDescription()
+    for number in range(2):
+        ld.add_action(Node(package="arm", executable="arm", output="screen"))
+    return ld
+"""
+
+
+def test_a_namespace_with_the_variable_of_a_loop_is_breaking(repository, compare):
+    repository.commit({"arm/launch/arm.launch.py": LOOP})
+    repository.write({"arm/launch/arm.launch.py": LOOP.replace('"screen"', '"screen", namespace="arm" + str(number)')})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch.py").changes
+    assert change.reason is not None
