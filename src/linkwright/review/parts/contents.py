@@ -285,6 +285,8 @@ class _ReportedDifference:
             name = old.attributes.get("name", "")
             if not is_removed:
                 return self._find_joint_reason(old)
+            if self.pair.has_robot_with(old.tag, name):
+                return None
             if old.tag == "link":
                 return frame_reason(name)
             return joint_name_reason(name) if old.attributes.get("type") in MOVING_TYPES else None
