@@ -179,3 +179,14 @@ def test_package_at_the_root_is_that_of_each_version_and_not_that_of_the_working
     monkeypatch.chdir(repository.root)
     found = subject(compare(repository, "HEAD~2..HEAD~1"), "urdf/arm.urdf.xacro")
     assert sentences(found) == ["link 'base': visual geometry sphere radius 1 -> sphere radius 2 m"]
+
+
+def test_only_the_callers_that_fail_are_named(package, compare):
+    """One launch file passes the new argument; it is in a package that declares no dependency on the description."""
+    plain = LAUNCH.replace(', mappings={"tool": tool}', "")
+    manifest = "<package format='3'><name>arm_bringup</name><version>0.0.0</version></package>"
+    package.commit({"arm_description/launch/plain.launch.py": plain, "arm_bringup/package.xml": manifest})
+    package.write({PATH: WITHOUT_DEFAULT, "arm_bringup/launch/tools.launch.py": LAUNCH})
+    changes = subject(compare(package), PATH).changes
+    (change,) = [item for item in changes if str(item.sentence).startswith("can no longer be read: ")]
+    assert str(change.reason) == "these files fail: 'arm_description/launch/plain.launch.py'"

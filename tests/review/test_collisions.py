@@ -77,3 +77,11 @@ def test_renamed_links_and_joints_collide_as_before(solid, compare):
     )
     solid.write({PATH: ARM.replace('parent link="lower"', 'parent link="lower_link"')})
     assert find_collisions(compare, solid, text) == []
+
+
+def test_collisions_of_a_mesh_that_the_old_version_lacks_are_unknown(solid, compare):
+    """That a link with an unreadable mesh did not collide says nothing."""
+    wide = SOLID_MACRO.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')
+    mesh = '<mesh filename="package://arm_description/meshes/missing.stl"/>'
+    solid.commit({SEGMENT: SOLID_MACRO.replace('<box size="0.1 0.1 ${length - 0.02}"/>', mesh)})
+    assert find_collisions(compare, solid, wide) == []

@@ -300,3 +300,12 @@ def test_elements_without_names_are_told_apart_by_their_attributes(library, comp
     (change,) = subject(compare(library), TOOL).changes
     assert str(change.sentence) == "macro 'gripper': enable_collisions link1=a link2=b0 removed"
     assert change.other_names == ("enable_collisions link1=a link2=b1", "enable_collisions link1=a link2=b2")
+
+
+def test_link_that_the_including_robot_defines_is_not_lost(package, compare):
+    """A file of macros was a copy of the robot that includes it, so that no robot could be read."""
+    copy = ARM.replace("segment.xacro", "tool.xacro")
+    package.commit({ROBOT: copy, TOOL: copy})
+    package.write({TOOL: GRIPPER.replace('"gripper"', '"segment"')})
+    assert "link 'base_link' removed" not in breaking(compare(package))
+    assert "link base_link removed" not in breaking(compare(package))

@@ -160,5 +160,5 @@ def test_installed_files_have_uris_instead_of_paths_of_the_computer(repository, 
     )
     repository.write({"arm/urdf/arm.urdf.xacro": robot % (mesh % "file://$(find arm)")})
     found = sentences(subject(compare(repository), "arm/urdf/arm.urdf.xacro"))
-    expected = "link 'base': visual geometry mesh model://vendor/meshes/a.stl -> mesh package://arm/meshes/a.stl"
+    expected = "link 'base': visual geometry mesh model://vendor/meshes/a.stl -> mesh file://$(find arm)/meshes/a.stl"
     assert found == [expected]

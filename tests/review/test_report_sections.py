@@ -226,3 +226,26 @@ def test_lines_below_a_fold_are_not_part_of_it():
     subjects = [make_subject(path, changes) for path in ("a.yaml", "b.yaml")]
     comment = as_markdown(Review("main", "topic", subjects))
     assert "</details>\n\n- the same in one more file: b.yaml" in comment
+
+
+def test_robots_with_only_the_changes_of_a_shared_file_are_one_section():
+    location = Location("shared.xacro", 3, 1)
+    changes = [
+        Change(
+            phrase(
+                "{subject} '{name}': {property} {old} -> {new}",
+                subject="joint",
+                name=name,
+                property="limit",
+                old=1,
+                new=2,
+            ),
+            location=location,
+        )
+        for name in ("shoulder",)
+    ]
+    subjects = [make_subject(f"{name}.urdf.xacro", changes, SubjectKind.DESCRIPTION) for name in ("a", "b", "c")]
+    review = Review("main", "topic", subjects)
+    text = as_text(review)
+    assert "= the same in 2 more files: b.urdf.xacro, c.urdf.xacro" in text
+    assert "0 breaking changes, 1 change," in text

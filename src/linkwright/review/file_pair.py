@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, TypeVar
@@ -131,7 +131,9 @@ class FilePair:
         self.add_faults(old if isinstance(old, Fault) else None, new if isinstance(new, Fault) else None)
         return None
 
-    def add_faults(self, old: Fault | None, new: Fault | None, cases: tuple[str, ...] = ()) -> None:
+    def add_faults(
+        self, old: Fault | None, new: Fault | None, cases: tuple[str, ...] = (), callers: Sequence[str] = ()
+    ) -> None:
         """Report the faults that make one or both versions unreadable.
 
         A file that is readable in only one version is a change; it is breaking if the new version is unreadable.
@@ -140,6 +142,7 @@ class FilePair:
             old: the fault of the old version; None if it can be read.
             new: the fault of the new version; None if it can be read.
             cases: the names of the argument sets with which the description cannot be read; empty for all.
+            callers: the files that can no longer use the description, if others can; else empty.
         """
         if old is not None and new is not None:
             is_same_file = (old.path, new.path) == (self.old_path, self.new_path) or old.path == new.path
@@ -153,6 +156,8 @@ class FilePair:
         elif new is not None:
             text = phrase("can no longer be read: {reason}", reason=new.text)
             reason = phrase("launch files and programs that use the file fail")
+            if callers:
+                reason = phrase("these files fail: {names}", names=quoted_names(callers))
             location = Location(new.path or self.new_path, new.line, new.column) if new.line else None
             self.changes.append(Change(text, Effect.BREAKING, reason, location, cases))
             self.is_lost = True

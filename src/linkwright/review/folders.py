@@ -43,8 +43,8 @@ def _make_uri_writer(shares: Mapping[str, Path]) -> Callable[[str], str]:
 
     def change(text: str) -> str:
         for name, share in shares.items():
-            uri = f"package://{name}/"
-            text = text.replace(f"file://{share}/", uri).replace(f"{share}/", uri)
+            text = text.replace(f"file://{share}/", f"file://$(find {name})/")
+            text = text.replace(f"{share}/", f"package://{name}/")
         return text
 
     return change

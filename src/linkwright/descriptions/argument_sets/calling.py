@@ -102,7 +102,8 @@ class ArgumentSets:
         finder = finder or PackageFinder(start=path.parent)
         nearby_files = list(self._files.nearby_calling_files(path, self._folders))
         sets = list(_CalledDescription(path, finder, nearby_files).sets())
-        if not sets:  # A launch file may use a package that is not a declared dependency.
+        if not any(argument_set.values for argument_set in sets):
+            # A launch file may use a package that is not a declared dependency.
             sets = list(
                 _CalledDescription(
                     path, finder, [*nearby_files, *self._files.distant_calling_files(path, self._folders)]

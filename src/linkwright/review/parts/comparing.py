@@ -23,6 +23,7 @@ from linkwright.review.parts.interface import (
 from linkwright.review.parts.left_uses import find_left_uses
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, read_outline
 from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.parts.properties import compare_properties
 from linkwright.review.versions import Version, Versions
 
 _SUFFIXES = (".xacro", ".urdf", ".macro", ".gazebo", ".trans", ".inc")
@@ -129,6 +130,7 @@ class _Comparer:
         if file.old_path and file.new_path and isinstance(old, Outline) and isinstance(new, Outline):
             is_complete = is_compared or self._is_complete(file.new_path)
             pair = PartPair(self._versions, file.old_path, file.new_path, old, new, is_complete, self._expanded)
+            pair.robots = self._graphs.new.find_outlines_of_robots(file.new_path) or ()
             self._compare(pair)
             changes += pair.changes
         return Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, changes)
@@ -143,6 +145,7 @@ class _Comparer:
         if not pair.is_complete:
             compare_macros(pair, self._graphs, renamed)
         compare_arguments(pair, self._graphs)
+        compare_properties(pair, self._graphs.new)
         compare_contents(pair, renamed)
 
     def _read_outline(self, version: Version, path: str | None) -> Outline | Phrase | None:

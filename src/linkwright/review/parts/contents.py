@@ -82,9 +82,13 @@ def compare_contents(pair: PartPair, renamed: Mapping[str, str]) -> None:
 def _find_hidden_differences(
     pair: PartPair, comparison: ItemComparison, old: Element, new: Element
 ) -> Iterator[PartDifference]:
-    """Yield the differences between two elements that no compared robot shows."""
+    """Yield the differences between two elements that no compared robot shows.
+
+    A robot that reads the file in one version only shows the whole file as added or removed.
+    """
+    is_in_one_version = pair.is_read(is_old=True) != pair.is_read(is_old=False)
     for difference in comparison.differences(old, new):
-        if not _is_shown(pair, difference, old, new):
+        if is_in_one_version or not _is_shown(pair, difference, old, new):
             yield difference
 
 
@@ -285,6 +289,8 @@ class _ReportedDifference:
             name = old.attributes.get("name", "")
             if not is_removed:
                 return self._find_joint_reason(old)
+            if self.pair.has_robot_with(old.tag, name):
+                return None
             if old.tag == "link":
                 return frame_reason(name)
             return joint_name_reason(name) if old.attributes.get("type") in MOVING_TYPES else None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 from linkwright.diagnostics import Phrase
@@ -24,6 +24,7 @@ class PartPair:
         new: the new outline.
         is_complete: whether the file describes a complete robot, so that no other file calls its macros.
         expanded: the elements of changed files that the compared robots show.
+        robots: the new outlines of all files of the robots that include the file; empty if some are not known.
         changes: the changes found so far.
     """
 
@@ -34,6 +35,7 @@ class PartPair:
     new: Outline
     is_complete: bool
     expanded: Collection[ExpandedElement]
+    robots: Sequence[Outline] = ()
     changes: list[Change] = field(default_factory=list)
 
     def add(self, sentence: Phrase, old: Element | None, new: Element | None, reason: Phrase | None = None) -> None:
@@ -55,6 +57,14 @@ class PartPair:
         """Return whether the compared robots use an element of one of the versions."""
         path = self.old_path if is_old else self.new_path
         return element is not None and ExpandedElement(path, element.offset, is_old) in self.expanded
+
+    def has_robot_with(self, tag: str, name: str) -> bool:
+        """Return whether a robot of the new version that includes the file has a link or joint."""
+        return any(
+            element.tag == tag and element.attributes.get("name") == name
+            for outline in self.robots
+            for element in outline.root.elements()
+        )
 
     def is_read(self, *, is_old: bool) -> bool:
         """Return whether the expansion of a compared robot read the file in one of the versions."""

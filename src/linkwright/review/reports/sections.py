@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -66,6 +66,12 @@ def divide_report(review: Review) -> list[Section]:
     A macro that several descriptions include causes the same change in each of them, perhaps with other names. An edit
     of many launch files, parameter files or manifests often causes the same changes in each of them.
     """
+    folded = _fold_repeats(_divide_unfolded(review))
+    return sorted(folded, key=lambda section: section.has_only_code)
+
+
+def _divide_unfolded(review: Review) -> list[Section]:
+    """Return the sections, also those that only repeat changes of shared files."""
     sections: list[Section] = []
     sections_by_key: dict[Hashable, Section] = {}
     for section in _make_sections(review):
@@ -74,7 +80,7 @@ def divide_report(review: Review) -> list[Section]:
             sections.append(section)
         else:
             first.alike.append(section.subject.path)
-    return sorted(_replace_repeated(sections), key=lambda section: section.has_only_code)
+    return list(_replace_repeated(sections))
 
 
 def separate_code(sections: Sequence[Section]) -> tuple[list[Section], list[Section]]:
@@ -144,6 +150,31 @@ def _replace_repeated(sections: Sequence[Section]) -> Iterator[Section]:
         changes = [change for change, path in zip(section.changes, first_paths, strict=True) if path not in repeated]
         repeats = (Repeat(path, count, False) for path, count in repeated.items())
         yield replace(section, changes=changes, repeated=[*section.repeated, *repeats])
+
+
+def _fold_repeats(sections: Iterable[Section]) -> list[Section]:
+    """Return the sections. Those that only repeat all changes of an earlier section follow it as alike."""
+    folded: list[Section] = []
+    by_path: dict[str, Section] = {}
+    for section in sections:
+        subject = section.subject
+        first = by_path.get(section.repeated[0].path) if len(section.repeated) == 1 else None
+        has_more = section.changes or section.alike or subject.figures or subject.problems
+        if (
+            first is None
+            or has_more
+            or subject.images
+            or subject.scene
+            or first.repeated
+            or first.subject.figures
+            or first.subject.kind is not subject.kind
+            or section.repeated[0].change_count != len(first.changes)
+        ):
+            folded.append(section)
+            by_path[subject.path] = section
+        else:
+            first.alike.append(subject.path)
+    return folded
 
 
 def _merge_locations(changes: Sequence[Change]) -> list[Change]:
@@ -227,7 +258,7 @@ def _join_values(changes: Sequence[Change]) -> Change:
 def format_summary(review: Review) -> Phrase:
     """Return the number of changes and findings in one line."""
     breaking = total = 0
-    for section in divide_report(review):
+    for section in _divide_unfolded(review):
         count = 1 + len(section.alike)
         repeated = sum(repeat.change_count for repeat in section.repeated if not repeat.is_shared)
         total += count * (len(section.changes) + repeated)

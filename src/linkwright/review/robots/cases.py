@@ -282,10 +282,19 @@ def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
         elif not pair.cases:
             pair.add_unreadable(pair.versions.old, old)
     for (old, new), cases_of_fault in names.items():
-        pair.add_faults(old, new, tuple(cases_of_fault) if pair.cases or len(names) > 1 else ())
+        callers = _find_callers(pair.versions.new, pair.new_path, cases_of_fault) if old is None and pair.cases else ()
+        pair.add_faults(old, new, tuple(cases_of_fault) if pair.cases or len(names) > 1 else (), callers)
         if new is None:
             _report_contents(pair, next(failure.new for failure in failures if failure.name == cases_of_fault[0]))
     pair.cases += (name for cases_of_fault in names.values() for name in cases_of_fault)
+
+
+def _find_callers(version: Version, path: str, cases: Sequence[str]) -> list[str]:
+    """Return the files that call a description with one of the sets of values."""
+    spans = (
+        called.span for called in _find_called_sets(version, path) if _format_values(called.values, version) in cases
+    )
+    return [caller for span in spans if span is not None and (caller := version.relative(span.file)) is not None]
 
 
 def _report_contents(pair: FilePair, description: Description | LinkwrightError) -> None:

@@ -16,14 +16,12 @@ from numpy.typing import NDArray
 
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import LinkwrightError, phrase
-from linkwright.geometry.arrays import quaternion_from_matrix
-from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere, placement
 from linkwright.planning.robot_model import PlacedShape, add_shape
 from linkwright.planning.shapes import convert_collision
 from linkwright.review.changes import Change
 from linkwright.review.robots.figures import RobotMeasures
 from linkwright.simulation.library import load_mujoco
-from linkwright.urdf import Collision, Mesh
+from linkwright.urdf import Collision
 from linkwright.urdf.bodies import Bodies
 
 _SAMPLES = 300
@@ -62,16 +60,17 @@ def compare_collisions(
         old: the robot of the old version.
         new: the robot of the new version.
         links: the new names of the links that both robots have, by old name.
-        disabled: the pairs of links whose collisions do not count, such as the disabled pairs of a semantic description (SRDF).
+        disabled: the pairs of links whose collisions do not count, such as the disabled pairs of SRDF.
     """
     if find_spec("mujoco") is None or not any(link.collisions for link in new.robot.links.values()):
         return
     try:
-        counts_before, new_counts = _find_collisions(old), _find_collisions(new)
+        old_model, new_model = _CollisionModel(old), _CollisionModel(new)
+        counts_before, new_counts = old_model.count_collisions(), new_model.count_collisions()
     except ValueError:
         return
     old_counts = {frozenset(links.get(name, "") for name in pair): counts for pair, counts in counts_before.items()}
-    known = set(links.values())
+    known = {new_name for name, new_name in links.items() if name not in old_model.unreadable}
     for pair, (is_home, count) in new_counts.items():
         was_home, old_count = old_counts.get(frozenset(pair), (False, 0))
         if not known.issuperset(pair) or frozenset(pair) in disabled:
@@ -90,34 +89,21 @@ def compare_collisions(
             yield Change(text)
 
 
-def _find_collisions(measures: RobotMeasures) -> dict[Pair, tuple[bool, int]]:
-    """Return whether each colliding pair collides at home, and in how many configurations.
-
-    Raises:
-        ValueError: MuJoCo refuses a shape.
-    """
-    collision_model = _CollisionModel(measures)
-    if collision_model.model is None:
-        return {}
-    home = np.array([measures.frames[name] for name in measures.link_names])
-    at_home = collision_model.find_colliding_pairs(home)
-    counts: dict[Pair, int] = dict.fromkeys(at_home, 0)
-    for frames in measures.sample_frames(_SAMPLES):
-        for pair in collision_model.find_colliding_pairs(frames):
-            counts[pair] = counts.get(pair, 0) + 1
-    return {pair: (pair in at_home, count) for pair, count in sorted(counts.items())}
-
-
 class _CollisionModel:
     """A model of MuJoCo in which each link with collisions is a free body.
 
     Attributes:
         model: the model, or None if fewer than two links have shapes that can be used.
+        unreadable: the links with a mesh that cannot be read. Their collisions are unknown.
+
+    Raises:
+        ValueError: MuJoCo refuses a shape.
     """
 
     def __init__(self, measures: RobotMeasures) -> None:
         self._mujoco = mujoco = load_mujoco()
         self._links: list[str] = []
+        self.unreadable: set[str] = set()
         self._measures = measures
         spec = mujoco.MjSpec()
         for name in measures.link_names:
@@ -127,6 +113,18 @@ class _CollisionModel:
             self._data = mujoco.MjData(self.model)
             self._indexes = [measures.link_names.index(name) for name in self._links]
             self._ignored = _find_connected_pairs(measures)
+
+    def count_collisions(self) -> dict[Pair, tuple[bool, int]]:
+        """Return whether each colliding pair collides at home, and in how many configurations."""
+        if self.model is None:
+            return {}
+        home = np.array([self._measures.frames[name] for name in self._measures.link_names])
+        at_home = self.find_colliding_pairs(home)
+        counts: dict[Pair, int] = dict.fromkeys(at_home, 0)
+        for frames in self._measures.sample_frames(_SAMPLES):
+            for pair in self.find_colliding_pairs(frames):
+                counts[pair] = counts.get(pair, 0) + 1
+        return {pair: (pair in at_home, count) for pair, count in sorted(counts.items())}
 
     def find_colliding_pairs(self, frames: Array) -> set[Pair]:
         """Return the pairs of links that collide.
@@ -149,7 +147,7 @@ class _CollisionModel:
 
     def _add_link(self, spec: Any, name: str) -> None:
         collisions = self._measures.robot.links[name].collisions
-        shapes = [shape for shape in map(self._read_shape, collisions) if shape is not None]
+        shapes = [shape for collision in collisions if (shape := self._read_shape(name, collision)) is not None]
         if not shapes:
             return
         body = spec.worldbody.add_body(mass=1.0, inertia=[1.0, 1.0, 1.0], explicitinertial=True)
@@ -158,11 +156,12 @@ class _CollisionModel:
         body.add_freejoint()
         self._links.append(name)
 
-    def _read_shape(self, collision: Collision) -> PlacedShape | None:
+    def _read_shape(self, link: str, collision: Collision) -> PlacedShape | None:
         """Return a collision shape, or None if it has no volume or its mesh cannot be read."""
         try:
             return convert_collision(collision, self._measures.meshes)
         except LinkwrightError:
+            self.unreadable.add(link)
             return None
 
 
