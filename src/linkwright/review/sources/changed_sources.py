@@ -144,7 +144,8 @@ class ChangedSources:
         if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
             return False
         others = self._get_unchanged(package)
-        return not (others.has_name(item) if item.kind in COMMUNICATION_KINDS else others.has_text(item.name))
+        is_read = item.kind in (*COMMUNICATION_KINDS, NameKind.NODE)
+        return not (others.has_name(item) if is_read else others.has_text(item.name))
 
     def list_owners(self, item: SourceName, path: str) -> dict[str, SourceNames]:
         """Return the other sources of the package of a file that have a name, by path.

@@ -278,6 +278,7 @@ class _SourcePair(WholeSourcePair):
             changed = list(merge_function_changes(changed, is_python=self.file.path.endswith(PYTHON_SUFFIX)))
         for item, text, reason, _ in changed:
             is_breaking = is_called or kind is not NameKind.CLASS
+            is_breaking = is_breaking and (kind is not NameKind.FUNCTION or self.can_be_linked(item.name))
             if kind is NameKind.PARAMETER and reason is None:
                 reason = self._find_parameter_reason(item, old_names)
             yield self.make_change(text, item.span, self.new, reason if is_breaking else None)
@@ -327,9 +328,11 @@ class _SourcePair(WholeSourcePair):
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self.is_interface(path):
             return None
+        if items[0].kind is NameKind.FUNCTION:
+            items = [item for item in items if self.can_be_linked(item.name)]
         lost = [item for item in items if not self._is_left_to_others(item)]
         if not lost:
-            return find_other_node_reason(items)
+            return find_other_node_reason(items) if items else None
         reason = find_removal_reason(lost, names, self.new.get_names(self.file.new_path), path)
         users = ((item, self.new.find_user(item, path)) for item in (lost if reason is not None else ()))
         return next((make_user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
@@ -342,6 +345,11 @@ class _SourcePair(WholeSourcePair):
         if old_item.kind is NameKind.MESSAGE_FRAME:
             return find_message_frame_reason(old_item, names)
         reason = self._find_removal_reason([old_item], names)
+        is_scoped = old_item.name.startswith("/") != new_item.name.startswith("/")
+        if reason is not None and is_scoped and old_item.name.strip("/") == new_item.name.strip("/"):
+            return phrase(
+                "if the node has a namespace, programs that use the name '{name}' do not find it", name=old_item.name
+            )
         if reason is not None or old_item.kind not in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
             return reason
         path = self.file.path

@@ -203,6 +203,8 @@ class _Reader:
             else:
                 overloads.setdefault(function.name, []).append(function)
         for name, functions in overloads.items():
+            if not any(function.is_defined or function.is_pure for function in functions):
+                self._names.declared_only.add(name)
             types = _join_overloads(functions)
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
             if len(functions) == 1 and functions[0].result:

@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location, Problem
-from linkwright.review.installed_paths import find_include_text, is_exported_header
+from linkwright.review.installed_paths import find_include_text, is_exported_header, read_package_facts
 from linkwright.review.sources.changed_sources import ChangedSources
 from linkwright.review.sources.enumerators import compare_enumerations
 from linkwright.review.sources.names import HEADER_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceNames
@@ -79,6 +79,18 @@ class WholeSourcePair:
             is_module = package is not None and (side.version.file(path).parent / "__init__.py").is_file()
             return is_module and not is_certainly_uninstalled(side.version, package or "", path)
         return package is not None and is_exported_header(side.version, package, path)
+
+    def can_be_linked(self, function: str) -> bool:
+        """Return whether other packages can call a function of the old source.
+
+        The code of one that its header only declares is in no library if the package builds none.
+        """
+        path = self.file.old_path or self.file.path
+        if path.endswith(PYTHON_SUFFIX) or function not in self.old.get_names(path).declared_only:
+            return True
+        package = self.old.find_package(path)
+        facts = None if package is None else read_package_facts(self.old.version, package)
+        return facts is None or facts.has_library
 
     def compare_rates(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changed rates and periods, and the removed and added timers."""
