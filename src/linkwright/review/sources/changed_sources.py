@@ -183,6 +183,12 @@ class ChangedSources:
                 return other
         return self._get_unchanged(package).find_user(item)
 
+    def has_counterpart(self, item: SourceName) -> bool:
+        """Return whether a changed source of any package has the other end of a topic, service or action."""
+        kind = get_counterpart(item.kind)
+        found = (known for names in self._names.values() for known in (names.of_kind(kind) if kind else ()))
+        return any(is_same_topic(item, known) for known in found)
+
     def find_package(self, path: str) -> str | None:
         """Return the folder of the package of a file, or None for a file outside of packages."""
         return self.version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
