@@ -23,6 +23,7 @@ from linkwright.review.sources.package_imports import (
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.rates import compare_rates, compare_timers
 from linkwright.review.sources.transform_senders import find_lost_sender
+from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.used_packages import compare_usage
 
 
@@ -139,6 +140,16 @@ class WholeSourcePair:
             include = find_include_text(self.new.version, package, self.file.path)
             text = phrase("header added: other packages can include '{path}'", path=include)
             yield Change(text, location=Location(self.file.path, 1, 1))
+
+    def find_unbuilt(self) -> Iterator[Change]:
+        """Yield a line if no target builds an added source."""
+        path = self.file.new_path
+        package = None if path is None or self.file.old_path is not None else self.new.find_package(path)
+        if path is not None and package is not None and is_unbuilt(self.new.version, package, path):
+            name = find_exported_class(self.new.version, package, path)
+            reason = None if name is None else phrase("programs that use '{name}' do not link", name=name)
+            effect = Effect.CHANGED if reason is None else Effect.BREAKING
+            yield Change(phrase("no target builds the source"), effect, reason, Location(path, 1, 1))
 
     def find_lost_transforms(self, reported: Sequence[Change]) -> Iterator[Change]:
         """Yield a line if the source no longer publishes transforms, unless a line names the lost frames."""
