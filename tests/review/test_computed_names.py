@@ -141,8 +141,10 @@ def test_parameters_that_get_a_namespace_are_lost(repository, compare):
     repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": f"void f() {{ {old} }}\n"})
     repository.write({"arm/src/arm.cpp": f'void f() {{ {new} declare_parameter<int>(name + ".count", 1); }}\n'})
     assert breaking(compare(repository)) == [
-        "parameters that have computed names now: "
-        "'min_x' (1.0) -> name + \".min_x\", 'max_x' (2.0) -> name + \".max_x\""
+        (
+            "parameters that have computed names now: "
+            "'min_x' (1.0) -> name + \".min_x\", 'max_x' (2.0) -> name + \".max_x\""
+        )
     ]
 
 
