@@ -144,7 +144,8 @@ class ChangedSources:
         if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
             return False
         others = self._get_unchanged(package)
-        return not (others.has_name(item) if item.kind in COMMUNICATION_KINDS else others.has_text(item.name))
+        is_read = item.kind in (*COMMUNICATION_KINDS, NameKind.NODE)
+        return not (others.has_name(item) if is_read else others.has_text(item.name))
 
     def list_owners(self, item: SourceName, path: str) -> dict[str, SourceNames]:
         """Return the other sources of the package of a file that have a name, by path.
@@ -181,6 +182,12 @@ class ChangedSources:
             if self.find_package(other) == package and any(is_same_topic(item, user) for user in names.of_kind(kind)):
                 return other
         return self._get_unchanged(package).find_user(item)
+
+    def has_counterpart(self, item: SourceName) -> bool:
+        """Return whether a changed source of any package has the other end of a topic, service or action."""
+        kind = get_counterpart(item.kind)
+        found = (known for names in self._names.values() for known in (names.of_kind(kind) if kind else ()))
+        return any(is_same_topic(item, known) for known in found)
 
     def find_package(self, path: str) -> str | None:
         """Return the folder of the package of a file, or None for a file outside of packages."""

@@ -33,6 +33,7 @@ from linkwright.review.sources.cpp_helpers import Helper, find_helper_uses, find
 from linkwright.review.sources.cpp_lifecycle import LifecycleCallbacks
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.cpp_options import find_options
+from linkwright.review.sources.cpp_parameter_calls import find_table_names, is_required_parameter
 from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
 from linkwright.review.sources.cpp_text_functions import TextFunctions
@@ -203,6 +204,8 @@ class _Reader:
             else:
                 overloads.setdefault(function.name, []).append(function)
         for name, functions in overloads.items():
+            if not any(function.is_defined or function.is_pure for function in functions):
+                self._names.declared_only.add(name)
             types = _join_overloads(functions)
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
             if len(functions) == 1 and functions[0].result:
@@ -249,6 +252,12 @@ class _Reader:
         if call.start in self._inner_calls:
             return  # the callers give the names
         name, type_name = " ".join(text[begin:end].split()), call.type
+        listed = list(find_table_names(text, name, call.start)) if kind is NameKind.PARAMETER else []
+        if listed:
+            texts = [text[slice(*argument)].strip() for argument in call.arguments[1:]]
+            for item in listed:
+                self._add_named_call(call, item.name, (item.start, item.end), texts)
+            return
         is_ros = self._add_default(kind, name) or call.function not in ROS1_CALLS
         texts = [text[slice(*argument)].strip() for argument in call.arguments[1:]]
         details: tuple[tuple[Detail, str], ...] = ()
@@ -307,6 +316,8 @@ class _Reader:
             if type_name:
                 detail = Detail.VALUE_TYPE if call.function in _ROS2_PARAMETER_CALLS else Detail.READ_AS
                 details.append((detail, type_name))
+            if is_required_parameter(self._text, call):
+                details.append((Detail.REQUIRED, YES))
             is_output = call.function in _OUTPUT_CALLS or is_known_to_be_set(self._text, name, call.start)
             type_name = "" if is_output else self._find_literal_default(call, texts)
         else:

@@ -1,0 +1,97 @@
+"""Find the parameters that a C++ source requires, and those whose names are in a table."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from linkwright.review.sources.cpp_calls import Call
+from linkwright.review.sources.cpp_text import find_closing_bracket
+
+_IF = re.compile(r"\bif\s*(?=\()")
+_NEGATED = re.compile(r"!\s*(?:\w+\s*(?:\(\s*\))?\s*(?:\.|->|::)\s*)*\Z")
+_EXIT = re.compile(
+    r"\bthrow\b|\breturn\s+(?:false|-\s*1|EXIT_FAILURE|[\w:]*\b(?:ERROR|FAILURE))\s*;|\b(?:exit|abort|shutdown)\s*\("
+)
+_MAX_CONDITION_CHARACTERS = 400
+_TYPED_CALLS = frozenset({"declare_parameter"})
+_LOOP = r"\bfor\s*\(\s*(?:const\s+)?[\w:<>,\s*]*?[&*\s]+(?:{name}|\[\s*{name}\b[^\]]*\])\s*:\s*(?P<table>\w+)\s*\)"
+_TABLE = r"\b{table}\s*(?:\[\w*\]\s*)?(?:=\s*)?(?=\{{)"
+_ELEMENT = re.compile(r"(?P<name>\w+)\s*(?P<part>(?:\.|->)\s*\w+)?\s*(?:\.c_str\(\))?")
+_TEXT = re.compile(r"\"(?P<text>[^\"\\]+)\"")
+
+
+class TableName(NamedTuple):
+    """A name in a table.
+
+    Attributes:
+        name: the name.
+        start: its offset.
+        end: the offset of its end.
+    """
+
+    name: str
+    start: int
+    end: int
+
+
+def is_required_parameter(text: str, call: Call) -> bool:
+    """Return whether the program fails if a parameter is not set.
+
+    A call that declares a type without a default throws an error, and the branch of an ``if`` that a failed call takes
+    may throw one or return a failure.
+
+    Args:
+        text: the source without comments.
+        call: the call that reads or declares the parameter.
+    """
+    if call.function in _TYPED_CALLS and call.type and len(call.arguments) == 1:
+        return re.search(r"\bcatch\b", text) is None
+    if call.function not in ("getParam", "get_parameter"):
+        return False
+    begin = max(0, call.start - _MAX_CONDITION_CHARACTERS)
+    conditions = [match.end() for match in _IF.finditer(text, begin, call.start)]
+    if not conditions:
+        return False
+    start = conditions[-1]
+    end = find_closing_bracket(text, start)
+    if not start < call.start < end or "&&" in text[start:end] or not _NEGATED.search(text, start, call.start):
+        return False
+    return _EXIT.search(_read_branch(text, end + 1)) is not None
+
+
+def _read_branch(text: str, start: int) -> str:
+    """Return the statement or block behind a condition."""
+    begin = start + len(text[start:]) - len(text[start:].lstrip())
+    if text.startswith("{", begin):
+        return text[begin : find_closing_bracket(text, begin)]
+    end = text.find(";", begin)
+    return text[begin : end + 1]
+
+
+def find_table_names(text: str, expression: str, position: int) -> Iterator[TableName]:
+    """Yield the names in the table over which the loop around a call runs, if the call takes a name of the table.
+
+    Args:
+        text: the source without comments.
+        expression: the argument of the call, such as ``entry.first``.
+        position: the offset of the call.
+    """
+    element = _ELEMENT.fullmatch(expression.strip())
+    if element is None:
+        return
+    loops = list(re.finditer(_LOOP.format(name=re.escape(element["name"])), text[:position]))
+    if not loops or text[loops[-1].end() : position].count("}") > text[loops[-1].end() : position].count("{"):
+        return
+    tables = list(re.finditer(_TABLE.format(table=re.escape(loops[-1]["table"])), text[: loops[-1].start()]))
+    if not tables:
+        return
+    start = tables[-1].end()
+    end = find_closing_bracket(text, start)
+    is_pair = element["part"] is not None or "[" in loops[-1][0]
+    for match in _TEXT.finditer(text, start, end):
+        before = text[start : match.start()].rstrip()
+        is_first = before.endswith("{") if is_pair else before.endswith(("{", ","))
+        if is_first and (before.count("{") - before.count("}")) == 1 + is_pair:
+            yield TableName(match["text"], match.start(), match.end())
