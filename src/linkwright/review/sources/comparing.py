@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import PurePosixPath
@@ -26,12 +26,14 @@ from linkwright.review.sources.details import (
     format_rename,
 )
 from linkwright.review.sources.enumerators import compare_enumerations
-from linkwright.review.sources.function_changes import NameChange, merge_function_changes
+from linkwright.review.sources.function_changes import NameChange, find_ignored_reason, merge_function_changes
+from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.name_patterns import can_make, extract_pattern
 from linkwright.review.sources.names import (
     HEADER_SUFFIXES,
     PYTHON_SUFFIX,
     DefaultName,
+    Detail,
     NameKind,
     SourceName,
     SourceNames,
@@ -52,6 +54,7 @@ from linkwright.review.sources.pairing import (
     pair_similar,
     take_pairs,
 )
+from linkwright.review.sources.parameter_scopes import find_scoped
 from linkwright.review.sources.parameter_uses import ParameterUses
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.python_bases import select_methods
@@ -61,6 +64,7 @@ from linkwright.review.sources.renamed_classes import find_renamed_classes
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.unchanged_sources import make_user_reason
+from linkwright.review.sources.undefined_uses import find_undefined_uses
 from linkwright.review.sources.used_packages import compare_usage
 from linkwright.review.versions import Versions
 
@@ -112,7 +116,8 @@ class _SourcePair:
             path = (self.file.old_path if change.is_old else self.file.new_path) or self.file.path
             changes.append(Change(change.text, location=Location(path, change.line, 1, change.is_old)))
         changes += self._compare_imports(old_names, new_names)
-        changes += self._find_undefined(old_names, new_names)
+        for use in find_undefined_uses(old_names, new_names, is_added=self.file.old_path is None):
+            changes.append(self._make_change(use.text, use.span, self.new, use.reason))
         changes += self._compare_header(old_names, new_names)
         changes += self._compare_packages(are_headers_told=not changes)
         changes += compare_statements(self.old, self.new, self.file, changes)
@@ -150,7 +155,7 @@ class _SourcePair:
         """Yield the changes to the names of a kind."""
         before = {get_comparison_name(item): item for item in old_names.of_kind(kind)}
         after = {get_comparison_name(item): item for item in new_names.of_kind(kind)}
-        scoped = self._find_scoped(before, after, old_names, new_names) if kind is NameKind.PARAMETER else []
+        scoped = find_scoped(before, after, old_names, new_names) if kind is NameKind.PARAMETER else []
         shown = {get_comparison_name(item): item.type for _, item in scoped}  # the lines of these have their defaults
         changed = [
             NameChange(item, *detail)
@@ -158,6 +163,8 @@ class _SourcePair:
             if name in before and not has_same_types(before[name], item, old_names, new_names)
             for detail in compare_details(replace(before[name], type=shown.get(name, before[name].type)), item)
         ]
+        if kind is NameKind.PARAMETER:
+            changed += self._compare_moved([item for name, item in before.items() if name not in after])
         yield from self._report_details(kind, changed, old_names)
         for old, new in scoped:
             reason = self._find_removal_reason([old], old_names)
@@ -203,27 +210,12 @@ class _SourcePair:
         yield from self._compare_expressions(kind, removed, added)
         yield from self._report_unpaired(kind, removed, added, old_names)
 
-    @staticmethod
-    def _find_scoped(
-        before: Mapping[str, SourceName],
-        after: Mapping[str, SourceName],
-        old_names: SourceNames,
-        new_names: SourceNames,
-    ) -> list[tuple[SourceName, SourceName]]:
-        """Return the parameters of ROS 1 that become private, or no longer are, each in both versions."""
-        unknown = old_names.unknown_scopes | new_names.unknown_scopes
-        known = [
-            {item.name.lstrip("/") for item in names.of_kind(NameKind.PARAMETER)} for names in (old_names, new_names)
-        ]
-        return [
-            (before[name], item)
-            for name, item in after.items()
-            if name in before
-            and name not in unknown
-            and before[name].name.startswith("~") != item.name.startswith("~")
-            and before[name].name.lstrip("/") not in known[1]
-            and item.name.lstrip("/") not in known[0]
-        ]
+    def _compare_moved(self, items: Sequence[SourceName]) -> Iterator[NameChange]:
+        """Yield the changes to parameters that another changed source of the package declares now."""
+        for item in items:
+            moved = self.new.find_moved(item, self.file.path)
+            if moved is not None and self.old.find_moved(item, self.file.old_path or self.file.path) is None:
+                yield from (NameChange(moved, *detail) for detail in compare_details(item, moved))
 
     def _is_reported(self, kind: NameKind) -> bool:
         """Return whether removed and added names of a kind matter outside of the file."""
@@ -324,7 +316,9 @@ class _SourcePair:
             return
         if kind is NameKind.FUNCTION:
             changed = list(merge_function_changes(changed, is_python=self.file.path.endswith(PYTHON_SUFFIX)))
-        for item, text, reason, _ in changed:
+        for item, text, reason, detail in changed:
+            if detail is Detail.ARGUMENTS and reason is None:
+                reason = find_ignored_reason(item, old_names, self.new.get_names(self.file.new_path))
             is_breaking = is_called or kind is not NameKind.CLASS
             if kind is NameKind.PARAMETER and reason is None:
                 reason = self._find_parameter_reason(item, old_names)
@@ -461,7 +455,8 @@ class _SourcePair:
                 kind=kind.plural,
                 names=format_names(removed_expressions),
             )
-            yield self._make_change(text, removed_expressions[0].span, self.old, None)
+            reason = find_lost_pattern_reason(removed_expressions, self.old, self.new, self.file.path)
+            yield self._make_change(text, removed_expressions[0].span, self.old, reason)
             added.clear()
 
     def _find_default_reason(self, item: SourceName, old: str, new: str, names: SourceNames) -> Phrase | None:
@@ -539,17 +534,6 @@ class _SourcePair:
                 yield self._make_change(
                     text, span, self.new, phrase("the package cannot be imported once it is installed")
                 )
-
-    def _find_undefined(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the names and methods that are still used but no longer defined or imported."""
-        for name, span in new_names.undefined_names.items() if self.file.old_path is not None else ():
-            if name in old_names.bound_names:
-                text = phrase("uses '{name}', which it no longer defines or imports", name=name)
-                yield self._make_change(text, span, self.new, phrase("the code that uses the name fails"))
-        for name, span in new_names.undefined_methods.items():
-            if name in old_names.attributes:
-                text = phrase("calls its method '{name}', which is no longer defined", name=name)
-                yield self._make_change(text, span, self.new, phrase("the call fails"))
 
     def _find_added_header(self) -> Iterator[Change]:
         """Yield a line with the text by which other packages include an added header."""
