@@ -109,3 +109,26 @@ def test_frame_that_becomes_the_default_of_a_parameter_is_not_removed(repository
         (found,) = compare(repository).subjects
         assert sentences(found)[0] == f"parameters {change}: 'child' (\"tool\")"
         assert not any("frame" in sentence for sentence in sentences(found))
+
+
+def test_names_of_parameters_of_a_plugin_are_known(repository, compare):
+    declared = (
+        'nav2_util::declare_parameter_if_not_declared(node, name_ + ".{0}", rclcpp::ParameterValue("odom"));'
+        ' node->get_parameter(name_ + ".{0}", {0}_);'
+    )
+    new = " ".join(
+        [
+            *(declared.format(item) for item in ("frame", "topic")),
+            "m.header.frame_id = frame_; p_ = node->create_publisher<Odometry>(topic_, 1);",
+        ]
+    )
+    repository.commit(
+        {
+            **MANIFEST,
+            "arm/src/arm.cpp": CPP.format('m.header.frame_id = "odom"; p_ = create_publisher<Odometry>("odom", 1);'),
+        }
+    )
+    repository.write({"arm/src/arm.cpp": CPP.format(new)})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == "publisher 'odom' (Odometry) comes from parameter 'topic' now ('odom' by default)"
+    assert not any("frames of messages" in line for line in sentences(found))

@@ -241,7 +241,9 @@ def test_a_topic_whose_parameter_has_another_default_is_lost(repository, compare
     literal = computed.replace("Bool, self.topic", "Bool, '/lidar/cones'")
     repository.commit({"arm/mapper.py": literal})
     repository.write({"arm/mapper.py": computed})
-    assert breaking(compare(repository)) == ["subscription '/lidar/cones' (Bool) has a computed name now: self.topic"]
+    assert breaking(compare(repository)) == [
+        "subscription '/lidar/cones' (Bool) comes from parameter 'topic' now ('/lidar/map' by default)"
+    ]
 
 
 @pytest.mark.parametrize("imported", ["from launch import LaunchService", "from launch.actions import ExecuteProcess"])

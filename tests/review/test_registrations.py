@@ -132,3 +132,12 @@ def test_a_class_that_is_no_longer_exported_for_a_base_class_is_breaking(reposit
     repository.commit({"arm/package.xml": PACKAGE_XML, "arm/a.cpp": text})
     repository.write({"arm/a.cpp": text.replace(export.format(lost), "") + "// planner\n"})
     assert breaking(compare(repository)) == expected
+
+
+@pytest.mark.parametrize(("left", "is_lost"), [("", True), ("EXPORT_BOTH(Foo, Planner)\n", False)])
+def test_a_description_that_declares_a_lost_base_class_is_named(review_source, left, is_lost):
+    export = "PLUGINLIB_EXPORT_CLASS(arm::Foo, mbf::Planner)\n"
+    description = DESCRIPTION.replace("base::System", "mbf::Planner")
+    _, broken = review_source(PLUGIN + export, PLUGIN + left, {"arm/foo.xml": description})
+    line = "declares 'arm::Foo' for 'mbf::Planner', for which no source exports it any more"
+    assert (line in broken) is is_lost

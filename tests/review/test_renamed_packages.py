@@ -136,3 +136,37 @@ def test_robot_that_neither_version_can_read_has_one_problem_after_a_move(packag
     ]
     assert len(problems) == 1
     assert problems[0].startswith("neither version can be read: ")
+
+
+@pytest.mark.parametrize(
+    ("old_header", "new_header", "keeps_text", "expected"),
+    [
+        ("gripper/grip.hpp", "kuka_gripper/grip.hpp", False, []),
+        ("gripper/gripper.hpp", "kuka_gripper/kuka_gripper.hpp", True, []),
+        ("gripper/gripper.hpp", "kuka_gripper/kuka_gripper.hpp", False, []),
+        (
+            "gripper/grip.hpp",
+            "kuka_gripper/kuka_grip.hpp",
+            True,
+            ["headers renamed: 'gripper/grip.hpp -> kuka_gripper/kuka_grip.hpp'"],
+        ),
+    ],
+)
+def test_headers_that_are_renamed_with_their_package_are_no_new_ones(
+    repository, compare, old_header, new_header, keeps_text, expected
+):
+    text = "#pragma once\n" + "class Grip;\n" * 20
+    build = "project({0})\nfind_package(ament_cmake REQUIRED)\ninstall(DIRECTORY include/ DESTINATION include)\n"
+    folders = [("c/gripper", "gripper", old_header), ("c/kuka_gripper", "kuka_gripper", new_header)]
+    old, new = (
+        {
+            f"{folder}/package.xml": PACKAGE_XML.replace("arm_description", name),
+            f"{folder}/CMakeLists.txt": build.format(name),
+            f"{folder}/include/{header}": text if name == "gripper" or keeps_text else text.replace("class", "struct"),
+        }
+        for folder, name, header in folders
+    )
+    repository.commit(old)
+    repository.commit({**dict.fromkeys(old), **new})
+    lines = [line for subject in compare(repository, "HEAD~1..HEAD").subjects for line in sentences(subject)]
+    assert [line for line in lines if "header" in line or "installed now" in line] == expected

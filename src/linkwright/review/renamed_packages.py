@@ -48,6 +48,15 @@ class RenamedPackage:
             return None
         return (PurePosixPath(self.new_folder) / path.relative_to(self.old_folder)).as_posix()
 
+    def derive_path(self, old_path: str, names: PackageNames) -> str | None:
+        """Return the new path of a file whose path in the package contains its name; None for other files."""
+        path = PurePosixPath(old_path)
+        if not path.is_relative_to(self.old_folder):
+            return None
+        inner = path.relative_to(self.old_folder).as_posix()
+        derived = names.rename_derived(inner)
+        return None if derived == inner else (PurePosixPath(self.new_folder) / derived).as_posix()
+
 
 def find_renamed_packages(versions: Versions) -> list[RenamedPackage]:
     """Return the packages with a new name or folder.
@@ -96,11 +105,17 @@ def match_moved_files(versions: Versions) -> Versions:
     Git does not recognize all of these files as moved.
     """
     packages = find_renamed_packages(versions)
+    names = PackageNames(packages)
     added = {file.new_path: file for file in versions.changed_files if file.old_path is None}
     moved: dict[str, ChangedFile] = {}
     for file in versions.changed_files:
         old_path = None if file.new_path else file.old_path
-        paths = [package.new_path(old_path) for package in packages if old_path is not None]
+        paths = [
+            path
+            for package in packages
+            if old_path is not None
+            for path in (package.new_path(old_path), package.derive_path(old_path, names))
+        ]
         added_file = next((added[path] for path in paths if path in added), None)
         if added_file is not None:
             moved[file.path] = moved[added_file.path] = ChangedFile(
@@ -258,7 +273,7 @@ def find_moved_files(versions: Versions, files: Sequence[ChangedFile]) -> Iterat
     packages = find_renamed_packages(versions)
     names = PackageNames(packages)
     for file in files:
-        for package in packages:
-            path = package.new_path(file.old_path) if file.old_path else None
-            if path is not None and file.new_path in (path, names.rename_derived(path)):
+        for package in packages if file.old_path and file.new_path else ():
+            path = package.new_path(file.old_path or "")
+            if path is not None and file.new_path in (path, package.derive_path(file.old_path or "", names)):
                 yield file.path, package.old_folder

@@ -5,7 +5,7 @@ In packages of descriptions, launch files, scripts and interfaces, CMake compile
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
@@ -295,16 +295,18 @@ def _is_nested(first: PurePosixPath, second: PurePosixPath) -> bool:
     return first.is_relative_to(second) or second.is_relative_to(first)
 
 
-def read_cmake(source: SourceText, package: Path | None = None) -> CMakeFile:
+def read_cmake(source: SourceText, package: Path | None = None, options: Iterable[str] = ()) -> CMakeFile:
     """Read the install rules of a ``CMakeLists.txt``.
 
     Args:
         source: the text of the file.
         package: the package's folder, in which subdirectories, included files and matches of patterns are searched;
             None if there is no folder.
+        options: the options that are off unless the file declares them.
     """
     file = CMakeFile(source)
     program = CMakeProgram(package)
+    program.variables |= dict.fromkeys(options, "OFF")
     for command in program.run(source):
         _read_command(file, command, program)
     file.unknown += [f"the effect of its command {name}() is not known here" for name in program.unknown]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache, partial
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
 
@@ -35,6 +35,8 @@ _COMMANDS_AFTER_TARGETS = (
 """The prefixes of commands that refer to targets without creating them."""
 _EXECUTABLE_COMMANDS = ("add_executable", "ament_auto_add_executable", "rosbuild_add_executable", "cuda_add_executable")
 _LIBRARY_COMMANDS = ("add_library", "ament_auto_add_library", "rosbuild_add_library", "cuda_add_library")
+_INSTALLING_COMMANDS = ("ament_auto_add_executable", "ament_auto_add_library")
+"""The commands whose targets `ament_auto_package` installs. ``ament_auto_add_gtest`` makes a test."""
 _GENERATED_LIBRARY_COMMANDS = ("generate_parameter_library", "generate_parameter_module")
 """The commands of generate_parameter_library, which make a library from a YAML file."""
 _LIBRARY_TYPES = ("SHARED", "STATIC", "MODULE", "INTERFACE", "OBJECT")
@@ -68,6 +70,7 @@ _IRRELEVANT_VARIABLE = re.compile(
 """The variables that affect neither the build nor the installation."""
 _COMMENT = re.compile(r"#[^\n]*")
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
+_OPTION = re.compile(r"^[ \t]*option\s*\(\s*(?P<name>\w+)", re.IGNORECASE | re.MULTILINE)
 _ENVIRONMENT = re.compile(r"\bENV\{(\w+)\}")
 _BUILD_VARIABLES = ("CMAKE_CXX_STANDARD", "CMAKE_C_STANDARD", "CMAKE_BUILD_TYPE")
 _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
@@ -76,17 +79,26 @@ _INTERFACE_SUFFIXES = (".msg", ".srv", ".action", ".idl")
 def compare_cmake_files(pair: FilePair) -> None:
     """Compare two versions of a ``CMakeLists.txt`` without running CMake.
 
-    Its subdirectories are included.
+    Its subdirectories are included. An option that only one version declares is off in the other one, as in CMake.
     """
-    compare_build_files(pair, read_cmake_facts, compare_targets)
+    texts = pair.versions.old.text(pair.old_path), pair.versions.new.text(pair.new_path)
+    options = [match["name"] for text in texts for match in _OPTION.finditer(_COMMENT.sub("", text))]
+    compare_build_files(pair, partial(read_cmake_facts, options=options), compare_targets)
 
 
-def read_cmake_facts(version: Version, path: str) -> BuildFacts:
-    """Return the facts of a ``CMakeLists.txt`` with its subdirectories."""
+def read_cmake_facts(version: Version, path: str, options: Iterable[str] = ()) -> BuildFacts:
+    """Return the facts of a ``CMakeLists.txt`` with its subdirectories.
+
+    Args:
+        version: the version that contains the file.
+        path: the path of the file relative to the root.
+        options: the options that are off unless the file declares them; all others are unknown.
+    """
     file = version.file(path)
     source = SourceText(str(file), file.read_text(encoding="utf-8", errors="replace"))
     facts = BuildFacts(package=_get_parent_folder(path))
     program = CMakeProgram(file.parent)
+    program.variables |= dict.fromkeys(options, "OFF")
     commands = list(program.run(source))
     for reader in (
         _read_installed_targets,
@@ -113,7 +125,7 @@ def read_cmake_facts(version: Version, path: str) -> BuildFacts:
     facts.environment = EnvironmentVariables(
         (match[1], source.span(match.start(), match.end())) for match in _ENVIRONMENT.finditer(text)
     )
-    cmake = read_cmake(source, file.parent)
+    cmake = read_cmake(source, file.parent, options)
     _read_files(facts, cmake, file.parent)
     facts.other_commands = [
         (_get_compared_name(command), _normalize_arguments(command, facts.project))
@@ -203,7 +215,7 @@ def _read_installed_targets(commands: Sequence[Command]) -> Iterator[Fact]:
     built = _BuiltTargetNames(commands)
     for command in commands:
         arguments = command.arguments
-        if command.name.startswith("ament_auto_add_") and arguments:
+        if command.name in _INSTALLING_COMMANDS and arguments:
             kind = FactKind.EXECUTABLE if command.name in _EXECUTABLE_COMMANDS else FactKind.LIBRARY
             yield _make_fact(kind, arguments[0])
         if command.name == "install" and command.words[:1] == ["TARGETS"]:

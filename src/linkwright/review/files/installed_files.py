@@ -8,14 +8,20 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_facts import BuildFacts, find_own_include_text, list_names, summarize_files
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
+
+_HEADERS = "include/"
 
 
 def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Report files of both versions that only one installs, or whose destination differs."""
     old_sources, new_sources = ({source: target for target, source in facts.files.items()} for facts in (old, new))
     new_sources_by_old = {source: _find_installed_source(pair, old, new, source) for source in old_sources}
+    names_of_packages = PackageNames(find_renamed_packages(pair.versions))
+    is_renamed_package = old.project != new.project
     moved: dict[tuple[str, str], list[str]] = {}
     removed: list[str] = []
+    renamed_headers: list[str] = []
     for source, target in old_sources.items():
         installed_source = new_sources_by_old[source]
         new_target = None if installed_source is None else new_sources.get(installed_source)
@@ -34,8 +40,21 @@ def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) ->
             moved.setdefault(folders, []).append(
                 f"{_get_file_name(target)} -> {_get_file_name(new_target)}" if is_renamed else _get_file_name(target)
             )
+        elif (
+            is_renamed_package
+            and target.startswith(_HEADERS)
+            and names_of_packages.rename_derived(target) not in new.files
+        ):
+            renamed_headers.append(f"{target.removeprefix(_HEADERS)} -> {new_target.removeprefix(_HEADERS)}")
     added = [target for source, target in new_sources.items() if target not in old.files and source not in old_sources]
+    if is_renamed_package:
+        known = {names_of_packages.rename_derived(target) for target in old.files}
+        known |= {new_sources[source] for source in new_sources_by_old.values() if source in new_sources}
+        added = [target for target in added if target not in known]
     _report_moved_files(pair, moved)
+    if renamed_headers:
+        text = phrase("headers renamed: {names}", names=list_names(renamed_headers))
+        pair.add(text, None, phrase("code of other packages that includes them does not build"))
     if added and old.unknown <= new.unknown:
         _report_newly_installed_files(pair, old, new, added)
     if removed:

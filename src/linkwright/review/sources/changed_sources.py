@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from linkwright.packages.manifest import MANIFEST
@@ -45,6 +45,11 @@ class ChangedSources:
     def get_names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
         return self._names.get(path, SourceNames()) if path is not None else SourceNames()
+
+    @property
+    def paths(self) -> Collection[str]:
+        """The paths of the changed sources."""
+        return self._names.keys()
 
     def list_timers(self, path: str | None) -> list[Timer]:
         """Return the timers in all changed sources except one."""

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
-from pathlib import PurePosixPath
+from dataclasses import replace
 
-from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Effect, Location, Problem, Subject, SubjectKind
-from linkwright.review.installed_paths import find_include_text, is_exported_header
+from linkwright.review.changes import Change, Location, Subject, SubjectKind
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
@@ -25,12 +22,10 @@ from linkwright.review.sources.details import (
     format_names,
     format_rename,
 )
-from linkwright.review.sources.enumerators import compare_enumerations
 from linkwright.review.sources.function_changes import NameChange, find_ignored_reason, merge_function_changes
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.name_patterns import can_make, extract_pattern
 from linkwright.review.sources.names import (
-    HEADER_SUFFIXES,
     PYTHON_SUFFIX,
     DefaultName,
     Detail,
@@ -38,12 +33,9 @@ from linkwright.review.sources.names import (
     SourceName,
     SourceNames,
 )
-from linkwright.review.sources.namespaces import compare_namespaces, has_namespace
 from linkwright.review.sources.other_nodes import find_other_node_reason, has_only_in_other_nodes
 from linkwright.review.sources.package_imports import (
     drop_defined_imports,
-    find_failing_imports,
-    is_certainly_uninstalled,
     is_installed_module,
     is_installed_package,
 )
@@ -56,16 +48,13 @@ from linkwright.review.sources.pairing import (
 )
 from linkwright.review.sources.parameter_scopes import find_scoped
 from linkwright.review.sources.parameter_uses import ParameterUses
-from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.python_bases import select_methods
-from linkwright.review.sources.rates import compare_rates, compare_timers
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.renamed_classes import find_renamed_classes
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.unchanged_sources import make_user_reason
-from linkwright.review.sources.undefined_uses import find_undefined_uses
-from linkwright.review.sources.used_packages import compare_usage
+from linkwright.review.sources.whole_sources import WholeSourcePair
 from linkwright.review.versions import Versions
 
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
@@ -92,64 +81,25 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
             yield Subject(SubjectKind.SOURCE, file.path, file.old_path, file.new_path, changes, problems=problems)
 
 
-@dataclass(frozen=True)
-class _SourcePair:
-    """Both versions of a changed source.
-
-    Attributes:
-        old: the names of the old version.
-        new: the names of the new version.
-        file: the paths of the source in both versions.
-    """
-
-    old: ChangedSources
-    new: ChangedSources
-    file: ChangedFile
+class _SourcePair(WholeSourcePair):
+    """Both versions of a changed source, whose names are compared."""
 
     def find_changes(self) -> Iterator[Change]:
         """Yield the differences."""
         old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
-        changes = list(self._find_added_header())
+        changes = list(self.find_added_header())
         changes += [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
-        changes += self._compare_rates(old_names, new_names)
+        changes += self.compare_rates(old_names, new_names)
         for change in compare_conditions(old_names, new_names):
             path = (self.file.old_path if change.is_old else self.file.new_path) or self.file.path
             changes.append(Change(change.text, location=Location(path, change.line, 1, change.is_old)))
-        changes += self._compare_imports(old_names, new_names)
-        for use in find_undefined_uses(old_names, new_names, is_added=self.file.old_path is None):
-            changes.append(self._make_change(use.text, use.span, self.new, use.reason))
-        changes += self._compare_header(old_names, new_names)
-        changes += self._compare_packages(are_headers_told=not changes)
+        changes += self.find_lost_transforms(changes)
+        changes += self.compare_imports(old_names, new_names)
+        changes += self.find_undefined(old_names, new_names)
+        changes += self.compare_header(old_names, new_names)
+        changes += self.compare_packages(are_headers_told=not changes)
         changes += compare_statements(self.old, self.new, self.file, changes)
         yield from changes
-
-    def find_problems(self) -> Iterator[Problem]:
-        """Yield the reason why the names of a version are unknown."""
-        lines = [
-            self.old.get_names(self.file.old_path).error_line,
-            self.new.get_names(self.file.new_path).error_line,
-        ]
-        if None in (self.file.old_path, self.file.new_path) or not any(lines):
-            return
-        if all(lines):
-            reason = phrase("line {line} has a syntax error", line=lines[1])
-            yield Problem(phrase("neither version can be read: {reason}", reason=reason), is_of_both=True)
-        elif lines[0]:
-            text = phrase("the old version has a syntax error in line {line}; its names are not known", line=lines[0])
-            yield Problem(text, is_of_old=True)
-        else:
-            yield Problem(
-                phrase("the new version has a syntax error in line {line}; its names are not known", line=lines[1])
-            )
-
-    def find_parse_failure(self) -> Iterator[Change]:
-        """Yield a change if no version of Python can parse the new source."""
-        names = self.new.get_names(self.file.new_path)
-        could_be_parsed = not self.old.get_names(self.file.old_path).error_line
-        if names.error_line and names.is_error_certain and could_be_parsed:
-            text = phrase("can no longer be parsed")
-            reason = phrase("programs that run or import the file fail")
-            yield Change(text, Effect.BREAKING, reason, Location(self.file.path, names.error_line, 1))
 
     def _compare_kind(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changes to the names of a kind."""
@@ -168,7 +118,7 @@ class _SourcePair:
         yield from self._report_details(kind, changed, old_names)
         for old, new in scoped:
             reason = self._find_removal_reason([old], old_names)
-            yield self._make_change(format_rename(old, new), new.span, self.new, reason)
+            yield self.make_change(format_rename(old, new), new.span, self.new, reason)
         if not self._is_reported(kind):
             return
         path, old_path = self.file.path, self.file.old_path or self.file.path
@@ -204,7 +154,7 @@ class _SourcePair:
         for old_item, new_item in pairs:
             is_harmless = old_item in remaining_old or is_same_frame(old_item, new_item)
             reason = None if is_harmless else self._find_rename_reason(old_item, new_item, old_names)
-            yield self._make_change(format_rename(old_item, new_item), new_item.span, self.new, reason)
+            yield self.make_change(format_rename(old_item, new_item), new_item.span, self.new, reason)
             removed = [item for item in removed if item is not old_item]
             added = [item for item in added if item is not new_item]
         yield from self._compare_expressions(kind, removed, added)
@@ -222,7 +172,7 @@ class _SourcePair:
         old_path = self.file.old_path or self.file.path
         is_python_class = kind is NameKind.CLASS and self.file.path.endswith(PYTHON_SUFFIX)
         if kind in _DECLARED_KINDS and not is_python_class:
-            return self._is_interface(old_path)
+            return self.is_interface(old_path)
         if kind is NameKind.IMPORT:
             has_both = self.file.old_path is not None and self.file.new_path is not None
             return has_both and is_installed_package(self.old.version, self.old.find_package(old_path), old_path)
@@ -311,7 +261,7 @@ class _SourcePair:
         Functions count only if other files can call them.
         """
         is_program = self.file.path.endswith(PYTHON_SUFFIX) and old_names.is_program
-        is_called = not is_program and self._is_interface(self.file.old_path or self.file.path)
+        is_called = not is_program and self.is_interface(self.file.old_path or self.file.path)
         if kind in (NameKind.FUNCTION, NameKind.MEMBER) and not is_called:
             return
         if kind is NameKind.FUNCTION:
@@ -322,7 +272,7 @@ class _SourcePair:
             is_breaking = is_called or kind is not NameKind.CLASS
             if kind is NameKind.PARAMETER and reason is None:
                 reason = self._find_parameter_reason(item, old_names)
-            yield self._make_change(text, item.span, self.new, reason if is_breaking else None)
+            yield self.make_change(text, item.span, self.new, reason if is_breaking else None)
 
     def _find_parameter_reason(self, item: SourceName, old_names: SourceNames) -> Phrase | None:
         """Return the reason why another default of a parameter is breaking; None if it is not."""
@@ -338,18 +288,6 @@ class _SourcePair:
         )
         return None if reason is None or is_set_in_package(self.new.version, package, item.name) else reason
 
-    def _is_interface(self, path: str) -> bool:
-        """Return whether other packages can use the definitions of a file.
-
-        That is, whether it is a module of a package or an installed header.
-        """
-        side = self.new if self.file.old_path is None else self.old
-        package = side.find_package(path)
-        if path.endswith(PYTHON_SUFFIX):
-            is_module = package is not None and (side.version.file(path).parent / "__init__.py").is_file()
-            return is_module and not is_certainly_uninstalled(side.version, package or "", path)
-        return package is not None and is_exported_header(side.version, package, path)
-
     def _report_unpaired(
         self, kind: NameKind, removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames
     ) -> Iterator[Change]:
@@ -358,17 +296,17 @@ class _SourcePair:
         if added and (kind not in (NameKind.FUNCTION, NameKind.MEMBER) or self.file.old_path is not None):
             text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
             reason = find_required_reason(added) if self.file.old_path is not None else None
-            yield self._make_change(text, added[0].span, self.new, reason)
+            yield self.make_change(text, added[0].span, self.new, reason)
         new_names = self.new.get_names(self.file.new_path)
         non_public = new_names.non_public | new_names.hidden_classes
         lost = [item for item in removed if item.name not in non_public]
         if lost:
             text = phrase("{kind} removed: {names}", kind=kind.plural, names=format_names(lost))
-            yield self._make_change(text, lost[0].span, self.old, self._find_removal_reason(lost, old_names))
+            yield self.make_change(text, lost[0].span, self.old, self._find_removal_reason(lost, old_names))
         newly_hidden = [item for item in removed if item.name in non_public]
         if newly_hidden:
             text = phrase("{kind} no longer public: {names}", kind=kind.plural, names=format_names(newly_hidden))
-            yield self._make_change(
+            yield self.make_change(
                 text, newly_hidden[0].span, self.old, self._find_removal_reason(newly_hidden, old_names)
             )
 
@@ -379,7 +317,7 @@ class _SourcePair:
 
     def _find_removal_reason(self, items: Sequence[SourceName], names: SourceNames) -> Phrase | None:
         path = self.file.old_path or self.file.path
-        if items[0].kind is NameKind.CLASS and not self._is_interface(path):
+        if items[0].kind is NameKind.CLASS and not self.is_interface(path):
             return None
         lost = [item for item in items if not self._is_left_to_others(item)]
         if not lost:
@@ -427,16 +365,25 @@ class _SourcePair:
             text = phrase(
                 "{kind} {name} has a computed name now: {new}", kind=kind.title, name=format_name(item), new=other.name
             )
+            default = new_names.find_default(other)
+            if default is not None:
+                text = phrase(
+                    "{kind} {name} comes from parameter '{parameter}' now ('{default}' by default)",
+                    kind=kind.title,
+                    name=format_name(item),
+                    parameter=default.parameter,
+                    default=default.name,
+                )
             reason = self._find_default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
             if reason is None and not can_make(other.name, item.name):
                 reason = self._find_removal_reason([item], old_names)
-            yield self._make_change(text, other.span, self.new, reason)
+            yield self.make_change(text, other.span, self.new, reason)
         for item, other in take_pairs(added, removed_expressions):
             text = phrase(
                 "{kind} {name} had a computed name: {old}", kind=kind.title, name=format_name(item), old=other.name
             )
             reason = self._find_default_reason(other, old_names.defaults.get(other.name, ""), item.name, old_names)
-            yield self._make_change(text, item.span, self.new, reason)
+            yield self.make_change(text, item.span, self.new, reason)
         added_expressions = [
             item for item in added_expressions if self.new.count_expressions(item) > self.old.count_expressions(item)
         ]
@@ -447,7 +394,7 @@ class _SourcePair:
             text = phrase(
                 "{kind} with computed names added: {names}", kind=kind.plural, names=format_names(added_expressions)
             )
-            yield self._make_change(text, added_expressions[0].span, self.new, None)
+            yield self.make_change(text, added_expressions[0].span, self.new, None)
             removed.clear()
         if removed_expressions:
             text = phrase(
@@ -456,7 +403,7 @@ class _SourcePair:
                 names=format_names(removed_expressions),
             )
             reason = find_lost_pattern_reason(removed_expressions, self.old, self.new, self.file.path)
-            yield self._make_change(text, removed_expressions[0].span, self.old, reason)
+            yield self.make_change(text, removed_expressions[0].span, self.old, reason)
             added.clear()
 
     def _find_default_reason(self, item: SourceName, old: str, new: str, names: SourceNames) -> Phrase | None:
@@ -475,7 +422,7 @@ class _SourcePair:
             if len(matching[0]) == len(matching[1]) == 1 and matching[0][0].type and item.type:
                 defaults = [names.defaults.get(item.name, "") for names in sources]
                 for text, reason, _ in compare_computed(matching[0][0], item, defaults):
-                    yield self._make_change(text, item.span, self.new, reason)
+                    yield self.make_change(text, item.span, self.new, reason)
 
     def _compare_patterns(self, old: SourceName, new: SourceName) -> Iterator[Change]:
         """Yield the change of the texts in an expression for a name, or of the parameter that gives it by default."""
@@ -489,17 +436,7 @@ class _SourcePair:
             return
         reason = phrase("the name is a pattern; programs that use one of the old names do not find it")
         is_lost = self._find_removal_reason([old], self.old.get_names(self.file.old_path)) is not None
-        yield self._make_change(format_rename(old, new), new.span, self.new, reason if is_lost else None)
-
-    def _compare_rates(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changed rates and periods, and the removed and added timers."""
-        is_added, is_removed = self.file.old_path is None, self.file.new_path is None
-        changes = list(compare_rates(old_names, new_names, is_added=is_added))
-        if not is_added and not is_removed:
-            others = [*self.old.list_timers(self.file.old_path), *self.new.list_timers(self.file.new_path)]
-            changes += compare_timers(old_names, new_names, others)
-        for change in changes:
-            yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, None)
+        yield self.make_change(format_rename(old, new), new.span, self.new, reason if is_lost else None)
 
     def _compare_defaults(
         self, old: SourceName, new: SourceName, old_default: DefaultName, new_default: DefaultName
@@ -515,55 +452,4 @@ class _SourcePair:
         reason = None if is_set else self._find_default_reason(old, old_default.name, new_default.name, names)
         reason = None if reason is None else phrase("by default, {reason}", reason=reason)
         text = format_rename(replace(old, name=old_default.name), replace(new, name=new_default.name))
-        yield self._make_change(text, new.span, self.new, reason)
-
-    def _compare_imports(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield new absolute imports of modules of the same package.
-
-        They fail once the package is installed.
-        """
-        path = self.file.new_path or ""
-        package = self.new.find_package(path)
-        if package is None or not is_installed_package(self.new.version, package, path):
-            return
-        before = {name for name, _ in old_names.absolute_imports}
-        for index in find_failing_imports(self.new.version, package, path, new_names):
-            name, span = new_names.absolute_imports[index]
-            if name not in before:
-                text = phrase("absolute import of '{name}', a module of the same package", name=name)
-                yield self._make_change(
-                    text, span, self.new, phrase("the package cannot be imported once it is installed")
-                )
-
-    def _find_added_header(self) -> Iterator[Change]:
-        """Yield a line with the text by which other packages include an added header."""
-        path = PurePosixPath(self.file.path)
-        if self.file.old_path is None and path.suffix in HEADER_SUFFIXES and self._is_interface(self.file.path):
-            package = self.new.find_package(self.file.path) or ""
-            include = find_include_text(self.new.version, package, self.file.path)
-            text = phrase("header added: other packages can include '{path}'", path=include)
-            yield Change(text, location=Location(self.file.path, 1, 1))
-
-    def _compare_packages(self, *, are_headers_told: bool) -> Iterator[Change]:
-        """Yield the packages, or else the headers, that the source is the first or was the last to use."""
-        old_path = self.file.old_path or self.file.path
-        old, new = self.old.get_used_packages(old_path), self.new.get_used_packages(self.file.path)
-        for change in compare_usage(old, new, self.file, are_headers_told=are_headers_told):
-            yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, None)
-
-    def _compare_header(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changes to namespaces, protected members and enumerators of an installed header."""
-        if None in (self.file.old_path, self.file.new_path) or not self._is_interface(self.file.old_path or ""):
-            return
-        for change in (
-            *compare_namespaces(old_names, new_names, partial(has_namespace, self.new.version, self.file.path)),
-            *compare_protected(old_names, new_names),
-            *compare_enumerations(old_names.enumerations, new_names.enumerations),
-        ):
-            yield self._make_change(change.text, change.span, self.old if change.is_old else self.new, change.reason)
-
-    @staticmethod
-    def _make_change(text: Phrase, span: Span, side: ChangedSources, reason: Phrase | None) -> Change:
-        path = side.version.relative(span.file)
-        location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
-        return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
+        yield self.make_change(text, new.span, self.new, reason)

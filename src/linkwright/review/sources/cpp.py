@@ -35,6 +35,7 @@ from linkwright.review.sources.cpp_members import find_constructions, read_inclu
 from linkwright.review.sources.cpp_options import find_options
 from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
+from linkwright.review.sources.cpp_text_functions import TextFunctions
 from linkwright.review.sources.cpp_values import TEXT, VARIABLE, InitialValues, find_constants, parse_literal
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
@@ -482,14 +483,20 @@ class _Reader:
         if literal is not None:
             return literal["text"]
         variable = VARIABLE.fullmatch(self._text[begin:end])
-        if variable is None or variable["name"] in self._constants:
-            return None if variable is None else self._constants[variable["name"]]
+        if variable is None:
+            return self._text_functions.evaluate(self._text[begin:end])
+        if variable["name"] in self._constants:
+            return self._constants[variable["name"]]
         constant = self._shared_constants.get(variable["name"])
         return self._initial_values.find_text(variable["name"]) if constant is None else constant
 
     @cached_property
     def _initial_values(self) -> InitialValues:
         return InitialValues(self._text, self._headers)
+
+    @cached_property
+    def _text_functions(self) -> TextFunctions:
+        return TextFunctions([self._text, *self._headers], {**self._shared_constants, **self._constants})
 
     @cached_property
     def _shared_constants(self) -> Mapping[str, str]:

@@ -12,12 +12,16 @@ _READERS = ("get_parameter", "declare_parameter", "get_parameter_or", "get_param
 _MAX_DEPTH = 10
 _TEMPLATE = r"(?:<[^<>;()]*>\s*)?"
 _TEXT = r"(?:rclcpp\s*::\s*ParameterValue\s*\(\s*)?(?:(?:std\s*::\s*)?string\s*\(\s*)?\"(?P<default>[^\"\\]*)\""
+_NAME = r"(?:\w+\s*\+\s*)?\"(?P<name>[^\"\\]+)\""
+"""The name of a parameter, perhaps behind the namespace of a plugin."""
+_NODE = r"(?:\w+\s*,\s*)?"
+"""The node that functions of nav2_util take first."""
 _CPP_READ = re.compile(
-    rf"\b(?:declare_parameter|get_parameter|auto_declare|param)\s*{_TEMPLATE}\(\s*\"(?P<name>[^\"\\]+)\"(?:\s*,\s*{_TEXT})?"
+    rf"\b(?:declare_parameter|get_parameter|auto_declare|param)\s*{_TEMPLATE}\(\s*{_NAME}(?:\s*,\s*{_TEXT})?"
 )
 """A call in C++ that returns a parameter."""
 _CPP_DECLARED = re.compile(
-    rf"\b(?:declare_parameter|auto_declare)\s*{_TEMPLATE}\(\s*\"(?P<name>[^\"\\]+)\"\s*,\s*{_TEXT}"
+    rf"\b(?:declare_parameter(?:_if_not_declared)?|auto_declare)\s*{_TEMPLATE}\(\s*{_NODE}{_NAME}\s*,\s*{_TEXT}"
 )
 _CPP_VARIABLE = re.compile(r"\s*(?:this\s*->\s*)?(?P<name>[A-Za-z_]\w*)\s*(?:\.c_str\(\)\s*)?")
 
@@ -48,14 +52,14 @@ def find_cpp_parameter_default(text: str, expression: str) -> ParameterDefault |
         name = re.escape(variable["name"])
         assigned = re.compile(rf"\b{name}\s*(?:=|\()\s*(?:this\s*->\s*|\w+\s*(?:->|\.)\s*)?(?={_CPP_READ.pattern})")
         passed = re.compile(
-            rf"\b(?:get_parameter|get_parameter_or|param)\s*{_TEMPLATE}\(\s*\"(?P<name>[^\"\\]+)\"\s*,\s*{name}\s*(?:,\s*{_TEXT})?"
+            rf"\b(?:get_parameter|get_parameter_or|param)\s*{_TEMPLATE}\(\s*{_NAME}\s*,\s*{name}\s*(?:,\s*{_TEXT})?"
         )
         reads = [match for pattern in (assigned, passed) for match in pattern.finditer(text)]
     defaults = {(match["name"], match["default"] or _find_declared_default(text, match["name"])) for match in reads}
     if len(defaults) != 1:
         return None
     ((parameter, default),) = defaults
-    return ParameterDefault(parameter.lstrip("~/"), default) if default else None
+    return ParameterDefault(parameter.lstrip("~/."), default) if default else None
 
 
 def _find_declared_default(text: str, parameter: str) -> str:

@@ -1,0 +1,158 @@
+"""Compare what both versions of a changed source have beside its names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.files.git_repository import ChangedFile
+from linkwright.review.changes import Change, Effect, Location, Problem
+from linkwright.review.installed_paths import find_include_text, is_exported_header
+from linkwright.review.sources.changed_sources import ChangedSources
+from linkwright.review.sources.enumerators import compare_enumerations
+from linkwright.review.sources.names import HEADER_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceNames
+from linkwright.review.sources.namespaces import compare_namespaces, has_namespace
+from linkwright.review.sources.package_imports import (
+    find_failing_imports,
+    is_certainly_uninstalled,
+    is_installed_package,
+)
+from linkwright.review.sources.protected_members import compare_protected
+from linkwright.review.sources.rates import compare_rates, compare_timers
+from linkwright.review.sources.transform_senders import find_lost_sender
+from linkwright.review.sources.undefined_uses import find_undefined_uses
+from linkwright.review.sources.used_packages import compare_usage
+
+
+@dataclass(frozen=True)
+class WholeSourcePair:
+    """Both versions of a changed source.
+
+    Attributes:
+        old: the names of the old version.
+        new: the names of the new version.
+        file: the paths of the source in both versions.
+    """
+
+    old: ChangedSources
+    new: ChangedSources
+    file: ChangedFile
+
+    def find_problems(self) -> Iterator[Problem]:
+        """Yield the reason why the names of a version are unknown."""
+        lines = [
+            self.old.get_names(self.file.old_path).error_line,
+            self.new.get_names(self.file.new_path).error_line,
+        ]
+        if None in (self.file.old_path, self.file.new_path) or not any(lines):
+            return
+        if all(lines):
+            reason = phrase("line {line} has a syntax error", line=lines[1])
+            yield Problem(phrase("neither version can be read: {reason}", reason=reason), is_of_both=True)
+        elif lines[0]:
+            text = phrase("the old version has a syntax error in line {line}; its names are not known", line=lines[0])
+            yield Problem(text, is_of_old=True)
+        else:
+            yield Problem(
+                phrase("the new version has a syntax error in line {line}; its names are not known", line=lines[1])
+            )
+
+    def find_parse_failure(self) -> Iterator[Change]:
+        """Yield a change if no version of Python can parse the new source."""
+        names = self.new.get_names(self.file.new_path)
+        could_be_parsed = not self.old.get_names(self.file.old_path).error_line
+        if names.error_line and names.is_error_certain and could_be_parsed:
+            text = phrase("can no longer be parsed")
+            reason = phrase("programs that run or import the file fail")
+            yield Change(text, Effect.BREAKING, reason, Location(self.file.path, names.error_line, 1))
+
+    def is_interface(self, path: str) -> bool:
+        """Return whether other packages can use the definitions of a file.
+
+        That is, whether it is a module of a package or an installed header.
+        """
+        side = self.new if self.file.old_path is None else self.old
+        package = side.find_package(path)
+        if path.endswith(PYTHON_SUFFIX):
+            is_module = package is not None and (side.version.file(path).parent / "__init__.py").is_file()
+            return is_module and not is_certainly_uninstalled(side.version, package or "", path)
+        return package is not None and is_exported_header(side.version, package, path)
+
+    def compare_rates(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the changed rates and periods, and the removed and added timers."""
+        is_added, is_removed = self.file.old_path is None, self.file.new_path is None
+        changes = list(compare_rates(old_names, new_names, is_added=is_added))
+        if not is_added and not is_removed:
+            others = [*self.old.list_timers(self.file.old_path), *self.new.list_timers(self.file.new_path)]
+            changes += compare_timers(old_names, new_names, others)
+        for change in changes:
+            yield self.make_change(change.text, change.span, self.old if change.is_old else self.new, None)
+
+    def compare_imports(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield new absolute imports of modules of the same package.
+
+        They fail once the package is installed.
+        """
+        path = self.file.new_path or ""
+        package = self.new.find_package(path)
+        if package is None or not is_installed_package(self.new.version, package, path):
+            return
+        before = {name for name, _ in old_names.absolute_imports}
+        for index in find_failing_imports(self.new.version, package, path, new_names):
+            name, span = new_names.absolute_imports[index]
+            if name not in before:
+                text = phrase("absolute import of '{name}', a module of the same package", name=name)
+                yield self.make_change(
+                    text, span, self.new, phrase("the package cannot be imported once it is installed")
+                )
+
+    def find_undefined(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the names and methods that the source uses although nothing defines or imports them any more."""
+        for use in find_undefined_uses(old_names, new_names, is_added=self.file.old_path is None):
+            yield self.make_change(use.text, use.span, self.new, use.reason)
+
+    def find_added_header(self) -> Iterator[Change]:
+        """Yield a line with the text by which other packages include an added header."""
+        path = PurePosixPath(self.file.path)
+        if self.file.old_path is None and path.suffix in HEADER_SUFFIXES and self.is_interface(self.file.path):
+            package = self.new.find_package(self.file.path) or ""
+            include = find_include_text(self.new.version, package, self.file.path)
+            text = phrase("header added: other packages can include '{path}'", path=include)
+            yield Change(text, location=Location(self.file.path, 1, 1))
+
+    def find_lost_transforms(self, reported: Sequence[Change]) -> Iterator[Change]:
+        """Yield a line if the source no longer publishes transforms, unless a line names the lost frames."""
+        frames = (NameKind.FRAME.title, NameKind.FRAME.plural)
+        if not any(change.core.arguments.get("kind") in frames for change in reported):
+            span = find_lost_sender(self.old, self.new, self.file)
+            if span is not None:
+                reason = phrase("programs that need these transforms do not find them")
+                yield self.make_change(phrase("no longer publishes transforms"), span, self.old, reason)
+
+    def compare_packages(self, *, are_headers_told: bool) -> Iterator[Change]:
+        """Yield the packages, or else the headers, that the source is the first or was the last to use."""
+        old_path = self.file.old_path or self.file.path
+        old, new = self.old.get_used_packages(old_path), self.new.get_used_packages(self.file.path)
+        for change in compare_usage(old, new, self.file, are_headers_told=are_headers_told):
+            yield self.make_change(change.text, change.span, self.old if change.is_old else self.new, None)
+
+    def compare_header(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
+        """Yield the changes to namespaces, protected members and enumerators of an installed header."""
+        if None in (self.file.old_path, self.file.new_path) or not self.is_interface(self.file.old_path or ""):
+            return
+        for change in (
+            *compare_namespaces(old_names, new_names, partial(has_namespace, self.new.version, self.file.path)),
+            *compare_protected(old_names, new_names),
+            *compare_enumerations(old_names.enumerations, new_names.enumerations),
+        ):
+            yield self.make_change(change.text, change.span, self.old if change.is_old else self.new, change.reason)
+
+    @staticmethod
+    def make_change(text: Phrase, span: Span, side: ChangedSources, reason: Phrase | None) -> Change:
+        """Return a change at a place in one version, which is breaking if it has a reason."""
+        path = side.version.relative(span.file)
+        location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
+        return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
