@@ -41,6 +41,7 @@ from linkwright.review.sources.package_imports import (
 )
 from linkwright.review.sources.pairing import (
     compute_similarity,
+    drop_replaceable,
     has_same_types,
     is_same_frame,
     pair_similar,
@@ -395,7 +396,7 @@ class _SourcePair(WholeSourcePair):
                 "{kind} with computed names added: {names}", kind=kind.plural, names=format_names(added_expressions)
             )
             yield self.make_change(text, added_expressions[0].span, self.new, None)
-            removed.clear()
+            drop_replaceable(removed, added_expressions)
         if removed_expressions:
             text = phrase(
                 "{kind} with computed names removed: {names}",
@@ -404,7 +405,7 @@ class _SourcePair(WholeSourcePair):
             )
             reason = find_lost_pattern_reason(removed_expressions, self.old, self.new, self.file.path)
             yield self.make_change(text, removed_expressions[0].span, self.old, reason)
-            added.clear()
+            drop_replaceable(added, removed_expressions)
 
     def _find_default_reason(self, item: SourceName, old: str, new: str, names: SourceNames) -> Phrase | None:
         """Return the reason why another name by default is breaking; None if it is unknown or equal."""
