@@ -235,6 +235,7 @@ def send(text):
         ("import math\n", "", "uses 'math', which it no longer defines or imports"),
         ("def send(text)", "def post(text)", "uses 'send', which it no longer defines or imports"),
         ("import math\n", "from std_msgs.msg import *\n", "uses 'math', which it no longer defines or imports"),
+        ("math.floor(", "np.floor(", "uses 'np', which nothing defines"),
     ],
 )
 def test_name_that_is_no_longer_defined_is_breaking(repository, compare, old, new, expected):

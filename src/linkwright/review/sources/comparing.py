@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, phrase
@@ -22,11 +22,13 @@ from linkwright.review.sources.details import (
     format_names,
     format_rename,
 )
-from linkwright.review.sources.function_changes import NameChange, merge_function_changes
+from linkwright.review.sources.function_changes import NameChange, find_ignored_reason, merge_function_changes
+from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.name_patterns import can_make, extract_pattern
 from linkwright.review.sources.names import (
     PYTHON_SUFFIX,
     DefaultName,
+    Detail,
     NameKind,
     SourceName,
     SourceNames,
@@ -44,6 +46,7 @@ from linkwright.review.sources.pairing import (
     pair_similar,
     take_pairs,
 )
+from linkwright.review.sources.parameter_scopes import find_scoped
 from linkwright.review.sources.parameter_uses import ParameterUses
 from linkwright.review.sources.python_bases import select_methods
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
@@ -102,7 +105,7 @@ class _SourcePair(WholeSourcePair):
         """Yield the changes to the names of a kind."""
         before = {get_comparison_name(item): item for item in old_names.of_kind(kind)}
         after = {get_comparison_name(item): item for item in new_names.of_kind(kind)}
-        scoped = self._find_scoped(before, after, old_names, new_names) if kind is NameKind.PARAMETER else []
+        scoped = find_scoped(before, after, old_names, new_names) if kind is NameKind.PARAMETER else []
         shown = {get_comparison_name(item): item.type for _, item in scoped}  # the lines of these have their defaults
         changed = [
             NameChange(item, *detail)
@@ -110,6 +113,8 @@ class _SourcePair(WholeSourcePair):
             if name in before and not has_same_types(before[name], item, old_names, new_names)
             for detail in compare_details(replace(before[name], type=shown.get(name, before[name].type)), item)
         ]
+        if kind is NameKind.PARAMETER:
+            changed += self._compare_moved([item for name, item in before.items() if name not in after])
         yield from self._report_details(kind, changed, old_names)
         for old, new in scoped:
             reason = self._find_removal_reason([old], old_names)
@@ -155,27 +160,12 @@ class _SourcePair(WholeSourcePair):
         yield from self._compare_expressions(kind, removed, added)
         yield from self._report_unpaired(kind, removed, added, old_names)
 
-    @staticmethod
-    def _find_scoped(
-        before: Mapping[str, SourceName],
-        after: Mapping[str, SourceName],
-        old_names: SourceNames,
-        new_names: SourceNames,
-    ) -> list[tuple[SourceName, SourceName]]:
-        """Return the parameters of ROS 1 that become private, or no longer are, each in both versions."""
-        unknown = old_names.unknown_scopes | new_names.unknown_scopes
-        known = [
-            {item.name.lstrip("/") for item in names.of_kind(NameKind.PARAMETER)} for names in (old_names, new_names)
-        ]
-        return [
-            (before[name], item)
-            for name, item in after.items()
-            if name in before
-            and name not in unknown
-            and before[name].name.startswith("~") != item.name.startswith("~")
-            and before[name].name.lstrip("/") not in known[1]
-            and item.name.lstrip("/") not in known[0]
-        ]
+    def _compare_moved(self, items: Sequence[SourceName]) -> Iterator[NameChange]:
+        """Yield the changes to parameters that another changed source of the package declares now."""
+        for item in items:
+            moved = self.new.find_moved(item, self.file.path)
+            if moved is not None and self.old.find_moved(item, self.file.old_path or self.file.path) is None:
+                yield from (NameChange(moved, *detail) for detail in compare_details(item, moved))
 
     def _is_reported(self, kind: NameKind) -> bool:
         """Return whether removed and added names of a kind matter outside of the file."""
@@ -276,7 +266,9 @@ class _SourcePair(WholeSourcePair):
             return
         if kind is NameKind.FUNCTION:
             changed = list(merge_function_changes(changed, is_python=self.file.path.endswith(PYTHON_SUFFIX)))
-        for item, text, reason, _ in changed:
+        for item, text, reason, detail in changed:
+            if detail is Detail.ARGUMENTS and reason is None:
+                reason = find_ignored_reason(item, old_names, self.new.get_names(self.file.new_path))
             is_breaking = is_called or kind is not NameKind.CLASS
             if kind is NameKind.PARAMETER and reason is None:
                 reason = self._find_parameter_reason(item, old_names)
@@ -410,7 +402,8 @@ class _SourcePair(WholeSourcePair):
                 kind=kind.plural,
                 names=format_names(removed_expressions),
             )
-            yield self.make_change(text, removed_expressions[0].span, self.old, None)
+            reason = find_lost_pattern_reason(removed_expressions, self.old, self.new, self.file.path)
+            yield self.make_change(text, removed_expressions[0].span, self.old, reason)
             added.clear()
 
     def _find_default_reason(self, item: SourceName, old: str, new: str, names: SourceNames) -> Phrase | None:

@@ -30,6 +30,18 @@ def extract_pattern(expression: str) -> str | None:
     return pattern if re.search(r"\w", pattern.replace(_UNKNOWN_PART, "")) else None
 
 
+def make_expression_pattern(expression: str) -> str | None:
+    """Return a regular expression for the names that an expression gives; None if its end is not a known word.
+
+    Args:
+        expression: the expression that gives a name, in Python or C++.
+    """
+    pattern = extract_pattern(expression)
+    if pattern is None or not re.search(r"/\w+\Z", pattern):
+        return None
+    return ".*".join(re.escape(text) for text in pattern.split(_UNKNOWN_PART))
+
+
 def can_make(expression: str, name: str) -> bool:
     """Return whether an expression may have a name as its value; True if it is unknown.
 
