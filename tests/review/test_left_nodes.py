@@ -56,3 +56,34 @@ def test_a_file_for_a_node_with_another_name_in_the_source(repository, compare, 
     repository.write({"lamp/lamp/lamp.py": SOURCE.format("light")})
     found = [line for line in breaking(compare(repository)) if line.startswith("names the node")]
     assert found == (["names the node 'lamp', which 'lamp/lamp/lamp.py' now calls 'light'"] if is_found else [])
+
+
+CLIENT = '#include <rclcpp/rclcpp.hpp>\nauto client = node->create_client<srv::SetParameters>("{}");\n'
+
+
+@pytest.mark.parametrize(
+    ("service", "more", "is_found"),
+    [
+        ("/lamp/set_parameters", "", True),
+        ("lamp/change_state", "", True),
+        ("/lamp/set_level", "", False),  # may be of another node
+        ("/light/set_parameters", "", False),
+        ("/set_parameters", "", False),
+        ("/lamp/set_parameters", OTHER, False),
+    ],
+)
+def test_a_client_of_a_node_with_another_name(repository, compare, service, more, is_found):
+    path, source = "lamp/launch/a.launch.xml", "lamp/src/client.cpp"
+    launches = [LAUNCH.format(name=name, more=more) for name in ("lamp", "light")]
+    repository.commit({"lamp/package.xml": MANIFEST, source: CLIENT.format(service), path: launches[0]})
+    repository.write({path: launches[1]})
+    found = [line for line in breaking(compare(repository)) if line.startswith("calls ")]
+    assert found == ([f"calls '{service}' of the node 'lamp', which '{path}' now calls 'light'"] if is_found else [])
+
+
+def test_a_client_of_a_node_with_another_name_in_the_source(repository, compare):
+    files = {"lamp/package.xml": MANIFEST, "lamp/src/client.cpp": CLIENT.format("/lamp/get_parameters")}
+    repository.commit({**files, "lamp/lamp/lamp.py": SOURCE.format("lamp")})
+    repository.write({"lamp/lamp/lamp.py": SOURCE.format("light")})
+    found = [line for line in breaking(compare(repository)) if line.startswith("calls ")]
+    assert found == ["calls '/lamp/get_parameters' of the node 'lamp', which 'lamp/lamp/lamp.py' now calls 'light'"]

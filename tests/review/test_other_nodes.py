@@ -97,3 +97,48 @@ def test_name_in_a_source_of_the_same_node_is_not_lost(review_node, other):
     )
     assert not broken
     assert not any(line.startswith("parameters") for line in lines)
+
+
+PLUGIN = """PLUGINLIB_EXPORT_CLASS(arm::{0}, arm::Finder)
+bool {0}::init(ros::NodeHandle & nh) {{
+  nh.param<std::string>("topic", topic_, "{0}");
+}}
+"""
+DEBUG = '  nh.param<bool>("debug", debug_, false);\n'
+
+
+def add_debug(text: str) -> str:
+    return text.replace("  nh.", DEBUG + "  nh.", 1)
+
+
+@pytest.mark.parametrize(
+    ("other", "kept", "is_told"),
+    [
+        (add_debug(PLUGIN.format("Disk")), True, True),
+        (add_debug(PLUGIN.format("Disk")), False, False),  # the parameter moves
+        (add_debug(PLUGIN.format("Disk")).partition("\n")[2], True, False),  # may be a part of the plugin
+        ('#include "ring.hpp"\n' + add_debug(PLUGIN.format("Disk")), True, False),
+    ],
+)
+def test_parameter_that_one_of_two_plugins_gets(review_node, other, kept, is_told):
+    old = {"arm/src/ring.cpp": PLUGIN.format("Ring"), "arm/src/disk.cpp": other}
+    new = {"arm/src/ring.cpp": add_debug(PLUGIN.format("Ring"))}
+    if not kept:
+        new["arm/src/disk.cpp"] = other.replace(DEBUG, "")
+    lines, broken = review_node(old, new)
+    assert ("parameters added: 'debug' (false)" in lines) is is_told
+    assert not broken
+
+
+@pytest.mark.parametrize(
+    ("other", "lines"),
+    [
+        ('auto logger = rclcpp::get_logger("drive");\n', ["node 'drive' renamed to 'wheels'"]),
+        ('class Other : public rclcpp::Node { Other() : Node("drive") {} };\n', []),
+    ],
+)
+def test_new_name_of_a_node_whose_old_name_is_in_another_source(review_node, other, lines):
+    files = {"arm/src/drive.cpp": NODE, "arm/src/other.cpp": other}
+    found, broken = review_node(files, {"arm/src/drive.cpp": NODE.replace('Node("drive")', 'Node("wheels")')})
+    assert [line for line in found if line.startswith("node ")] == lines
+    assert len(broken) == len(lines)

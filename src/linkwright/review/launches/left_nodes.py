@@ -1,4 +1,4 @@
-"""Find parameter files that still name a node which a launch file or a source has renamed."""
+"""Find parameter files and clients that still name a node which a launch file or a source has renamed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.outlines import Entry, LaunchOutline
 from linkwright.review.launches.programs import list_nodes, read_launch_files, try_read_outline
-from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind
+from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -25,10 +25,18 @@ _SOURCE_SUFFIXES = (*CPP_SUFFIXES, PYTHON_SUFFIX)
 _SHARE_PATH = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w-]+)\)/(?P<path>[\w./-]+\.ya?ml)(?![\w.])")
 _WILDCARDS = ("*", "**")
 _PLAIN_NAME = re.compile(r"\w+")
+_NODE_SERVICES = frozenset(
+    {
+        *("set_parameters", "set_parameters_atomically", "get_parameters", "get_parameter_types", "list_parameters"),
+        *("describe_parameters", "change_state", "get_state", "get_available_states", "get_available_transitions"),
+        *("get_transition_graph", "get_loggers", "set_logger_level", "get_logger_levels", "set_logger_levels"),
+    }
+)
+"""The services below its name that each node, or each lifecycle node, has."""
 
 
 def find_left_nodes(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the parameter files that still name a renamed node, each with a change.
+    """Yield the parameter files and sources that still name a renamed node, each with a change.
 
     Only the last part of a name counts, without namespaces.
     """
@@ -44,7 +52,10 @@ def find_left_nodes(versions: Versions, changed_files: Sequence[ChangedFile]) ->
 
 
 def _find_in_launch_file(versions: Versions, old_path: str, new_path: str) -> Iterator[tuple[str, Change]]:
-    """Yield the parameter files that a launch file loads for a node to which it gives another name now."""
+    """Yield the users of a node to which a launch file gives another name now.
+
+    They are the parameter files that the launch file loads for it, and the sources that call its services.
+    """
     old, new = try_read_outline(versions.old, old_path), try_read_outline(versions.new, new_path)
     if old is None or new is None:
         return
@@ -55,6 +66,8 @@ def _find_in_launch_file(versions: Versions, old_path: str, new_path: str) -> It
         old_names = {_get_name(old, other) for other in same}
         if len(same) != 1 or not _PLAIN_NAME.fullmatch(name) or not old_names.isdisjoint(started):
             continue
+        for old_name in sorted(old_names):
+            yield from _find_clients(versions.new, old_name, name, new_path)
         for path in _find_files(versions.new, new_path, new, entry):
             nodes = _read_nodes(versions.new, path)
             if not nodes or name in nodes or not nodes.keys().isdisjoint(_WILDCARDS):
@@ -64,7 +77,10 @@ def _find_in_launch_file(versions: Versions, old_path: str, new_path: str) -> It
 
 
 def _find_in_source(versions: Versions, old_path: str, new_path: str) -> Iterator[tuple[str, Change]]:
-    """Yield the parameter files of the package for a node to which a source gives another name now."""
+    """Yield the users of a node to which a source gives another name now.
+
+    They are the parameter files of its package, and the sources that call its services.
+    """
     names = []
     for version, path in ((versions.old, old_path), (versions.new, new_path)):
         source = read_source_names(version.file(path))
@@ -77,10 +93,45 @@ def _find_in_source(versions: Versions, old_path: str, new_path: str) -> Iterato
     (old_name,), (new_name,) = names
     if not _PLAIN_NAME.fullmatch(old_name) or _is_named(versions.new, old_name, new_name):
         return
+    yield from _find_clients(versions.new, old_name, new_name, new_path)
     for path in versions.new.paths(_SETTINGS_SUFFIXES, package):
         nodes = _read_nodes(versions.new, path) if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) else {}
         if old_name in nodes and new_name not in nodes and nodes.keys().isdisjoint(_WILDCARDS):
             yield path, _make_change(path, old_name, new_name, new_path, nodes[old_name])
+
+
+def _find_clients(version: Version, old: str, new: str, file: str) -> Iterator[tuple[str, Change]]:
+    """Yield the sources that call a service of a node by its old name, such as ``/lamp/set_parameters``.
+
+    Sources that also use the new name are left out.
+
+    Args:
+        version: the new version.
+        old: the old name of the node.
+        new: its new name.
+        file: the path of the file that gives it the new name.
+    """
+    if not _PLAIN_NAME.fullmatch(old):
+        return
+    for path in version.paths(_SOURCE_SUFFIXES):
+        is_searched = TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) and f"{old}/" in version.text(path)
+        if not is_searched or is_launch_file_name(PurePosixPath(path).name):
+            continue
+        clients: dict[str, SourceName] = {}
+        for client in read_source_names(version.file(path)).of_kind(NameKind.CLIENT):
+            node, _, service = client.name.rpartition("/")
+            if service in _NODE_SERVICES:
+                clients.setdefault(node.rpartition("/")[2], client)
+        if old in clients and new not in clients:
+            text = phrase(
+                "calls '{service}' of the node '{old}', which '{file}' now calls '{new}'",
+                service=clients[old].name,
+                old=old,
+                file=file,
+                new=new,
+            )
+            location = Location(path, clients[old].span.line, clients[old].span.column)
+            yield path, Change(text, Effect.BREAKING, phrase("with this name, no node has the service"), location)
 
 
 def _is_named(version: Version, name: str, new_name: str) -> bool:

@@ -33,7 +33,11 @@ from linkwright.review.sources.names import (
     SourceName,
     SourceNames,
 )
-from linkwright.review.sources.other_nodes import find_other_node_reason, has_only_in_other_nodes
+from linkwright.review.sources.other_nodes import (
+    find_other_node_reason,
+    has_only_in_other_nodes,
+    is_new_in_plugin,
+)
 from linkwright.review.sources.package_imports import (
     drop_defined_imports,
     is_installed_module,
@@ -125,21 +129,25 @@ class _SourcePair(WholeSourcePair):
         path, old_path = self.file.path, self.file.old_path or self.file.path
         only_old = {name: item for name, item in before.items() if name not in after}
         only_new = {name: item for name, item in after.items() if name not in before}
-        left = [
-            item for item in only_old.values() if has_only_in_other_nodes(item, self.new, self.old, (path, old_path))
+        has_sole_nodes = kind is NameKind.NODE and len(before) == len(after) == 1
+        lost = [
+            item
+            for item in only_old.values()
+            if has_only_in_other_nodes(item, self.new, self.old, (path, old_path))
+            or (has_sole_nodes and self.new.lacks_node(item, path))
         ]
-        removed = [item for item in only_old.values() if item in left or self.new.lacks(item, path)]
+        removed = [item for item in only_old.values() if item in lost or self.new.lacks(item, path)]
         is_new_node = self.file.old_path is None and new_names.makes_node
         lacks = self.old.lacks
         if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
             lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it
-        is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
         added = [
             item
             for item in only_new.values()
-            if is_sole_node
+            if (has_sole_nodes and removed)
             or lacks(item, old_path)
             or has_only_in_other_nodes(item, self.old, self.new, (old_path, path))
+            or is_new_in_plugin(item, self.old, self.new, (old_path, path))
         ]
         removed = [item for item in removed if not new_names.has_default(item)]
         added = [item for item in added if not old_names.has_default(item)]
@@ -424,29 +432,19 @@ class _SourcePair(WholeSourcePair):
             drop_replaceable(added, removed_expressions)
 
     def _compare_prefixed(self, kind: NameKind, removed: list[SourceName], added: list[SourceName]) -> Iterator[Change]:
-        """Yield a line about the names that are computed now, because another text stands before them.
+        """Yield a line about two or more names that are computed now, because another text stands before them.
 
         These names are removed from the lists.
         """
-        pairs: list[tuple[SourceName, SourceName]] = []
-        for item in list(removed):
-            matching = [expression for expression in added if ends_with_name(expression.name, item.name)]
-            if len(matching) == 1:
-                pairs.append((item, matching[0]))
-                removed.remove(item)
-                added.remove(matching[0])
-        if not pairs:
+        candidates = ((item, [it for it in added if ends_with_name(it.name, item.name)]) for item in removed)
+        pairs = [(item, matching[0]) for item, matching in candidates if len(matching) == 1]
+        if len(pairs) < 2 or len({id(new) for _, new in pairs}) < len(pairs):
             return
-        if len(pairs) == 1:
-            text = phrase(
-                "{kind} {name} has a computed name now: {new}",
-                kind=kind.title,
-                name=format_name(pairs[0][0]),
-                new=pairs[0][1].name,
-            )
-        else:
-            names = joined_first([f"{format_name(old)} -> {new.name}" for old, new in pairs], MAX_NAMES)
-            text = phrase("{kind} that have computed names now: {names}", kind=kind.plural, names=names)
+        for old, new in pairs:
+            removed.remove(old)
+            added.remove(new)
+        names = joined_first([f"{format_name(old)} -> {new.name}" for old, new in pairs], MAX_NAMES)
+        text = phrase("{kind} that have computed names now: {names}", kind=kind.plural, names=names)
         lost = [old for old, new in pairs if not can_make(new.name, old.name)]
         reason = self._find_removal_reason(lost, self.old.get_names(self.file.old_path)) if lost else None
         yield self.make_change(text, pairs[0][1].span, self.new, reason)

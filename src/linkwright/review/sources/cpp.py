@@ -38,6 +38,7 @@ from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
 from linkwright.review.sources.cpp_text_functions import TextFunctions
 from linkwright.review.sources.cpp_values import TEXT, VARIABLE, InitialValues, find_constants, parse_literal
+from linkwright.review.sources.cpp_variable_types import VariableTypes
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
@@ -313,9 +314,10 @@ class _Reader:
         elif kind is not NameKind.PARAMETER:
             namespace = self._handles.find_sub_namespace(call.start)
         if kind is NameKind.PARAMETER:
-            if type_name:
-                detail = Detail.VALUE_TYPE if call.function in _ROS2_PARAMETER_CALLS else Detail.READ_AS
-                details.append((detail, type_name))
+            if call.function in _ROS2_PARAMETER_CALLS:
+                details += [(Detail.VALUE_TYPE, type_name)] if type_name else []
+            elif read_type := type_name or self._variable_types.find_passed(offsets[1]):
+                details.append((Detail.READ_AS, read_type))
             if is_required_parameter(self._text, call):
                 details.append((Detail.REQUIRED, YES))
             is_output = call.function in _OUTPUT_CALLS or is_known_to_be_set(self._text, name, call.start)
@@ -467,7 +469,9 @@ class _Reader:
                 if literal is not None and not is_element and is_parameter_name(literal["text"]):
                     values = (parse_literal(self._text[slice(*argument)]) for argument in arguments[index + 1 :])
                     default = next((value for value in values if value is not None), "")
-                    self._add(kind, literal["text"], begin, end, default)
+                    read_type = self._variable_types.find_passed(end) if kind is NameKind.PARAMETER else ""
+                    details = ((Detail.READ_AS, read_type),) if read_type else ()
+                    self._add(kind, literal["text"], begin, end, default, details)
                     self._names.unknown_scopes.add(literal["text"])  # the function has the node handle
                     break
 
@@ -504,6 +508,10 @@ class _Reader:
     @cached_property
     def _initial_values(self) -> InitialValues:
         return InitialValues(self._text, self._headers)
+
+    @cached_property
+    def _variable_types(self) -> VariableTypes:
+        return VariableTypes(Path(self._source.name), self._text, self._headers)
 
     @cached_property
     def _text_functions(self) -> TextFunctions:

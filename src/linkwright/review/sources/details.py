@@ -9,11 +9,12 @@ from dataclasses import replace
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_same_type
+from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
 from linkwright.review.sources.qos import find_qos_reason, normalize_qos
 from linkwright.review.sources.signatures import parse_signature
 
-_KNOWN_IN_BOTH = (Detail.QOS, Detail.ARGUMENTS, Detail.RESULT, Detail.BASES, Detail.CREATED_IN)
+_KNOWN_IN_BOTH = (Detail.QOS, Detail.READ_AS, Detail.ARGUMENTS, Detail.RESULT, Detail.BASES, Detail.CREATED_IN)
 """The properties that are compared only if both versions tell them."""
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _QOS = re.compile(r"[\w:.]*(?:QoS|qos_profile|QOS)\w*\s*(?:[({].*)?", re.DOTALL)
@@ -87,6 +88,8 @@ def compare_details(
         if detail is Detail.VALUE_TYPE and (Detail.DEFAULT, NO) in old.details and before is None:
             continue  # the line about the default shows the type
         if detail is Detail.QOS and normalize_qos(before or "") == normalize_qos(after or ""):
+            continue
+        if detail is Detail.READ_AS and normalize_read_type(before or "") == normalize_read_type(after or ""):
             continue
         if detail is Detail.CONSTANT and after is not None:
             continue  # calls that built still build
@@ -209,6 +212,8 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
         return phrase("code that calls '{name}' on constant objects does not build", name=name.name)
     if detail is Detail.VALUE_TYPE and name.kind is NameKind.PARAMETER and before and after:
         return phrase("values of the old type are rejected")
+    if detail is Detail.READ_AS and rejects_values(old, new):
+        return phrase("values of the old type are not read")
     if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:
         return phrase("classes that derive from the class and do not define it do not build") if after else None
     if detail is Detail.REQUIRED and after:

@@ -303,9 +303,12 @@ class SourceNames:
 def _merge(first: SourceName, second: SourceName) -> SourceName:
     """Return one name for two occurrences: the first one with a type.
 
-    If their conditions differ, the name has no condition, and no type unless both have the same.
+    If their conditions differ, the name has no condition, and no type unless both have the same. It is read as a type
+    only if both are.
     """
     name = second if second.type and not first.type else first
+    if dict(first.details).get(Detail.READ_AS) != dict(second.details).get(Detail.READ_AS):
+        name = replace(name, details=tuple(item for item in name.details if item[0] is not Detail.READ_AS))
     conditions = [dict(item.details).get(Detail.CONDITION) for item in (first, second)]
     if conditions[0] == conditions[1]:
         return name

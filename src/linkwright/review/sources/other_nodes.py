@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources
-from linkwright.review.sources.names import NameKind, SourceName
+from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _KINDS = (*COMMUNICATION_KINDS, NameKind.PARAMETER)
@@ -29,14 +29,42 @@ def has_only_in_other_nodes(
         other: the sources of the version that has the name.
         paths: the paths of the source in `side` and in `other`.
     """
-    if item.kind not in _KINDS or not all(
-        sources.get_names(path).makes_node for sources, path in zip((side, other), paths, strict=True)
-    ):
+    return item.kind in _KINDS and _has_only_elsewhere(item, side, other, paths, lambda names: names.makes_node)
+
+
+def is_new_in_plugin(item: SourceName, old: ChangedSources, new: ChangedSources, paths: Sequence[str]) -> bool:
+    """Return whether a plugin newly has a parameter that only other plugins and nodes of its package had before.
+
+    The names of such parameters are often in the namespace of each plugin.
+
+    Args:
+        item: a parameter that only the new version of a source has.
+        old: the sources of the old version.
+        new: the sources of the new version.
+        paths: the paths of the source in both versions.
+    """
+    return item.kind is NameKind.PARAMETER and _has_only_elsewhere(item, old, new, paths, _is_complete)
+
+
+def _is_complete(names: SourceNames) -> bool:
+    """Return whether a source makes a node or exports a plugin."""
+    return names.makes_node or any(True for _ in names.of_kind(NameKind.PLUGINLIB_CLASS))
+
+
+def _has_only_elsewhere(
+    item: SourceName,
+    side: ChangedSources,
+    other: ChangedSources,
+    paths: Sequence[str],
+    is_separate: Callable[[SourceNames], bool],
+) -> bool:
+    """Return whether only separate sources of the package have a name, in both versions."""
+    if not all(is_separate(sources.get_names(path)) for sources, path in zip((side, other), paths, strict=True)):
         return False
     owners = side.list_owners(item, paths[0])
     return (
         bool(owners)
-        and all(names.makes_node and not _are_connected(side, paths[0], owner) for owner, names in owners.items())
+        and all(is_separate(names) and not _are_connected(side, paths[0], owner) for owner, names in owners.items())
         and owners.keys() <= other.list_owners(item, paths[1]).keys()
     )
 
