@@ -191,10 +191,41 @@ async def test_address_that_does_not_exist_is_an_error():
     await graph.close()
 
 
+async def test_client_that_does_not_answer_pings_is_disconnected():
+    parameters = {"websocket_ping_interval": 0.05, "websocket_ping_timeout": 0.3}
+    async with rosbridge_setup(**parameters) as setup, setup.client(autoping=False) as client:
+        kinds = [(await client.socket.receive(timeout=60)).type]
+        while kinds[-1] is aiohttp.WSMsgType.PING:
+            kinds.append((await client.socket.receive(timeout=60)).type)
+        assert kinds[0] is aiohttp.WSMsgType.PING
+        assert kinds[-1] is aiohttp.WSMsgType.CLOSE
+
+
+async def test_client_that_answers_pings_late_stays_connected():
+    parameters = {"websocket_ping_interval": 0.05, "websocket_ping_timeout": 60.0}
+    async with rosbridge_setup(**parameters) as setup, setup.client(autoping=False) as client:
+        for _ in range(20):
+            message = await client.socket.receive(timeout=60)
+            assert message.type is aiohttp.WSMsgType.PING
+        await client.socket.pong(message.data)
+        add_set_bool(setup)
+        await client.send("call_service", service="/switch", args={"data": True})
+        while (message := await client.socket.receive(timeout=60)).type is aiohttp.WSMsgType.PING:
+            pass
+        assert "service_response" in message.data
+
+
+@pytest.mark.parametrize("interval_s", [0.0, 30.0])
+async def test_server_answers_pings(interval_s):
+    async with rosbridge_setup(websocket_ping_interval=interval_s) as setup, setup.client(autoping=False) as client:
+        await client.socket.ping(b"x")
+        message = await client.socket.receive(timeout=60)
+        assert (message.type, bytes(message.data)) == (aiohttp.WSMsgType.PONG, b"x")
+
+
 @pytest.mark.parametrize(
     ("parameters", "arguments", "reason"),
     [
-        ({"bson_only_mode": True}, [], "no BSON"),
         ({"certfile": "/none.pem", "keyfile": "/none.key"}, [], "cannot use the certificate"),
         ({}, ["--port"], "unexpected argument '--port'"),
         ({}, ["--volume", "3"], "unexpected argument '--volume'"),

@@ -66,6 +66,9 @@ export const DISPLAY_ICON_PATHS = {
   OverlayImage: "M1.8 3h12.4v10H1.8zM1.8 11l3.4-3.6 2.6 2.7 2.6-3.2 3.8 4.1M5 5.7v.01",
   AccelerationMeter: "M3.8 12.9a6 6 0 118.4 0M8 8.6l2.6-3.2M8 8.6v.01",
   AerialMap: "M1.8 3.8L6 2.2l4 1.6 4.2-1.6v10L10 13.8l-4-1.6-4.2 1.6zM6 2.2v10M10 3.8v10",
+  MapCloud: "M3 3v.01M6.3 3v.01M9.6 3v.01M13 3v.01M3 6.3v.01M13 6.3v.01M3 9.6v.01M13 9.6v.01M3 13v.01M6.3 13v.01M9.6 13v.01M13 13v.01M6 9.8l2-3.6 2 3.6z",
+  MapGraph: "M3.5 2.5a1.2 1.2 0 100 2.4 1.2 1.2 0 000-2.4M12 5a1.2 1.2 0 100 2.4A1.2 1.2 0 0012 5M5.5 11a1.2 1.2 0 100 2.4 1.2 1.2 0 000-2.4M4.6 4l6.3 2M11.2 7.1l-4.9 4.2M3.8 4.9l1.5 6.1",
+  Info: "M8 2a6 6 0 100 12A6 6 0 008 2M8 7.2v3.6M8 4.9v.01",
 } as const;
 
 export type DisplayIcon = keyof typeof DISPLAY_ICON_PATHS;

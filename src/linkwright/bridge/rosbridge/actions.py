@@ -9,7 +9,7 @@ from itertools import count
 from typing import Any
 
 from linkwright.bridge.rosbridge.requests import Request, RequestError, full_type_name
-from linkwright.bridge.rosbridge.values import Now, from_json_arguments, from_json_values, to_json_values
+from linkwright.bridge.rosbridge.values import Now, from_json_arguments, from_json_values
 from linkwright.graph import ActionClient, ActionServer, CancelResponse, ClientGoalHandle, GoalStatus, Node
 from linkwright.graph import ServerGoalHandle as GoalHandle
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
@@ -65,7 +65,7 @@ class SentGoal:
                 send_feedback = on_feedback
 
                 def forward(message: Any) -> None:
-                    send_feedback(to_json_values(message.feedback))
+                    send_feedback(message.feedback)
 
             sent = client.send_goal_async(goal, feedback_callback=forward)
             await wait_for_future(self._node, sent, None)
@@ -77,7 +77,7 @@ class SentGoal:
             result = self._handle.get_result_async()
             await wait_for_future(self._node, result, None)
             response: Any = result.result()
-            return to_json_values(response.result), int(response.status)
+            return response.result, int(response.status)
         finally:
             client.destroy()
 
@@ -182,7 +182,7 @@ class OfferedAction:
                 "id": identity,
                 "action": self._name,
                 "action_type": self._type_name,
-                "args": to_json_values(handle.request),
+                "args": handle.request,
                 "feedback": True,
             }
         )

@@ -7,7 +7,7 @@ import math
 from base64 import b64encode
 from typing import Any
 
-from linkwright.bridge.rosbridge import cbor
+from linkwright.bridge.rosbridge import bson, cbor
 from linkwright.bridge.rosbridge.values import to_json_values
 
 NONE, PNG, CBOR, CBOR_RAW = "none", "png", "cbor", "cbor-raw"
@@ -16,9 +16,14 @@ COMPRESSIONS = (NONE, PNG, CBOR, CBOR_RAW)
 
 
 class MessageEncoder:
-    """Encodes messages, and remembers the last one of each topic, because several clients may receive it."""
+    """Encodes messages, and remembers the last one of each topic, because several clients may receive it.
 
-    def __init__(self) -> None:
+    Args:
+        bson_only: whether messages are BSON instead of JSON and PNG.
+    """
+
+    def __init__(self, *, bson_only: bool = False) -> None:
+        self._bson_only = bson_only
         self._latest: dict[str, tuple[Any, dict[str, str | bytes]]] = {}
 
     def encode(self, topic: str, message: Any, compression: str) -> str | bytes:
@@ -34,8 +39,17 @@ class MessageEncoder:
             encoded = {}
             self._latest[topic] = (message, encoded)
         if compression not in encoded:
-            encoded[compression] = _encode(topic, message, compression)
+            encoded[compression] = self._encode(topic, message, compression)
         return encoded[compression]
+
+    def _encode(self, topic: str, message: Any, compression: str) -> str | bytes:
+        content = {"op": "publish", "topic": topic, "msg": message}
+        if compression == CBOR:
+            return cbor.encode(content)
+        if self._bson_only:
+            return bson.encode(content)
+        text = json.dumps(content, default=to_json_values)
+        return json.dumps({"op": "png", "data": _write_png(text)}) if compression == PNG else text
 
     def drop(self, topic: str) -> None:
         """Forget the last message of a topic."""
@@ -46,13 +60,6 @@ def encode_raw(topic: str, data: bytes, now: Any) -> bytes:
     """Return a serialized message, with the time of its reception, as ``cbor-raw``."""
     content = {"secs": now.sec, "nsecs": now.nanosec, "bytes": data}
     return cbor.encode({"op": "publish", "topic": topic, "msg": content})
-
-
-def _encode(topic: str, message: Any, compression: str) -> str | bytes:
-    if compression == CBOR:
-        return cbor.encode({"op": "publish", "topic": topic, "msg": message})
-    text = json.dumps({"op": "publish", "topic": topic, "msg": to_json_values(message)})
-    return json.dumps({"op": "png", "data": _write_png(text)}) if compression == PNG else text
 
 
 def _write_png(text: str) -> str:

@@ -112,9 +112,7 @@ class RosbridgeWebsocket(SingleNode):
 
     def _create_resources(self) -> SharedResources:
         node = self._node
-        if self._declare("bson_only_mode", False):
-            message = phrase("rosbridge_websocket sends JSON and CBOR, but no BSON: do not set 'bson_only_mode'")
-            raise LinkwrightError(Diagnostic("NODE703", message))
+        bson_only = bool(self._declare("bson_only_mode", False))
         for name in ("call_services_in_new_thread", "send_action_goals_in_new_thread"):
             self._declare(name, True)  # calls and goals never wait for each other here
         self._declare("params_glob", "")
@@ -129,22 +127,24 @@ class RosbridgeWebsocket(SingleNode):
             ),
             publications=Publications(node, float(self._declare("unregister_timeout", 10.0))),
             calls=ServiceCalls(node, float(self._declare("default_call_service_timeout", 5.0)), read_time),
-            encoder=MessageEncoder(),
+            encoder=MessageEncoder(bson_only=bson_only),
             topic_globs=Globs(self._declare("topics_glob", "")),
             service_globs=Globs(self._declare("services_glob", ""), (_ROSAPI,)),
             services=Offers("Service"),
             actions=Offers("Action"),
+            bson_only=bson_only,
         )
 
     def _read_server_options(self) -> ServerOptions:
         interval_s = float(self._declare("websocket_ping_interval", 0.0))
-        self._declare("websocket_ping_timeout", 30.0)
+        timeout_s = float(self._declare("websocket_ping_timeout", 30.0))
         certificate, key = str(self._declare("certfile", "")), str(self._declare("keyfile", ""))
         return ServerOptions(
             "a program for rosbridge, such as a page with roslibjs",
             path=str(self._declare("url_path", "/")) or "/",
             origins=list(self._declare("allowed_origins", [""])),
             ping_interval=interval_s or None,
+            ping_timeout=timeout_s or None,
             compresses=bool(self._declare("use_compression", False)),
             max_message_size=_SIZE_FACTOR * self._resources.limits.message_size,
             max_queue_bytes=_MAX_QUEUE_BYTES,

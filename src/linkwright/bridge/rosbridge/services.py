@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.bridge.rosbridge.requests import Request, RequestError, full_type_name
 from linkwright.bridge.rosbridge.topic_types import find_service_type
-from linkwright.bridge.rosbridge.values import Now, from_json_arguments, from_json_values, to_json_values
+from linkwright.bridge.rosbridge.values import Now, from_json_arguments, from_json_values
 from linkwright.graph import Client as ServiceClient
 from linkwright.graph import Node
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
@@ -33,7 +33,7 @@ class ServiceCalls:
         self._now = now
         self._clients: dict[tuple[str, str], ServiceClient[Any, Any]] = {}
 
-    async def call(self, service: str, arguments: Any, timeout_s: float | None) -> dict[str, Any]:
+    async def call(self, service: str, arguments: Any, timeout_s: float | None) -> Any:
         """Call a service, and return the values of its response.
 
         Args:
@@ -66,8 +66,7 @@ class ServiceCalls:
         finally:
             client.remove_pending_request(future)
         try:
-            response: Any = future.result()
-            return to_json_values(response)
+            return future.result()
         except Exception as error:
             raise RequestError(str(error) or type(error).__name__) from error  # an exception of the service's code
 
@@ -129,4 +128,4 @@ class OfferedService:
     def _on_request(self, request: Any, reply: Callable[[Any], object]) -> None:
         identity = f"service_request:{self._name}:{next(self._numbers)}"
         self._pending[identity] = reply
-        self._send({"op": "call_service", "id": identity, "service": self._name, "args": to_json_values(request)})
+        self._send({"op": "call_service", "id": identity, "service": self._name, "args": request})

@@ -10,6 +10,7 @@ from enum import IntEnum
 from functools import partial
 from typing import Any
 
+from linkwright.bridge.rosbridge import bson
 from linkwright.bridge.rosbridge.actions import OfferedAction, SentGoal
 from linkwright.bridge.rosbridge.encodings import MessageEncoder
 from linkwright.bridge.rosbridge.fragments import Fragments, split_message
@@ -19,6 +20,7 @@ from linkwright.bridge.rosbridge.publications import Publications
 from linkwright.bridge.rosbridge.requests import Request, RequestError, split_numbered_name
 from linkwright.bridge.rosbridge.services import OfferedService, ServiceCalls
 from linkwright.bridge.rosbridge.subscriptions import Settings, TopicSubscription
+from linkwright.bridge.rosbridge.values import to_json_values
 from linkwright.bridge.websockets.clients import Client
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import GoalStatus, Node
@@ -61,6 +63,7 @@ class SharedResources:
     """The parts of the node that the sessions of all clients share.
 
     Attributes:
+        bson_only: whether clients send and receive BSON instead of JSON.
         services: the services that clients offer.
         actions: the actions that clients offer.
     """
@@ -74,6 +77,7 @@ class SharedResources:
     service_globs: Globs
     services: Offers[OfferedService]
     actions: Offers[OfferedAction]
+    bson_only: bool = False
 
     def read_time(self) -> Any:
         """Return the time of the node's clock as a message."""
@@ -126,7 +130,7 @@ class Session:
         """Handle a message of the client. An error is sent back as a status."""
         identity = None
         try:
-            request = _parse(message, self._resources.limits.message_size)
+            request = _parse(message, self._resources)
             identity = request.identity
             self._handle(request)
         except Exception as error:  # noqa: BLE001 - no message of a client may end the node
@@ -176,15 +180,18 @@ class Session:
             raise RequestError(f"{operation}: {_describe(error)}") from None
 
     def _send(self, message: dict[str, Any], fragment_size: int | None = None) -> None:
+        if self._resources.bson_only:
+            self._client.send(bson.encode(message))
+            return
         size = self._fragment_size if fragment_size is None else fragment_size
-        for frame in split_message(json.dumps(message), size, message.get("id")):
+        for frame in split_message(json.dumps(message, default=to_json_values), size, message.get("id")):
             self._client.send(frame)
 
     def _add_fragment(self, request: Request) -> None:
         text = self._fragments.add(request)
         if text is None:
             return
-        whole = _parse(text, self._resources.limits.message_size)
+        whole = _parse(text, self._resources)
         if whole.get("op") == _FRAGMENT:
             raise RequestError("fragments of fragments are not supported")
         self.receive(text)
@@ -381,18 +388,20 @@ class Session:
         self._resources.actions.find(self, request.read("action", str)).end_goal(request)
 
 
-def _parse(message: str | bytes, max_size: int) -> Request:
+def _parse(message: str | bytes, resources: SharedResources) -> Request:
     """Return the request that a message contains.
 
     Raises:
-        RequestError: the message is too long, or is not a JSON object.
+        RequestError: the message is too long, or is not a JSON object or BSON document.
     """
+    max_size = resources.limits.message_size
     if len(message) > max_size:
         raise RequestError(f"the message is longer than max_message_size ({max_size} bytes)")
+    form = "BSON" if resources.bson_only and isinstance(message, bytes) else "JSON"
     try:
-        values = json.loads(message)
+        values = bson.decode(message) if isinstance(message, bytes) and form == "BSON" else json.loads(message)
     except (ValueError, RecursionError) as error:
-        raise RequestError(f"the message is not JSON: {str(error)[:200]}") from None
+        raise RequestError(f"the message is not {form}: {str(error)[:200]}") from None
     if not isinstance(values, dict):
         raise RequestError("the message is not a JSON object")
     identity = values.get("id")

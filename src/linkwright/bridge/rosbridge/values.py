@@ -165,6 +165,8 @@ class _Reader:
     def _convert(self, kind: FieldType, value: Any, path: str) -> Any:
         if kind.container is Container.ONE:
             return self._convert_one(kind, value, path)
+        if kind.base in ("uint8", "char") and isinstance(value, bytes):  # of BSON
+            return array("B", value)
         if kind.base in ("uint8", "char") and isinstance(value, str):
             return array("B", b64decode(value, validate=True))
         if not isinstance(value, list):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 from linkwright.bridge.websockets.clients import Client
 from linkwright.bridge.websockets.origins import is_allowed_origin
+from linkwright.bridge.websockets.pings import Pings
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ class ServerOptions:
         protocols: the subprotocols, one of which a client must support; empty if there are none.
         origins: further origins of web pages that may connect.
         ping_interval: the seconds between pings; None for no pings.
+        ping_timeout: the seconds after which a client that sends nothing, not even the answers to pings, is
+            disconnected; None for half of `ping_interval`. It has no effect without pings.
         compresses: whether frames are compressed if the client agrees.
         max_message_size: the maximum size of a message, in bytes. A longer one ends the connection.
         max_queue_bytes: the maximum size of the queue of topic messages for a client.
@@ -43,6 +46,7 @@ class ServerOptions:
     protocols: Collection[str] = ()
     origins: Collection[str] = ()
     ping_interval: float | None = 15.0
+    ping_timeout: float | None = None
     compresses: bool = False
     max_message_size: int = 16 << 20
     max_queue_bytes: int = 10_000_000
@@ -123,7 +127,8 @@ class WebSocketServer:
             return web.Response(status=503, text="Too many clients are connected.\n")
         websocket = web.WebSocketResponse(
             protocols=options.protocols,
-            heartbeat=options.ping_interval,
+            heartbeat=options.ping_interval if options.ping_timeout is None else None,
+            autoping=options.ping_timeout is None,
             timeout=0.5,
             compress=options.compresses,
             max_msg_size=options.max_message_size,
@@ -143,17 +148,22 @@ class WebSocketServer:
         client = Client(websocket, self._options.max_queue_bytes, self._options.send_delay)
         receive, end = self._on_client(client, ip_address)
         self._client_count += 1
-        writer = asyncio.get_running_loop().create_task(client.write())
+        pings = Pings(websocket, self._options.ping_interval, self._options.ping_timeout)
+        tasks = [self._loop.create_task(client.write()), self._loop.create_task(pings.send())]
         try:
             async for message in websocket:
+                pings.on_message()
                 if message.type in (web.WSMsgType.TEXT, web.WSMsgType.BINARY):
                     receive(message.data)
+                elif message.type is web.WSMsgType.PING:
+                    await websocket.pong(message.data)
         finally:
             self._client_count -= 1
             end()
-            writer.cancel()
+            for task in tasks:
+                task.cancel()
             with suppress(asyncio.CancelledError):
-                await asyncio.gather(writer, return_exceptions=True)
+                await asyncio.gather(*tasks, return_exceptions=True)
 
 
 def open_listener(address: str, port: int) -> socket.socket:

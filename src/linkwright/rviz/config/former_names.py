@@ -18,6 +18,16 @@ GROUP = "rviz_common/Group"
 
 _RVIZ1_PREFIX = "rviz/"
 _RVIZ2_PREFIX = "rviz_default_plugins/"
+_RENAMED_PLUGINS = {
+    "octomap_rviz_plugin/OccupancyGrid": "octomap_rviz_plugins/OccupancyGrid",
+    "rtabmap_ros/Info": "rtabmap_rviz_plugins/Info",
+    "rtabmap_ros/MapCloud": "rtabmap_rviz_plugins/MapCloud",
+    "rtabmap_ros/MapGraph": "rtabmap_rviz_plugins/MapGraph",
+    "rviz_plugin_covariance/Odometry": _RVIZ2_PREFIX + "Odometry",
+    "rviz_plugins/AerialMapDisplay": "rviz_satellite/AerialMap",
+}
+"""The classes of other packages by their names in ROS 1."""
+
 _RENAMED_CLASSES = {"Group": GROUP, "WrenchStamped": _RVIZ2_PREFIX + "Wrench"}
 
 
@@ -29,7 +39,7 @@ def is_former(cls: str) -> bool:
 def to_modern_class(cls: str) -> str:
     """Return RViz 2's name for the class of a display, tool or view of RViz 1 or RViz 2."""
     if not is_former(cls):
-        return cls
+        return _RENAMED_PLUGINS.get(cls, cls)
     name = cls.removeprefix(_RVIZ1_PREFIX)
     return _RENAMED_CLASSES.get(name, _RVIZ2_PREFIX + name)
 

@@ -52,7 +52,9 @@ _COUNT_PERIOD_S = 0.25
 
 
 @dataclass(slots=True)
-class _ShownCloud:
+class ShownCloud:
+    """Points in pages, with the key under which they were sent, their pose, and when they arrived."""
+
     key: str
     points: Points
     pose: Pose
@@ -71,7 +73,7 @@ class CloudDisplay(TopicDisplay):
         self._transformers: tuple[str, ...] = ()
         self._channels: tuple[str, ...] = ()
         super().__init__(host, identity, config)
-        self._shown_clouds: deque[_ShownCloud] = deque()
+        self._shown_clouds: deque[ShownCloud] = deque()
         self._number = 0
         self._decay_timer: asyncio.TimerHandle | None = None
         self._count_timer: asyncio.TimerHandle | None = None
@@ -119,7 +121,7 @@ class CloudDisplay(TopicDisplay):
                 if previous.key:
                     self.remove_content(previous.key)
             self._shown_clouds.clear()
-        cloud = _ShownCloud(str(self._number) if decay_time > 0 else "", points, pose, stamp_ns, now)
+        cloud = ShownCloud(str(self._number) if decay_time > 0 else "", points, pose, stamp_ns, now)
         self._shown_clouds.append(cloud)
         self._draw(cloud)
         self._remove_expired()
@@ -173,7 +175,7 @@ class CloudDisplay(TopicDisplay):
 
     # --- colors -----------------------------------------------------------------------------------------------
 
-    def _draw(self, cloud: _ShownCloud) -> None:
+    def _draw(self, cloud: ShownCloud) -> None:
         settings = read_color_settings(self.properties)
         colors, bounds = compute_colors(cloud.points, settings, cloud.pose)
         if bounds is not None:
