@@ -160,7 +160,7 @@ _GROUPS = {
         *("MRSGazeboStaticTransformRepublisher", "MrsGazeboCommonResources_StaticTransformRepublisher"),
     ),
     _VIEW_ALTERNATIVE: ("MRSGazeboRvizCameraSynchronizer", "MrsGazeboCommonResources_RvizCameraSynchronizer"),
-    _WALK_ALTERNATIVE: ("ActorPlugin", "gazebo_ros_actor_command", "gazebo_ros_actor_plugin"),
+    _WALK_ALTERNATIVE: ("gazebo_ros_actor_command", "gazebo_ros_actor_plugin"),
     _WATER_ALTERNATIVE: (
         "BuoyancySystemPlugin",
         "freebuoyancy_gazebo",
