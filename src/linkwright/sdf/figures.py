@@ -17,6 +17,8 @@ from linkwright.sdf.worlds import Road
 
 ACTOR_COLLISIONS_LIBRARY = "ActorCollisionsPlugin"
 """The plugin of Gazebo Classic that lets an actor collide."""
+ACTOR_WALK_LIBRARY = "ActorPlugin"
+"""The plugin of Gazebo Classic that lets an actor walk to targets at random, around obstacles."""
 _SKIN_NAME = "skin"
 """The name of the link that shows the skin, and the prefix of its visuals."""
 _ROAD_THICKNESS = 0.01

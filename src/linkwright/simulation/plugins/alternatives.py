@@ -5,6 +5,7 @@ from __future__ import annotations
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.sdf.plugins import library_name
 
+_SCORE_ALTERNATIVE = phrase("libStationkeepingScoringPlugin.so or libWayfindingScoringPlugin.so")
 _WIDE_CAMERA_ALTERNATIVE = phrase("a camera with a wide <horizontal_fov>")
 _AUTOPILOT_ALTERNATIVE = phrase(
     "a ROS node in place of the autopilot: commands on the topics of the motors and joints, "
@@ -41,19 +42,35 @@ _STEERING_ALTERNATIVE = phrase("libgazebo_ros_ackermann_drive.so, or controllers
 _DRIVE_ALTERNATIVE = phrase("libgazebo_ros_diff_drive.so")
 _VIEW_ALTERNATIVE = phrase("the camera of the page")
 _TRANSFORM_ALTERNATIVE = phrase("robot_state_publisher, or static_transform_publisher of tf2_ros")
+_MAP_ALTERNATIVE = phrase("libgazebo_2Dmap_plugin.so, whose service makes a map of the world at a height")
+_FORCE_ALTERNATIVE = phrase("libgazebo_ros_ft_sensor.so, which publishes the force and torque in a joint")
+_BREAKING_ALTERNATIVE = phrase(
+    "gz-sim-detachable-joint-system, and a ROS node that detaches the joint when the force of "
+    "libgazebo_ros_ft_sensor.so is too great"
+)
+_TRACKS_ALTERNATIVE = phrase("gz-sim-tracked-vehicle-system, with gz-sim-track-controller-system for each track")
+_REGION_ALTERNATIVE = phrase("libContainPlugin.so")
+_SPRING_ALTERNATIVE = phrase("<spring_stiffness> and <spring_reference> in the <dynamics> of the joint")
+_COUPLING_ALTERNATIVE = phrase("libroboticsgroup_gazebo_mimic_joint_plugin.so with the multiplier -1")
+_ATTACHING_ALTERNATIVE = phrase("libgazebo_ros_link_attacher.so")
+_ROTOR_SPEEDS_ALTERNATIVE = phrase("libgazebo_multirotor_base_plugin.so, which publishes the speeds of the rotors")
 _LOGICAL_CAMERA_ALTERNATIVE = phrase("a <sensor> of type logical_camera")
 _GROUPS = {
+    _ATTACHING_ALTERNATIVE: ("MRSGazeboLinkAttacherPlugin",),
     _AUTOPILOT_ALTERNATIVE: (
         "gazebo_mavlink_interface",
         "rotors_gazebo_mavlink_interface",
     ),
     _BATTERY_ALTERNATIVE: (
+        *("gazebo_ros_power_monitor", "LinearBatteryConsumerPlugin", "LinearBatteryPlugin"),
         "battery_consumer_ros_plugin",
         "custom_battery_consumer_ros_plugin",
         "linear_battery_ros_plugin",
     ),
     _BELT_ALTERNATIVE: ("ROSConveyorBeltPlugin", "ros2_conveyorbelt_plugin"),
+    _BREAKING_ALTERNATIVE: ("BreakableJointPlugin", "breakable_joint"),
     _CAMERA_ALTERNATIVE: (
+        *("hsrb_gazebo_ros_camera", "recorder_camera_plugin"),
         *("GstCameraPlugin", "RealSensePlugin", "gazebo_geotagged_images_plugin", "gazebo_gst_camera_plugin"),
         *("gazebo_camera_manager_plugin", "gazebo_ros_realsense", "gazebo_ros_triggered_multicamera", "multicamera"),
         *("uuv_gazebo_ros_camera_plugin", "MrsGazeboCommonResources_CameraPlugin"),
@@ -61,15 +78,22 @@ _GROUPS = {
         *("CameraZoomPlugin", "MRSGazeboRealsensePlugin"),
     ),
     _CONTACT_ALTERNATIVE: (
+        "hsrb_gazebo_ros_bumper",
         *("RobotFootContactPlugin", "contact_plugin", "gazebo_ros_contact", "gazebo_ros_create_bumper"),
         "gazebo_ros_create_wheel_drop",
     ),
-    _CONTROL_ALTERNATIVE: ("IOBPlugin", "xbot2_gz_joint_server"),
+    _CONTROL_ALTERNATIVE: (
+        *("gazebo_ros_controller_manager", "fetch_gazebo_plugin"),
+        "IOBPlugin",
+        "xbot2_gz_joint_server",
+    ),
+    _COUPLING_ALTERNATIVE: ("leo_gz_differential_plugin",),
     _DISTANCE_ALTERNATIVE: (
         *("MrsGazeboCommonResources_RangefinderPlugin", "gazebo_ros_create_cliff_sensor", "gazebo_sonar_plugin"),
         *("gazebo_ros_create_ir_intensity_sensor", "sonar"),
     ),
-    _DRIVE_ALTERNATIVE: ("DiffDrivePlugin", "diffdrive_plugin_multi_wheel", "gazebo_ros_diffdrive_uos"),
+    _DRIVE_ALTERNATIVE: ("husky_gazebo_plugins", "diffdrive_plugin_multi_wheel", "gazebo_ros_diffdrive_uos"),
+    _FORCE_ALTERNATIVE: ("ForceTorquePlugin", "gazebo_ros_f3d"),
     _IMU_ALTERNATIVE: (
         *("gazebo_ros_create_imu", "realsense_gazebo_accel_sensor", "realsense_gazebo_gyro_sensor"),
         "xbot2_gz_imu_server",
@@ -80,44 +104,63 @@ _GROUPS = {
         *("MrsGazeboCommonResources_3DLidarPlugin", "rotors_gazebo_lidar_plugin"),
     ),
     _LIGHT_ALTERNATIVE: (
+        *("BlinkVisualPlugin", "LedPlugin", "LEDStrip"),
         *("LightIndicator", "PlacardPlugin", "traffic_light_plugin"),
         *("MrsGazeboCommonResources_LightPlugin", "MrsGazeboCommonResources_SafetyLedPlugin"),
     ),
     _LOGICAL_CAMERA_ALTERNATIVE: ("ROSLogicalCameraPlugin", "gazebo_irlock_plugin"),
+    _MAP_ALTERNATIVE: ("rotors_gazebo_octomap_plugin",),
     _MOTION_ALTERNATIVE: (
-        *("RandomVelocityPlugin", "InitialVelocityPlugin"),
+        *("robotnik_force_based_move", "slotcar"),
         *("SetVelPlugin", "gazebo_random_velocity_plugin", "gazebo_ros_force_based_move"),
         "tuw_gazebo_ros_diff_drive",
     ),
     _POSE_ALTERNATIVE: (
-        *("gazebo_world_odometry", "rotors_gazebo_optical_flow_plugin", "gazebo_aruco_plugin"),
+        "robotnik_gazebo_ground_truth_odom",
+        *("rotors_gazebo_optical_flow_plugin", "gazebo_aruco_plugin"),
         *("PubTfPlugin", "gazebo_opticalflow_plugin", "gazebo_opticalFlow_plugin", "gazebo_opticalflow_mockup_plugin"),
         *("gazebo_vision_plugin", "gazebo_ros_create_optical_mouse", "xbot2_gz_link_state_sensor"),
     ),
     _POSITION_ALTERNATIVE: (
+        *("JointControlPlugin", "JointTrajectoryPlugin"),
         *("GimbalSmall2dPlugin",),
         *("gazebo_gimbal_controller_plugin", "hector_servo_plugin", "rotors_gazebo_gimbal_controller_plugin"),
     ),
     _RADIO_ALTERNATIVE: ("wireless_receiver", "wireless_transmitter", "rfid", "rfidtag", "uwb_range"),
+    _REGION_ALTERNATIVE: ("RegionEventBoxPlugin", "SimEventsPlugin"),
     _RELEASE_ALTERNATIVE: (
+        "MrsGazeboCommonResources_ParachutePlugin",
         "ParachutePlugin",
         "SuctionGripper",
         "gazebo_parachute_plugin",
         "gazebo_catapult_plugin",
         "gazebo_drop_plugin",
     ),
+    _ROTOR_SPEEDS_ALTERNATIVE: ("MrsGazeboCommonResources_MotorSpeedRepublisherPlugin",),
     _ROTOR_ALTERNATIVE: ("hector_gazebo_quadrotor_aerodynamics", "hector_gazebo_quadrotor_propulsion"),
-    _STEERING_ALTERNATIVE: ("gazebo_ros_tricycle_drive", "gazebo_ros_steer_drive", "gazebo_ros_steerbot"),
-    _TASK_ALTERNATIVE: tuple(f"{task}ScoringPlugin" for task in _TASKS),
+    _SPRING_ALTERNATIVE: ("spring_joint",),
+    _STEERING_ALTERNATIVE: (
+        *("VehiclePlugin", "ackermann_steering_controller"),
+        "gazebo_ros_steer_drive",
+        "gazebo_ros_steerbot",
+    ),
+    _SCORE_ALTERNATIVE: ("stationkeeping_scoring_plugin", "wayfinding_scoring_plugin"),
+    _TASK_ALTERNATIVE: (
+        *(f"{task}ScoringPlugin" for task in _TASKS),
+        *("navigation_scoring_plugin", "perception_scoring_plugin", "scan_dock_scoring_plugin"),
+        *("gymkhana_scoring_plugin", "wildlife_scoring_plugin"),
+    ),
     _THERMAL_ALTERNATIVE: (
         *("thermal", "thermal_camera", "gz-sim-thermal-system", "gz-sim-thermal-sensor-system"),
         *("MRSGazeboThermalCameraPlugin", "gazebo_ros_thermal_camera", "gazebo_ros_thermal_camera_pink"),
     ),
+    _TRACKS_ALTERNATIVE: ("SimpleTrackedVehiclePlugin", "TrackedVehiclePlugin", "WheelTrackedVehiclePlugin"),
     _TRANSFORM_ALTERNATIVE: (
+        "MrsGazeboCommonResources_LinkStaticTFPublisher",
         *("MRSGazeboStaticTransformRepublisher", "MrsGazeboCommonResources_StaticTransformRepublisher"),
     ),
     _VIEW_ALTERNATIVE: ("MRSGazeboRvizCameraSynchronizer", "MrsGazeboCommonResources_RvizCameraSynchronizer"),
-    _WALK_ALTERNATIVE: ("ActorPlugin", "gazebo_ros_actor_command", "gazebo_ros_actor_plugin"),
+    _WALK_ALTERNATIVE: ("gazebo_ros_actor_command", "gazebo_ros_actor_plugin"),
     _WATER_ALTERNATIVE: (
         "BuoyancySystemPlugin",
         "freebuoyancy_gazebo",

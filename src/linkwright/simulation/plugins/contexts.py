@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from linkwright.geometry.single import Transform, compose, invert
+from linkwright.sdf.figures import ACTOR_WALK_LIBRARY
 from linkwright.sdf.frames import FrameError, Frames, transform_of
 from linkwright.sdf.joints import Joint
 from linkwright.sdf.models import Model
-from linkwright.sdf.plugins import Plugin
+from linkwright.sdf.plugins import Plugin, library_name
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import World
 from linkwright.simulation.plugins.plugin import PlacedSensor, PlacedVisual, PluginContext
@@ -16,7 +17,7 @@ from linkwright.simulation.plugins.registry import is_built_in
 
 
 def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[PluginContext]:
-    """Yield the plugins that are direct children of a world.
+    """Yield the plugins that are direct children of a world, and those that move its actors.
 
     Args:
         world: the world as it was read from SDF.
@@ -24,6 +25,10 @@ def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[Plug
     """
     for plugin in world.plugins or systems:
         yield PluginContext(plugin.name or plugin.filename, plugin, world, None, "", None)
+    for actor in world.actors:
+        for plugin in actor.plugins:
+            if library_name(plugin.filename) == ACTOR_WALK_LIBRARY:
+                yield PluginContext(plugin.name or plugin.filename, plugin, world, None, actor.name, None)
 
 
 def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginContext]:

@@ -1,6 +1,8 @@
-"""True poses as odometry: ``libgazebo_ros_p3d.so``, ``gz-sim-odometry-publisher-system``.
+"""True poses as odometry, in Gazebo Classic, in gz, and for robots of PAL.
 
-Source: gazebo_ros_pkgs and gz-sim (parameters, topics, frames, defaults).
+They are ``libgazebo_ros_p3d.so``, ``gz-sim-odometry-publisher-system`` and ``libgazebo_world_odometry.so``.
+
+Source: gazebo_ros_pkgs, gz-sim and pal_gazebo_plugins (parameters, topics, frames, defaults).
 """
 
 from __future__ import annotations
@@ -57,6 +59,16 @@ class GzOdometryParameters:
     xyz_offset: Vector3 = (0.0, 0.0, 0.0)
     rpy_offset: Vector3 = (0.0, 0.0, 0.0)
     gaussian_noise: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class PalOdometryParameters:
+    """Parameters of ``libgazebo_world_odometry.so``."""
+
+    frame_name: str = parameter("world", aliases=("frameName",))
+    body_name: str = parameter("", aliases=("bodyName",))
+    topic_name: str = parameter("ft_data", aliases=("topicName",))
+    update_rate: float = parameter(1000.0, aliases=("updateRate",))
 
 
 class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
@@ -153,6 +165,35 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
             _create_odometry(header, self._child_frame, pose, linear, angular, parameters.gaussian_noise**2)
         )
         self._transforms.publish(transform_message(header, self._child_frame, pose))
+
+
+class PalOdometry(SimulatedPlugin[PalOdometryParameters]):
+    """The substitute for ``libgazebo_world_odometry.so``: the pose and velocity of a link.
+
+    The linear velocity is in the axes of the world, and the angular velocity in those of the link. The offsets that
+    the original has as parameters of its node are 0.
+    """
+
+    PARAMETERS = PalOdometryParameters
+
+    def start(self) -> None:
+        """Find the link, and create the odometry topic.
+
+        Raises:
+            LinkwrightError: SIM133, there is no such link.
+        """
+        parameters = self.parameters
+        self._body = parameters.body_name or parameters.frame_name
+        self._link = self.link(self._body)
+        self._output = self.node.publisher("nav_msgs/msg/Odometry", parameters.topic_name, 10)
+        self.every(parameters.update_rate, self._publish)
+
+    def _publish(self) -> None:
+        if not self._output.is_wanted:
+            return
+        pose, (linear, angular) = self.simulation.link_pose(self._link), self.simulation.link_velocity(self._link)
+        header = Header(stamp=self.stamp(), frame_id=self.parameters.frame_name)
+        self._output.publish(_create_odometry(header, self._body, pose, linear, _to_frame_axes(pose, angular), 0.0))
 
 
 def _to_frame_axes(frame: Transform, vector: Array) -> Array:

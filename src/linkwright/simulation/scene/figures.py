@@ -12,9 +12,10 @@ import numpy as np
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose
 from linkwright.sdf.actors import Actor
-from linkwright.sdf.figures import make_actor_model, make_road_model
+from linkwright.sdf.figures import ACTOR_WALK_LIBRARY, make_actor_model, make_road_model
 from linkwright.sdf.frames import FrameError, Frames, PlacedLink, place_links
 from linkwright.sdf.models import Model
+from linkwright.sdf.plugins import library_name
 from linkwright.sdf.walking import Walk
 from linkwright.sdf.worlds import World
 from linkwright.simulation.scene.bodies import BodyWriter
@@ -45,6 +46,8 @@ class Figure:
         walk: the walk of an actor; None for a static figure.
         origin: the pose in the world of the frame to which the points of `walk` refer.
         links: the links of the model, with poses in the frame of the model.
+        is_steered: whether a plugin moves the figure.
+        steered_pose: the pose in the world that the plugin has set; None before that.
     """
 
     model: Model
@@ -52,14 +55,23 @@ class Figure:
     walk: Walk | None
     origin: Transform
     links: tuple[PlacedLink, ...]
+    is_steered: bool = False
+    steered_pose: Transform | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether the figure walks, or a plugin moves it."""
+        return self.walk is not None or self.is_steered
 
     @property
     def walks_into_bodies(self) -> bool:
         """Whether the figure moves, and collides."""
-        return self.walk is not None and any(link.collisions for link in self.model.links)
+        return self.moves and any(link.collisions for link in self.model.links)
 
     def pose_at(self, seconds: float) -> Transform:
         """Return the pose in the world at a simulated time in s."""
+        if self.steered_pose is not None:
+            return self.steered_pose
         return self.pose if self.walk is None else compose(self.origin, self.walk.pose(seconds))
 
 
@@ -87,7 +99,8 @@ def create_figures(world: World, meshes: MeshLibrary) -> list[Figure]:
         walk = Walk(actor.script)
         origin = pose if is_gz_world else IDENTITY
         initial_pose = compose(origin, walk.pose(0.0)) if walk.has_waypoints else pose
-        figures.append(Figure(model, initial_pose, walk if walk.has_waypoints else None, origin, links))
+        is_steered = any(library_name(plugin.filename) == ACTOR_WALK_LIBRARY for plugin in actor.plugins)
+        figures.append(Figure(model, initial_pose, walk if walk.has_waypoints else None, origin, links, is_steered))
     for road in world.roads:
         model = _choose_free_name(make_road_model(road), used_names)
         links = tuple(place_links(model, Frames(model), IDENTITY, model.name))
@@ -109,7 +122,7 @@ def add_figure(figure: Figure, spec: Any, writer: BodyWriter) -> None:
     The links become bodies without dynamics. Only actors that collide have contacts.
     """
     for placed_link in figure.links:
-        body = spec.worldbody.add_body(name=placed_link.name, mocap=figure.walk is not None)
+        body = spec.worldbody.add_body(name=placed_link.name, mocap=figure.moves)
         set_pose(body, compose(figure.pose, placed_link.pose))
         body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]
         writer.add_visuals(body, placed_link.link, placed_link.frames, fixed=True)
@@ -119,7 +132,7 @@ def add_figure(figure: Figure, spec: Any, writer: BodyWriter) -> None:
 def move_actors(figures: Iterable[Figure], model: Any, data: Any, seconds: float) -> None:
     """Set the poses of actors in MuJoCo's data for a simulated time in s."""
     for figure in figures:
-        if figure.walk is None:
+        if not figure.moves:
             continue
         pose = figure.pose_at(seconds)
         for placed_link in figure.links:

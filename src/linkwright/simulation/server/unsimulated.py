@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from linkwright.diagnostics import Phrase, display_path, joined, phrase
+from linkwright.sdf.figures import ACTOR_WALK_LIBRARY
 from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import library_name
 from linkwright.sdf.reader import OPEN_TAGS
@@ -107,7 +108,11 @@ def _describe_unsimulated(parent: Element, child: Element) -> str:
         return f"<{child.tag}> in <{parent.tag}>"
     if child.tag == "plugin" and parent.tag in _PLUGINS_NOT_SIMULATED:
         filename = child.attributes.get("filename", "")
-        return "" if is_built_in(filename) else f"{filename} in <{parent.tag}>"
+        return (
+            ""
+            if is_built_in(filename) or library_name(filename) == ACTOR_WALK_LIBRARY
+            else f"{filename} in <{parent.tag}>"
+        )
     return ""
 
 
