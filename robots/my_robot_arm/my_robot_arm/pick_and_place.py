@@ -170,7 +170,7 @@ class PickAndPlace(Node):
         points = points[np.all(np.abs(points - TABLE[:2]) < np.array(TABLE[2:4]) / 2, axis=1)]
         if len(points) < FEWEST_PIXELS:
             raise ArmError(f'the camera sees nothing on the table that is {self.color}')
-        return find_square(points)
+        return find_square(points, position[:2], CUBE)
 
     def run(self):
         """Look, pick and place."""

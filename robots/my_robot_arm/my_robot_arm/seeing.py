@@ -29,10 +29,12 @@ def to_table(pixels, matrix, position, rotation, height):
     return (position + rays * ((height - position[2]) / rays[:, 2:]))[:, :2]
 
 
-def find_square(points):
-    """Return the middle of a square of points, and its turn about z in radians, from 0 to a quarter turn.
+def find_square(points, camera, side):
+    """Return the middle of the top of a cube, and its turn about z in radians, from 0 to a quarter turn.
 
-    The turn is the one with the smallest rectangle around the points.
+    `points` are those of the top and of the sides that the camera sees; the rays of the sides meet the plane of the top
+    between the cube and the camera. So the edges away from the camera, which is at `camera` (x, y), tell where a top
+    with edges of the length `side` is. The turn is the one with the smallest rectangle around the points.
     """
     best = None
     for yaw in np.radians(np.arange(0, 90, 2)):
@@ -41,5 +43,6 @@ def find_square(points):
         low, high = np.percentile(along, 1, axis=0), np.percentile(along, 99, axis=0)
         area = float(np.prod(high - low))
         if best is None or area < best[0]:
-            best = area, (low + high) / 2 @ axes, float(yaw)
+            is_near_low = axes @ camera < (low + high) / 2
+            best = area, np.where(is_near_low, high - side / 2, low + side / 2) @ axes, float(yaw)
     return best[1], best[2]

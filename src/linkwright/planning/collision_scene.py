@@ -9,7 +9,8 @@ shapes twice: one for other links, and one for the world.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from math import inf
 from typing import Any, NamedTuple
@@ -86,8 +87,8 @@ class LinkMargin:
 
 
 _NO_MARGIN = LinkMargin()
-_TOUCH_M = 1e-5
-"""The distance in m up to which a path may collide with an object between two checked configurations."""
+TOUCH_M = 1e-5
+"""The distance in m up to which two shapes touch."""
 _WORLD = 2
 """The bit of MuJoCo's contype and conaffinity for contacts with objects of the world; 1 is for those of the robot."""
 
@@ -107,6 +108,22 @@ class Contact(NamedTuple):
     depth: float
 
 
+class Nearness(NamedTuple):
+    """Which shapes are near to each other in a configuration.
+
+    Attributes:
+        distances: in m, by the numbers of two shapes, the larger one first; negative for collisions.
+        centers: the centers of all shapes in m, shape (shapes, 3).
+        rotations: their rotation matrices, shape (shapes, 3, 3).
+        radii: the radii in m of the spheres around the centers that contain them, shape (shapes,).
+    """
+
+    distances: Mapping[tuple[int, int], float]
+    centers: Array
+    rotations: Array
+    radii: Array
+
+
 class CollisionScene:
     """A robot among objects.
 
@@ -116,7 +133,7 @@ class CollisionScene:
         objects: the objects in the world and those that are attached to links.
         allowed: the pairs that may collide.
         margins: the margins of links, by link name.
-        range_m: the distance in m up to which `clearances` measures, and which `is_clear` requires.
+        range_m: the distance in m up to which distances are measured.
     """
 
     def __init__(
@@ -126,7 +143,7 @@ class CollisionScene:
         objects: Iterable[SceneObject],
         allowed: AllowedCollisions,
         margins: Mapping[str, LinkMargin] | None = None,
-        range_m: float = _TOUCH_M,
+        range_m: float = TOUCH_M,
     ) -> None:
         objects = tuple(objects)
         parts = [
@@ -157,11 +174,6 @@ class CollisionScene:
         self._move(positions)
         data = self._model.data
         return not data.ncon or all(contact.dist >= contact.includemargin - self._range for contact in data.contact)
-
-    def is_clear(self, positions: Array) -> bool:
-        """Return whether nothing collides and everything is farther apart than the range."""
-        self._move(positions)
-        return not self._model.data.ncon
 
     def colliding_pairs(self, positions: Array) -> set[frozenset[str]]:
         """Return the pairs of links or objects that collide at the positions of all joints."""
@@ -198,6 +210,35 @@ class CollisionScene:
         """
         self._move(positions)
         return self._measure()
+
+    @contextmanager
+    def measuring_up_to(self, range_m: float) -> Iterator[None]:
+        """Change the range within a block."""
+        before = self._range
+        self._set_range(range_m)
+        try:
+            yield
+        finally:
+            self._set_range(before)
+
+    def _set_range(self, range_m: float) -> None:
+        growth = (range_m - self._range) / 2.0  # MuJoCo adds the margins of two geoms.
+        self._model.mujoco_model.geom_margin += growth
+        self._model.mujoco_model.body_margin += growth
+        self._range = range_m
+
+    def measure_nearness(self, positions: Array) -> Nearness:
+        """Return which shapes are nearer to each other than the range."""
+        self._move(positions)
+        data, radii = self._model.data, self._model.mujoco_model.geom_rbound
+        distances: dict[tuple[int, int], float] = {}
+        if data.ncon:
+            contact = data.contact
+            values = (contact.dist - contact.includemargin + self._range).tolist()
+            for (first, second), distance in zip(contact.geom.tolist(), values, strict=True):
+                pair = (first, second) if radii[first] >= radii[second] else (second, first)
+                distances[pair] = min(distance, distances.get(pair, distance))
+        return Nearness(distances, data.geom_xpos.copy(), data.geom_xmat.reshape(-1, 3, 3).copy(), radii)
 
     def _measure(self) -> tuple[float, float]:
         to_self = to_world = self._range

@@ -13,12 +13,13 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.planning.barriers import Barriers
 from linkwright.planning.cartesian import ArcError, ArcPoint, arc_poses, follow_poses, line_poses
-from linkwright.planning.collision_scene import CollisionScene, Contact
+from linkwright.planning.collision_scene import TOUCH_M, CollisionScene, Contact
 from linkwright.planning.effort import elapsed_s
 from linkwright.planning.goals import Goal, goal_configurations
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
 from linkwright.planning.link_speed import LinkSpeedLimits
+from linkwright.planning.motion_checks import RANGE_M, MotionCheck
 from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.sampling import DEFAULT_PLANNER, SamplingProblem, subdivide
 from linkwright.planning.smoothing import parameterize_smoothly
@@ -261,18 +262,18 @@ class MotionPlanner:
 
         A motion that only touches an object may collide with it between two configurations.
         """
-        positions, was_clear, touches = start.copy(), False, False
-        for configuration in motion:
-            self._stop_if_canceled()
-            positions[indexes] = configuration
-            if self._scene.is_clear(positions):
-                if touches or not self._fulfills_constraint(request, positions):
+        was_clear, touches = False, False
+        with self._scene.measuring_up_to(RANGE_M):
+            for positions, distance in MotionCheck(self._scene, start, indexes).check(motion):
+                self._stop_if_canceled()
+                if distance < 0.0 or not self._fulfills_constraint(request, positions):
                     return False
-                was_clear = True
-            elif not self._is_valid(request, positions):
-                return False
-            else:
-                touches = was_clear
+                if distance <= TOUCH_M:
+                    touches = was_clear
+                elif touches:
+                    return False
+                else:
+                    was_clear = True
         return True
 
     @staticmethod

@@ -139,7 +139,7 @@ class PickPlace(Node):
         lengths = (TABLE + BLOCK - position[2]) / rays[:, 2]
         points = position[:2] + rays[:, :2] * lengths[:, np.newaxis]
         on_table = (abs(points[:, 0] - 0.75) < 0.25) & (abs(points[:, 1]) < 0.55)
-        return find_square(points[on_table])
+        return find_square(points[on_table], position[:2], BLOCK)
 
     def carry_out(self, order):
         color, place_x, place_y = order.split()
@@ -180,8 +180,12 @@ def is_colored(picture, color):
     }[color]
 
 
-def find_square(points):
-    """Return the middle of a square of points, and its turn about z in rad."""
+def find_square(points, camera, side):
+    """Return the middle of the top of a block, and its turn about z in rad.
+
+    The camera also sees sides of the block. They appear between the top and the camera, so only the edges away from
+    the camera (x, y) are those of the top.
+    """
     best = None
     for yaw in np.radians(np.arange(0, 90, 2)):
         axes = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
@@ -189,7 +193,8 @@ def find_square(points):
         low, high = np.percentile(along, 1, axis=0), np.percentile(along, 99, axis=0)
         area = np.prod(high - low)
         if best is None or area < best[0]:
-            best = area, (low + high) / 2 @ axes, float(yaw)
+            near_low = axes @ camera < (low + high) / 2
+            best = area, np.where(near_low, high - side / 2, low + side / 2) @ axes, float(yaw)
     return best[1], best[2]
 
 

@@ -75,7 +75,7 @@ class Picker(Arm):
         points = to_plane(pixels, self.lens, position, rotation, TABLE + CUBE)
         x, y = points.T
         points = points[(abs(x - 0.75) < 0.25) & (abs(y) < 0.55)]  # on the table, not on the robot
-        return find_square(points) if len(points) >= 60 else None
+        return find_square(points, position[:2], CUBE) if len(points) >= 60 else None
 
     def go(self):
         self.motions.wait_for_server()

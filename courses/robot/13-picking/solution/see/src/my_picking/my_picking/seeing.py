@@ -17,8 +17,12 @@ def to_plane(pixels, k, position, rotation, height):
     return position[:2] + rays[:, :2] * lengths[:, np.newaxis]
 
 
-def find_square(points):
-    """Return the middle of a square of points, and its turn about z in rad."""
+def find_square(points, camera, side):
+    """Return the middle of the top of a cube, and its turn about z in rad.
+
+    The camera also sees sides of the cube. They appear between the top and the camera,
+    so only the edges away from the camera (x, y) are those of the top.
+    """
     best = None
     for yaw in np.radians(np.arange(0, 90, 2)):
         axes = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
@@ -26,5 +30,7 @@ def find_square(points):
         low, high = np.percentile(along, 1, axis=0), np.percentile(along, 99, axis=0)
         area = np.prod(high - low)
         if best is None or area < best[0]:
-            best = area, (low + high) / 2 @ axes, float(yaw)
+            near_low = axes @ camera < (low + high) / 2
+            middle = np.where(near_low, high - side / 2, low + side / 2)
+            best = area, middle @ axes, float(yaw)
     return best[1], best[2]
