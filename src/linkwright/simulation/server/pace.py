@@ -48,7 +48,7 @@ def _create_finding(factor: float) -> Diagnostic:
         "the world runs at {factor} of real time: this computer cannot simulate it faster", factor=f"{factor:.1g}"
     )
     hint = phrase(
-        "nodes follow the simulated time, so everything works, only slower; switch off displays of images, give cameras "
-        "fewer pixels and lower rates, and close other programs"
+        "nodes follow the simulated time, so everything works, only slower; switch off displays of images, give "
+        "cameras fewer pixels and lower rates, and close other programs"
     )
     return Diagnostic("SIM146", message, severity=Severity.WARNING, hint=hint)
