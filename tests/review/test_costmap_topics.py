@@ -68,3 +68,11 @@ def test_a_renamed_source_with_the_same_topic_is_not_breaking(repository, compar
     found = subject(compare(repository), PATH)
     assert sentences(found)
     assert all(change.reason is None for change in found.changes)
+
+
+def test_a_dropped_source_whose_topic_another_one_reads_breaks_nobody(repository, compare):
+    source = "        clear:\n          topic: /scan\n          clearing: true\n"
+    text = NAV2.replace("scan depth", "scan clear depth").replace("        depth:", f"{source}        depth:")
+    repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), PATH: text})
+    repository.write({PATH: NAV2})
+    assert compare(repository).breaking_changes == []

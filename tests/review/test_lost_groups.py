@@ -9,6 +9,8 @@ from tests.review.conftest import breaking
 MANIFEST = "<package><name>lamp</name><version>1.0.0</version></package>\n"
 REST = "model: a\n"
 GROUP = "devices:\n  lamp:\n    id: 1\n    bus: main\n"
+FLAT = "devices:\n  id: 1\n  bus: main\n  rate: 2\n"
+KEYS = "id: 1\nbus: second\n"
 LAUNCH = '<launch><rosparam file="$(find lamp)/config/{name}" command="load"/></launch>\n'
 
 
@@ -19,6 +21,9 @@ LAUNCH = '<launch><rosparam file="$(find lamp)/config/{name}" command="load"/></
         ("devices:\n  lamp: 1\n", {}, False),
         (GROUP, {"lamp/config/more.yaml": GROUP}, True),
         (GROUP, {"lamp/config/more.yaml": GROUP, "lamp/launch/a.launch": LAUNCH.format(name="more.yaml")}, False),
+        (FLAT, {"lamp/config/more.yaml": KEYS, "lamp/launch/a.launch": LAUNCH.format(name="more.yaml")}, False),
+        (FLAT, {"lamp/config/more.yaml": "id: 2\n", "lamp/launch/a.launch": LAUNCH.format(name="more.yaml")}, True),
+        (FLAT, {"lamp/config/more.yaml": KEYS}, True),
     ],
 )
 def test_a_removed_group_of_parameters_is_breaking(repository, compare, group, files, is_breaking):

@@ -30,3 +30,13 @@ def test_initial_state_that_no_longer_exists_is_breaking(package, compare, new, 
     package.write({PATH: SRDF % new})
     text = "names the state 'arm/home', which does not exist"
     assert (text in breaking(compare(package))) is is_lost
+
+
+def test_initial_state_that_never_existed_is_not_reported_in_a_moved_package(package, compare):
+    settings = "arm_description/config/fake_controllers.yaml"
+    package.commit({PATH: SRDF % (STATE % ("rest", 1)), settings: CONTROLLERS})
+    files = [path for path in package.root.rglob("*") if path.is_file() and ".git" not in path.parts]
+    moved = {path.relative_to(package.root).as_posix(): path.read_text() for path in files}
+    package.write(dict.fromkeys(moved) | {f"arms/{path}": text for path, text in moved.items()})
+    package.commit({})
+    assert not any("names the state" in sentence for sentence in breaking(compare(package, "HEAD~..HEAD")))

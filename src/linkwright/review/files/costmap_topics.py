@@ -44,9 +44,26 @@ class CostmapTopics:
             return None
         return phrase("the costmap no longer gets the messages of {names}", names=quoted_names(lost))
 
+    def is_dropped_source(self, parameter: str) -> bool:
+        """Return whether a parameter belongs to a source that its layer no longer names."""
+        source = _get_parent(parameter)
+        layer, _, name = source.rpartition(".")
+        owner = _join(layer, _SOURCES)
+        return (
+            owner in self._old
+            and owner in self._new
+            and name in _split(self._old[owner].text)
+            and name not in _split(self._new[owner].text)
+        )
+
     @cached_property
     def _new_topics(self) -> set[tuple[str, str]]:
         return {(costmap, topic) for _, costmap, topic in _list_topics(self._new)}
+
+
+def _split(text: str) -> list[str]:
+    """Return the names in a list of sources."""
+    return re.split(r"[\s,]+", text.strip("[] "))
 
 
 def _get_list_name(owner: str) -> str:
@@ -67,7 +84,7 @@ def _list_topics(values: Mapping[str, YamlValue]) -> Iterator[tuple[str, str, st
     for name, value in values.items():
         if name.rpartition(".")[2] == _SOURCES:
             layer = _get_parent(name)
-            for source in re.split(r"[\s,]+", value.text.strip("[] ")):
+            for source in _split(value.text):
                 owner = _find_owner(values, layer, source)
                 if owner is not None and values[owner].text:
                     yield owner, _find_costmap(layer), values[owner].text.strip("/")

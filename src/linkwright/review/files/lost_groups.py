@@ -11,6 +11,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.parameter_names import is_parameter
 
 _MIN_GROUP_SIZE = 2
+_TOP_KEY = re.compile(r"^['\"]?([\w./~-]+)['\"]?\s*:", re.MULTILINE)
 _LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
 
 
@@ -26,7 +27,8 @@ def find_group_reason(pair: FilePair, name: str, values: Collection[str]) -> Phr
     """
     if len(values) < _MIN_GROUP_SIZE or "." in name or any("[" in value or is_parameter(value) for value in values):
         return None
-    if any(path != pair.new_path and _has_group(pair, path, name) for path in _list_changed_files(pair)):
+    keys = {value.removeprefix(f"{name}.").partition(".")[0] for value in values}
+    if any(path != pair.new_path and _has_group(pair, path, name, keys) for path in _list_changed_files(pair)):
         return None
     return phrase("programs that read '{name}' from the file do not find it", name=name)
 
@@ -36,10 +38,12 @@ def _list_changed_files(pair: FilePair) -> list[str]:
     return [path for path in paths if path and path.endswith((".yaml", ".yml"))]
 
 
-def _has_group(pair: FilePair, path: str, name: str) -> bool:
-    """Return whether a file that a launch file names contains a group."""
+def _has_group(pair: FilePair, path: str, name: str, keys: Collection[str]) -> bool:
+    """Return whether a file that a launch file names contains a group, or most of its keys for a single node."""
     version = pair.versions.new
-    if not re.search(rf"^['\"]?{re.escape(name)}['\"]?\s*:", version.text(path), re.MULTILINE):
+    found = set(_TOP_KEY.findall(version.text(path)))
+    has_keys = len(keys) >= _MIN_GROUP_SIZE and 2 * len(found & set(keys)) > len(keys)
+    if name not in found and not has_keys:
         return False
     file_name = PurePosixPath(path).name
     return any(file_name in version.text(launch) for launch in version.paths(_LAUNCH_SUFFIXES))

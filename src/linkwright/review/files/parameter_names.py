@@ -144,7 +144,7 @@ class NameRules:
         if lost:
             return _make_plugin_reason(lost)
         topic_reason = self._topics.find_reason(parameter)
-        if topic_reason is not None:
+        if topic_reason is not None or self._topics.is_dropped_source(parameter):
             return topic_reason
         if node is not None and controller is None and self._is_in_lost_group(parameter, node[0].rstrip(".")):
             return phrase("the node '{name}' starts without these parameters", name=node["node"])

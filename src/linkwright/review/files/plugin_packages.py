@@ -41,9 +41,12 @@ class PluginPackages:
     path: str
 
     def find_change_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
-        """Return the reason why another class of a plugin is breaking, or None if it is not."""
+        """Return the reason why another class of a plugin is breaking, or None if it is not.
+
+        A class with the same name may only have moved into a package that replaces the old one.
+        """
         package = _find_package(parameter, new)
-        if package is None or package in (_find_package(parameter, old), *_split(old.text)):
+        if package is None or package in _split(old.text) or _split(old.text)[-1] == _split(new.text)[-1]:
             return None
         return self._find_reason(package)
 

@@ -22,19 +22,21 @@ def find_lost_states(versions: Versions, changed_files: Sequence[ChangedFile]) -
 
     A state that the old version already lacked is left out.
     """
+    old_paths = {file.new_path: file.old_path for file in changed_files if file.old_path and file.new_path}
     folders = {
-        versions.new.package_of(file.new_path)
-        for file in changed_files
-        if file.old_path and file.new_path and file.new_path.endswith(_SRDF)
-    } - {None}
+        versions.new.package_of(new_path): versions.old.package_of(old_path)
+        for new_path, old_path in old_paths.items()
+        if new_path.endswith(_SRDF)
+    }
     for folder in sorted(folder for folder in folders if folder is not None):
-        if next(versions.new.paths((_SRDF_XACRO,), folder), None) is not None:
+        old_folder = folders[folder]
+        if old_folder is None or next(versions.new.paths((_SRDF_XACRO,), folder), None) is not None:
             continue
-        old_states, states = _read_states(versions.old, folder), _read_states(versions.new, folder)
+        old_states, states = _read_states(versions.old, old_folder), _read_states(versions.new, folder)
         if old_states is None or states is None:
             continue
         for path in versions.new.paths(_SETTINGS, folder):
-            old_names = {name for name, _ in _find_initial_states(versions.old, path)}
+            old_names = {name for name, _ in _find_initial_states(versions.old, old_paths.get(path, path))}
             for name, location in _find_initial_states(versions.new, path):
                 if name not in states and not (name in old_names and name not in old_states):
                     sentence = phrase("names the state '{name}', which does not exist", name=name)
