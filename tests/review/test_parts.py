@@ -263,7 +263,7 @@ def test_handed_on_parameter_is_reported_once(library, compare):
 
 
 def test_part_that_is_nested_too_deeply_is_a_problem(library, compare, monkeypatch):
-    def read_outline(_file):
+    def read_outline(_file, _overlay):
         raise RecursionError
 
     monkeypatch.setattr("linkwright.review.parts.comparing.read_outline", read_outline)

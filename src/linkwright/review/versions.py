@@ -21,6 +21,8 @@ from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST, SKIPPED_FOLDERS, SourceScan, package_name
 from linkwright.packages.share_layout import find_share_of_sources
 from linkwright.review.build_folders import find_build_files
+from linkwright.review.unprefixed_calls import DESCRIPTION_SUFFIXES, find_macros, find_prefixed_texts
+from linkwright.xmltree import Overlay
 
 TEST_FOLDERS = frozenset({"test", "tests"})
 """The names of test folders, whose files do not belong to a robot."""
@@ -132,7 +134,19 @@ class Version:
     def model(self, path: str, values: Mapping[str, str]) -> Model:
         """Return the model of a description in this version with values of its arguments."""
         file = self.file(path)
-        return Model(file, values, self.finder(file.parent), self.commit)
+        return Model(file, values, self.finder(file.parent), self.commit, self.overlay)
+
+    @cached_property
+    def overlay(self) -> Overlay | None:
+        """The descriptions of ROS 1 that call macros without the prefix, with the prefix; None if there are none."""
+        texts = {str(self.file(path)): self.text(path) for path in self.paths(DESCRIPTION_SUFFIXES)}
+        prefixed = find_prefixed_texts(texts, map(self.text, self.paths((MANIFEST,))))
+        return Overlay(prefixed) if prefixed else None
+
+    @cached_property
+    def macros(self) -> frozenset[str]:
+        """The names of the macros that the descriptions of the version define."""
+        return find_macros(map(self.text, self.paths(DESCRIPTION_SUFFIXES)))
 
     @cached_property
     def shares(self) -> Mapping[str, Path]:

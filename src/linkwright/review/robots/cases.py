@@ -14,8 +14,8 @@ from linkwright.lint.argument_sets import UNDECLARED_CODE, UNUSED_CODE
 from linkwright.review.changes import Change
 from linkwright.review.file_pair import Fault, FilePair
 from linkwright.review.folders import without_folder
-from linkwright.review.robots.unpaired_robots import format_robot
 from linkwright.review.robots.partial_robots import PartialPair, find_missing_names, read_partial_robot
+from linkwright.review.robots.unpaired_robots import format_robot
 from linkwright.review.versions import Version
 
 _MAX_CASES = 12
