@@ -135,3 +135,18 @@ def test_a_bug_that_no_single_file_causes_is_a_note(two_messages, compare, monke
     result = compare(two_messages)
     assert len(breaking(result)) == 2
     assert any("a part of the review is missing" in str(note) for note in result.notes)
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "reason"),
+    [
+        ("arm_description/urdf/broken.urdf", "<robot name='a'><link name='x'></robot>", "'</robot>' does not close"),
+        ("arm_description/worlds/broken.sdf", "<sdf version='1.9'><world name='w'></sdf>", "'</sdf>' does not close"),
+        ("arm_description/launch/broken.launch.py", "def generate_launch_description(:", "line 1 is not valid Python"),
+        ("arm_description/launch/broken.launch.xml", "<launch><node pkg='a'></launch>", "'</launch>' does not close"),
+    ],
+)
+def test_added_file_that_cannot_be_read_says_so(package, compare, path, text, reason):
+    package.commit({path: text})
+    (problem,) = subject(compare(package, "HEAD~1..HEAD"), path).problems
+    assert str(problem.text).startswith(f"the file cannot be read: {reason}")

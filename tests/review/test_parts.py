@@ -263,7 +263,7 @@ def test_handed_on_parameter_is_reported_once(library, compare):
 
 
 def test_part_that_is_nested_too_deeply_is_a_problem(library, compare, monkeypatch):
-    def read_outline(_file):
+    def read_outline(_file, _overlay):
         raise RecursionError
 
     monkeypatch.setattr("linkwright.review.parts.comparing.read_outline", read_outline)
@@ -309,3 +309,12 @@ def test_link_that_the_including_robot_defines_is_not_lost(package, compare):
     package.write({TOOL: GRIPPER.replace('"gripper"', '"segment"')})
     assert "link 'base_link' removed" not in breaking(compare(package))
     assert "link base_link removed" not in breaking(compare(package))
+
+
+def test_link_that_a_macro_makes_now_is_not_lost(library, compare):
+    text = GRIPPER.replace('    <link name="${name}_tip"/>\n', '    <xacro:frame name="${name}_tip"/>\n')
+    frame = '  <xacro:macro name="frame" params="name"><link name="${name}"/></xacro:macro>\n</robot>'
+    library.write({TOOL: text.replace("</robot>", frame)})
+    result = compare(library)
+    assert "macro 'gripper': link ${name}_tip removed" in sentences(subject(result, TOOL))
+    assert breaking(result) == []

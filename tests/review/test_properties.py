@@ -64,3 +64,10 @@ def test_value_that_moves_into_branches_of_a_macro_is_compared(change):
 def test_property_of_an_added_macro_has_no_old_value(change):
     added = '  <xacro:macro name="mast" params="name"><xacro:property name="height" value="9"/></xacro:macro>\n</robot>'
     assert not any("0.3" in sentence for sentence in sentences(subject(change("</robot>", added), COLORS)))
+
+
+def test_lost_property_of_a_file_with_elements_is_not_breaking(package, compare):
+    text = TEXT.replace("</robot>", '  <gazebo reference="base_link"><mu1>1</mu1></gazebo>\n</robot>')
+    package.commit({COLORS: text})
+    package.write({COLORS: text.replace('  <xacro:property name="signal" value="1 0 0 1"/>\n', "")})
+    assert breaking(compare(package)) == []

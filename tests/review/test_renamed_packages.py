@@ -170,3 +170,23 @@ def test_headers_that_are_renamed_with_their_package_are_no_new_ones(
     repository.commit({**dict.fromkeys(old), **new})
     lines = [line for subject in compare(repository, "HEAD~1..HEAD").subjects for line in sentences(subject)]
     assert [line for line in lines if "header" in line or "installed now" in line] == expected
+
+
+def test_package_with_a_short_manifest_is_paired_by_its_moved_files(repository, compare):
+    """Git does not pair two manifests of one line."""
+    manifest = "<package><name>{0}</name><version>1.0.0</version></package>"
+    config = "driver:\n  ros__parameters:\n    rate: 10\n    gain: 2\n"
+    repository.commit({"old/package.xml": manifest.format("old"), "old/config/a.yaml": config})
+    files = {"arm/package.xml": manifest.format("arm").replace("1.0.0", "2.1.0"), "arm/config/a.yaml": config}
+    repository.commit({**files, "old/package.xml": None, "old/config/a.yaml": None})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert "package 'old' renamed to 'arm'" in " ".join(sentences(subject(result, "arm/package.xml")))
+    assert not any("removed" in sentence for sentence in breaking(result))
+
+
+def test_packages_without_common_files_are_removed_and_added(repository, compare):
+    manifest = "<package><name>{0}</name><version>1.0.0</version></package>"
+    repository.commit({"old/package.xml": manifest.format("old"), "old/config/a.yaml": "a: {ros__parameters: {x: 1}}"})
+    files = {"arm/package.xml": manifest.format("arm"), "arm/config/b.yaml": "other:\n  ros__parameters:\n    y: [1]\n"}
+    repository.commit({**files, "old/package.xml": None, "old/config/a.yaml": None})
+    assert "package removed" in breaking(compare(repository, "HEAD~1..HEAD"))

@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.review import open_versions, review
-from tests.review.conftest import sentences, subject
+from tests.review.conftest import breaking, sentences, subject
 
 PATH = "w/models/cart/model.sdf"
 INERTIA = (
@@ -191,3 +191,40 @@ def test_changes_that_images_cannot_show_have_none(repository, monkeypatch, old,
     finally:
         versions.close()
     assert len(subject(result, PATH).images) == count
+
+
+SENSOR = """<sdf version="1.9"><model name="cart"><pose>0 0 1 0 0 0</pose><link name="base">
+<sensor name="eye" type="camera"><update_rate>30</update_rate>
+<plugin name="driver" filename="libgazebo_ros_camera.so"><camera_name>front</camera_name></plugin></sensor>
+<collision name="c"><surface><contact><ode><max_vel>0.1</max_vel></ode></contact></surface></collision>
+</link></model></sdf>"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("<pose>0 0 1 0 0 0", "<pose>0 0 3 0 0 1.5707963267948966",
+         "model cart pose: 0 0 1 0 0 0 -> 0 0 3 0 0 1.5707963267948966 (moved by 2 m, rotated by 90°)"),
+        ("<pose>0 0 1 0 0 0", "<pose>0 0 1 0 0 1.5707963267948966",
+         "model cart pose: 0 0 1 0 0 0 -> 0 0 1 0 0 1.5707963267948966 (rotated by 90°)"),
+        ("<update_rate>30</update_rate>", "", "model cart link base sensor eye update_rate: 30 -> 0 (default)"),
+        ("<max_vel>0.1</max_vel>", "",
+         "model cart link base collision c surface contact ode max_vel: 0.1 -> 0.01 (default)"),
+        ('<link name="base">', '<link name="base"><gravity>false</gravity>',
+         "model cart link base gravity: true (default) -> false"),
+        ('<link name="base">', '<link name="base"><gravity>1</gravity>', None),
+    ],
+)  # fmt: skip
+def test_poses_have_distances_and_left_out_elements_have_defaults(repository, compare, old, new, expected):
+    repository.commit({"cart/model.sdf": SENSOR})
+    repository.write({"cart/model.sdf": SENSOR.replace(old, new)})
+    found = [sentence for part in compare(repository).subjects for sentence in sentences(part)]
+    assert found == ([] if expected is None else [expected])
+
+
+def test_name_of_a_camera_of_gazebo_ros_is_the_namespace_of_its_topics(repository, compare):
+    repository.commit({"cart/model.sdf": SENSOR})
+    repository.write({"cart/model.sdf": SENSOR.replace(">front<", ">rear<")})
+    assert [sentence.rpartition(" plugin ")[2] for sentence in breaking(compare(repository))] == [
+        "driver camera_name: front -> rear"
+    ]

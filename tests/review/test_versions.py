@@ -330,3 +330,20 @@ def test_links_out_of_build_folders_are_still_noted(package, compare, tmp_path):
     package.commit({"log/a.yaml": "a: 1\n"})
     notes = [str(note) for note in compare(package, "HEAD~1..HEAD").notes]
     assert notes == ["symbolic link 'log/latest' points outside the repository and is ignored"]
+
+
+def test_folder_that_becomes_a_submodule_loses_nothing(package, compare, tmp_path):
+    """Its files are in the other repository now."""
+    part = MACRO.replace('"segment"', '"tool"')
+    robot = ARM.replace(
+        '<link name="base_link"/>', '<xacro:include filename="../tools/tool.xacro"/><link name="base_link"/>'
+    )
+    package.commit({"arm_description/tools/tool.xacro": part, "arm_description/urdf/arm.urdf.xacro": robot})
+    other = Repository(tmp_path / "other")
+    other.commit({"tool.xacro": part})
+    package.git("rm", "-r", "--quiet", "arm_description/tools")
+    package.git("submodule", "--quiet", "add", other.root.as_uri(), "arm_description/tools")
+    package.commit({})
+    result = compare(package, "HEAD~1..HEAD")
+    assert breaking(result) == []
+    assert "submodule 'arm_description/tools' added; its files are not compared" in list(map(str, result.notes))

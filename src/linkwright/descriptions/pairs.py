@@ -15,6 +15,7 @@ from linkwright.packages import PackageFinder
 if TYPE_CHECKING:
     from linkwright.descriptions.revisions import CommitFiles
     from linkwright.urdf import Robot
+    from linkwright.xmltree import Overlay
 
 
 @dataclass(frozen=True)
@@ -26,12 +27,14 @@ class Model:
         values: the values of the file's ``<xacro:arg>``.
         finder: the finder of the file's packages.
         commit: the files of the commit that contains the file, or None for a file of the working tree.
+        overlay: texts that replace the contents of files.
     """
 
     path: Path
     values: Mapping[str, str]
     finder: PackageFinder
     commit: CommitFiles | None = None
+    overlay: Overlay | None = None
 
     def label(self) -> str:
         """Return the name of the file for users; see `display_name`."""
@@ -57,7 +60,7 @@ class Model:
             LinkwrightError: if the description cannot be read or expanded, or if urdfdom would refuse it.
         """
         try:
-            description = examine(self.path, arguments=self.values, packages=self.finder)
+            description = examine(self.path, arguments=self.values, packages=self.finder, overlay=self.overlay)
         except LinkwrightError as error:
             raise LinkwrightError(*map(self._relabel, error.diagnostics)) from None
         if description.robot is None:

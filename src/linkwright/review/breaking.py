@@ -14,6 +14,8 @@ from linkwright.urdf import Robot
 MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
 """The types of joints with a position in ``/joint_states``."""
 _LINEAR = "prismatic"
+_CAMERA_NAME = re.compile(r"camera_?name", re.IGNORECASE)
+"""The parameter of a camera of gazebo_ros that is the first part of the names of its topics."""
 _INTERFACE = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+) (?P<kind>command|state)_interface (?P<name>\S+)")
 _PART = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+)(?P<name> @name)?")
 
@@ -129,6 +131,8 @@ def find_plugin_name_reason(difference: Difference) -> Phrase | None:
     )
     if NAMESPACE_TAG.search(tag) and (difference.old or difference.property.endswith("ros namespace")):
         return None if is_same_name else _namespace_reason(extract_used_name(difference.old or ""))
+    if difference.old and _CAMERA_NAME.fullmatch(tag) and not is_same_name:
+        return _namespace_reason(difference.old)
     if difference.old and NAME_TAGS.search(tag) and not is_same_name:
         return name_reason(extract_used_name(difference.old))
     return None

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import LinkwrightError, Phrase, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
+from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.changes import Change, Effect, PathChange, Problem, Subject, SubjectKind, ViewImages
 from linkwright.review.drawings.images import render_unpaired_robot
 from linkwright.review.drawings.scene_images import render_unpaired_world
 from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
+from linkwright.review.folders import without_folder
 from linkwright.review.installed_paths import keeps_installed_path, keeps_type
 from linkwright.review.kinds import KindRule, adapt_rule_to_contents
+from linkwright.review.launches.reading import read_outline
 from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot
 from linkwright.review.users.unused_test_files import is_test_file, is_unused_test_file
 from linkwright.review.versions import Version, Versions
+from linkwright.sdf.text import parse_as_gazebo
+from linkwright.xacro.cache import read_document
+from linkwright.xmltree.reader import read_bytes
 
 _TESTED_KINDS = (SubjectKind.PARAMETERS, SubjectKind.LAUNCH_FILE)
 """The kinds of files whose changes are not breaking if only tests use the files."""
@@ -83,12 +90,37 @@ def _describe_unpaired_file(
         if new_path is not None or rule.shows_removed:
             text = _add_contents(rule, text, version, path)
         changes, images = _describe_contents(version, kind, path, drawings)
+        problems += [] if new_path is None else _find_unreadable(version, kind, path, text, changes)
     except Exception as error:  # noqa: BLE001
         problems.append(make_problem(error))
     if rule.needs_contents and not problems and "items" not in text.arguments:
         return Subject(kind, path, old_path, new_path)
     change = Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason)
     return Subject(kind, path, old_path, new_path, [change, *changes], problems=problems, images=images)
+
+
+def _find_unreadable(
+    version: Version, kind: SubjectKind, path: str, text: Phrase, contents: Sequence[Change]
+) -> list[Problem]:
+    """Return the problem that an added description, world or launch file cannot be read; an empty list if it can.
+
+    A description may need values that only its callers know, so that only XML counts.
+    """
+    file = version.file(path)
+    try:
+        if kind is SubjectKind.WORLD:
+            parse_as_gazebo(read_bytes(str(file)), str(file))
+        elif kind in (SubjectKind.DESCRIPTION, SubjectKind.SEMANTICS) and not contents:
+            read_document(str(file))
+        elif kind is SubjectKind.LAUNCH_FILE and "items" not in text.arguments:
+            read_outline(file, version.root)
+    except LinkwrightError as error:
+        reason: Phrase = as_phrase(error.diagnostics[0].message)
+    except (UnreadableFileError, ValueError) as error:
+        reason = error.reason if isinstance(error, UnreadableFileError) else foreign(str(error))
+    else:
+        return []
+    return [Problem(phrase("the file cannot be read: {reason}", reason=without_folder(reason, version.root)))]
 
 
 def _make_renaming_change(versions: Versions, rule: KindRule, old_path: str, new_path: str) -> Change:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, counted, phrase
@@ -61,7 +63,8 @@ class RenamedPackage:
 def find_renamed_packages(versions: Versions) -> list[RenamedPackage]:
     """Return the packages with a new name or folder.
 
-    Git must recognize their manifests as renamed or changed, or the name of the package must be the same.
+    Git must recognize their manifests, or at least half of their other files, as renamed or changed, or the name of
+    the package must be the same.
     """
     packages = []
     for old_path, new_path in _pair_manifests(versions):
@@ -91,7 +94,37 @@ def _pair_manifests(versions: Versions) -> Iterator[tuple[str, str]]:
             added.setdefault(_read_name(versions.new, file.new_path), []).append(file.new_path)
     for name in removed.keys() & added.keys() - {None}:
         if len(removed[name]) == len(added[name]) == 1:
-            yield removed[name][0], added[name][0]
+            yield removed.pop(name)[0], added.pop(name)[0]
+    old_paths, new_paths = (list(chain.from_iterable(paths.values())) for paths in (removed, added))
+    yield from _pair_by_moved_files(versions.changed_files, old_paths, new_paths)
+
+
+def _pair_by_moved_files(
+    files: Sequence[ChangedFile], removed: Sequence[str], added: Sequence[str]
+) -> Iterator[tuple[str, str]]:
+    """Yield the removed and added manifests of packages whose other files mostly moved from one to the other.
+
+    Git does not pair short manifests.
+    """
+    remaining = list(added)
+    for old_path in removed:
+        old_folder = PurePosixPath(old_path).parent
+        moved_to: Counter[str] = Counter()
+        total = 0
+        for file in files:
+            if (
+                file.old_path is None
+                or file.old_path == old_path
+                or old_folder not in PurePosixPath(file.old_path).parents
+            ):
+                continue
+            total += 1
+            new_parents = () if file.new_path is None else PurePosixPath(file.new_path).parents
+            moved_to.update(path for path in remaining if PurePosixPath(path).parent in new_parents)
+        new_path, count = max(moved_to.items(), key=lambda item: item[1], default=("", 0))
+        if count and 2 * count >= total:
+            remaining.remove(new_path)
+            yield old_path, new_path
 
 
 def _read_name(version: Version, path: str) -> str | None:

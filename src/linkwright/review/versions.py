@@ -21,6 +21,8 @@ from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST, SKIPPED_FOLDERS, SourceScan, package_name
 from linkwright.packages.share_layout import find_share_of_sources
 from linkwright.review.build_folders import find_build_files
+from linkwright.review.unprefixed_calls import DESCRIPTION_SUFFIXES, find_macros, find_prefixed_texts
+from linkwright.xmltree import Overlay
 
 TEST_FOLDERS = frozenset({"test", "tests"})
 """The names of test folders, whose files do not belong to a robot."""
@@ -132,7 +134,19 @@ class Version:
     def model(self, path: str, values: Mapping[str, str]) -> Model:
         """Return the model of a description in this version with values of its arguments."""
         file = self.file(path)
-        return Model(file, values, self.finder(file.parent), self.commit)
+        return Model(file, values, self.finder(file.parent), self.commit, self.overlay)
+
+    @cached_property
+    def overlay(self) -> Overlay | None:
+        """The descriptions of ROS 1 that call macros without the prefix, with the prefix; None if there are none."""
+        texts = {str(self.file(path)): self.text(path) for path in self.paths(DESCRIPTION_SUFFIXES)}
+        prefixed = find_prefixed_texts(texts, map(self.text, self.paths((MANIFEST,))))
+        return Overlay(prefixed) if prefixed else None
+
+    @cached_property
+    def macros(self) -> frozenset[str]:
+        """The names of the macros that the descriptions of the version define."""
+        return find_macros(map(self.text, self.paths(DESCRIPTION_SUFFIXES)))
 
     @cached_property
     def shares(self) -> Mapping[str, Path]:
@@ -206,6 +220,11 @@ class Versions:
     new: Version
     changed_files: list[ChangedFile]
 
+    @property
+    def has_added_submodule(self) -> bool:
+        """Whether the new version has a submodule, with files that are not compared, that the old one lacks."""
+        return any(file.is_submodule and file.old_path is None for file in self.changed_files)
+
     def translate_paths(self, value: str, version: Version) -> str:
         """Return a value of one version, with its paths translated to those of the other version."""
         other = self.new if version.is_old else self.old
@@ -264,7 +283,7 @@ def open_versions(folder: Path, range_text: str) -> Versions:
             stack.callback(new_files.close)
             new = Version(new_name, new_files.root, new_files, repository, is_old=False)
         stack.pop_all()
-        return Versions(old, new, changed_files)
+        return Versions(old, new, _drop_files_of_submodules(changed_files))
 
 
 def _open_repository(folder: Path) -> GitRepository:
@@ -321,3 +340,14 @@ def _is_checked_out(repository: GitRepository, commit: str) -> bool:
         return False
     root = repository.root
     return not any(leads_outside(root / link, root) for link in repository.list_symbolic_links(commit))
+
+
+def _drop_files_of_submodules(files: list[ChangedFile]) -> list[ChangedFile]:
+    """Return the changed files without those of a folder that becomes a submodule, where they still are."""
+    submodules = {file.new_path for file in files if file.is_submodule and file.old_path is None}
+
+    def is_inside(file: ChangedFile) -> bool:
+        parents = PurePosixPath(file.old_path or "").parents
+        return file.new_path is None and any(parent.as_posix() in submodules for parent in parents)
+
+    return [file for file in files if not is_inside(file)] if submodules else files

@@ -10,6 +10,8 @@ from itertools import groupby
 
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.review.files.sdf_defaults import find_default
+from linkwright.review.plugins import is_added, is_removed
 
 _INERTIAL = re.compile(r"(?P<inertial>(?:.* )?inertial) (?P<value>mass|pose|inertia i[xyz]{2})")
 """The path of a value of an inertial."""
@@ -62,13 +64,34 @@ def drop_rounding(differences: Iterable[Difference]) -> Iterator[Difference]:
     return (difference for difference in differences if not _is_rounding(difference))
 
 
+def is_default(difference: Difference) -> bool:
+    """Return whether an added or removed element has the value that SDF gives to an element that is left out."""
+    value = _get_lone_value(difference)
+    default = None if value is None else find_default(f"{difference.name} {difference.property}".strip())
+    if default is None or value is None:
+        return False
+    return (
+        value == default or {value, default} in _EQUAL_BOOLEANS or parse_numbers(value) == parse_numbers(default) != []
+    )
+
+
+def _get_lone_value(difference: Difference) -> str | None:
+    """Return the text of an added or removed element without children, or None for other differences."""
+    element = difference.element
+    if element is None or (is_added(difference) == is_removed(difference)) or any(element.elements()):
+        return None
+    return element.text().strip()
+
+
 def drop_equal_values(differences: Iterable[Difference]) -> Iterator[Difference]:
     """Yield the differences between values with different meanings.
 
-    ``1`` and ``true`` are equal, and so are an empty and a missing frame.
+    ``1`` and ``true`` are equal, and so are an empty and a missing frame, and a default and a missing element.
     """
     return (
-        difference for difference in differences if not (_is_equal_boolean(difference) or _is_empty_frame(difference))
+        difference
+        for difference in differences
+        if not (_is_equal_boolean(difference) or _is_empty_frame(difference) or is_default(difference))
     )
 
 
@@ -95,8 +118,8 @@ def join_inertials(differences: Iterable[Difference]) -> Iterator[Difference]:
 def _find_inertial(difference: Difference) -> str:
     """Return the path of the inertial of a changed value; empty for other differences."""
     match = _INERTIAL.fullmatch(f"{difference.name} {difference.property}".strip())
-    count = len(_parse_numbers(difference.old))
-    is_readable = count in (1, _POSE_LENGTH) and count == len(_parse_numbers(difference.new))
+    count = len(parse_numbers(difference.old))
+    is_readable = count in (1, _POSE_LENGTH) and count == len(parse_numbers(difference.new))
     return match["inertial"] if match is not None and is_readable and difference.kind == "changed" else ""
 
 
@@ -104,7 +127,7 @@ def _get_value_name(difference: Difference) -> str:
     return difference.property.rpartition(" ")[2]
 
 
-def _parse_numbers(text: str | None) -> list[float]:
+def parse_numbers(text: str | None) -> list[float]:
     """Return the numbers in a text; an empty list if it contains other words."""
     try:
         numbers = [float(word) for word in (text or "").split()]
@@ -115,7 +138,7 @@ def _parse_numbers(text: str | None) -> list[float]:
 
 def _is_rounding(difference: Difference) -> bool:
     """Return whether the numbers of a difference are equal except for rounding."""
-    old, new = _parse_numbers(difference.old), _parse_numbers(difference.new)
+    old, new = parse_numbers(difference.old), parse_numbers(difference.new)
     if difference.kind != "changed" or not old or len(old) != len(new):
         return False
     if not {".", "e", "E"} & set(f"{difference.old}{difference.new}"):
@@ -144,7 +167,7 @@ def _drop_tiny_products(values: dict[str, Difference]) -> dict[str, Difference]:
 
     Changes are compared with the moments of inertia.
     """
-    moments = [abs(number) for name in _MOMENTS & values.keys() for number in _parse_numbers(values[name].old)]
+    moments = [abs(number) for name in _MOMENTS & values.keys() for number in parse_numbers(values[name].old)]
     limit = _MAX_RELATIVE_DIFFERENCE * max(moments, default=0.0)
     return {
         name: value
@@ -154,7 +177,7 @@ def _drop_tiny_products(values: dict[str, Difference]) -> dict[str, Difference]:
 
 
 def _compute_change_size(difference: Difference) -> float:
-    (old,), (new,) = _parse_numbers(difference.old), _parse_numbers(difference.new)
+    (old,), (new,) = parse_numbers(difference.old), parse_numbers(difference.new)
     return abs(new - old)
 
 
@@ -172,7 +195,7 @@ def _shorten_numbers(old: str, new: str) -> tuple[str, str]:
 
 def _format_pose(old: str, new: str) -> Iterator[Phrase | str]:
     first, second = old.split(), new.split()
-    centers, rotations = ([_parse_numbers(" ".join(words[part])) for words in (first, second)] for part in _POSE_PARTS)
+    centers, rotations = ([parse_numbers(" ".join(words[part])) for words in (first, second)] for part in _POSE_PARTS)
     if centers[0] != centers[1]:
         text = "center {} -> {} m".format(*(" ".join(f"{number:.6g}" for number in numbers) for numbers in centers))
         yield phrase("{change} (moved by {distance:.4g} m)", change=text, distance=math.dist(*centers))

@@ -22,17 +22,20 @@ from linkwright.review.files.sdf_contents import (
     summarize_element,
     summarize_shapes_and_mass,
 )
+from linkwright.review.files.sdf_defaults import find_default
 from linkwright.review.files.sdf_figures import compare_model_figures
 from linkwright.review.files.sdf_numbers import (
     InertialDifference,
     drop_equal_values,
     drop_rounding,
     join_inertials,
+    parse_numbers,
 )
 from linkwright.review.files.template_macros import PARAMETERS, find_parameters_reason
 from linkwright.review.files.templates import is_template, may_be_equal, read_template
 from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.left_names import find_left_names
+from linkwright.review.motions import add_pose_motion
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.plugins import (
     find_added_topics,
@@ -51,6 +54,7 @@ from linkwright.xmltree.reader import read_bytes
 _NAMED_TAGS = ("world", "model", "include", "link", "joint", "sensor", "frame")
 _NAMED_ELEMENT = re.compile(rf"(?:^|.* )(?P<tag>{'|'.join(_NAMED_TAGS)}) (?P<name>\S+)")
 """The path of an element whose name programs and other models use."""
+_POSE, _POSE_LENGTH = " pose", 6
 _INCLUDED_NAME = re.compile(r"(?:^|.* )include \S+ name")
 """The path of the name of an included model."""
 _JOINT_LIMIT = re.compile(r"\bjoint (?P<name>\S+) axis2? limit (?P<side>lower|upper)$")
@@ -233,6 +237,12 @@ def _describe_difference(difference: Difference, name: str) -> Phrase:
         return phrase("{entry}: {change}", entry=name, change=difference.text)
     if isinstance(difference, InertialDifference):
         return phrase("{element}: {values}", element=name, values=difference.format_values())
+    default = find_default(f"{difference.name} {difference.property}".strip())
+    if default is not None and difference.element is not None and is_added(difference) != is_removed(difference):
+        value = difference.element.text().strip()
+        if is_added(difference):
+            return phrase("{element}: {default} (default) -> {new}", element=name, default=default, new=value)
+        return phrase("{element}: {old} -> {default} (default)", element=name, old=value, default=default)
     if is_added(difference):
         if difference.element is not None:
             return format_added_element(name, difference.element)
@@ -240,7 +250,10 @@ def _describe_difference(difference: Difference, name: str) -> Phrase:
     if not is_removed(difference):
         empty = phrase("(empty)")
         old, new = differing_excerpts(difference.old or "", difference.new or "")
-        return phrase("{element}: {old} -> {new}", element=name, old=old or empty, new=new or empty)
+        text = phrase("{element}: {old} -> {new}", element=name, old=old or empty, new=new or empty)
+        poses = parse_numbers(difference.old), parse_numbers(difference.new)
+        is_pose = name.endswith(_POSE) and list(map(len, poses)) == [_POSE_LENGTH, _POSE_LENGTH]
+        return add_pose_motion(text, *poses) if is_pose else text
     content = difference.old if difference.element is None else format_own_content(difference.element)
     text = phrase("{element} removed", element=f"{name} {content or ''}".strip())
     contents = None if difference.element is None else format_contents(difference.element)

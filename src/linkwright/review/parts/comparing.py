@@ -24,6 +24,7 @@ from linkwright.review.parts.left_uses import find_left_uses
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.properties import compare_properties
+from linkwright.review.unprefixed_calls import compare_prefixes
 from linkwright.review.versions import Version, Versions
 
 _SUFFIXES = (".xacro", ".urdf", ".macro", ".gazebo", ".trans", ".inc")
@@ -133,6 +134,9 @@ class _Comparer:
             pair.robots = self._graphs.new.find_outlines_of_robots(file.new_path) or ()
             self._compare(pair)
             changes += pair.changes
+            versions = self._versions
+            texts = versions.old.text(file.old_path), versions.new.text(file.new_path)
+            changes += compare_prefixes(*texts, versions.old.macros, versions.new.macros)
         return Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, changes)
 
     def find_left_uses(self, files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
@@ -153,7 +157,7 @@ class _Comparer:
         if path is None or not version.file(path).is_file():
             return None
         try:
-            outline = read_outline(version.file(path))
+            outline = read_outline(version.file(path), version.overlay)
         except LinkwrightError as error:
             return error.diagnostics[0].message
         return outline if path.endswith(_XACRO) or outline.is_description else None

@@ -289,7 +289,7 @@ class _ReportedDifference:
             name = old.attributes.get("name", "")
             if not is_removed:
                 return self._find_joint_reason(old)
-            if self.pair.has_robot_with(old.tag, name):
+            if self.pair.has_robot_with(old.tag, name) or self._is_passed_to_macro(name):
                 return None
             if old.tag == "link":
                 return frame_reason(name)
@@ -314,6 +314,18 @@ class _ReportedDifference:
             return find_extension_reason(Difference("extension", root, "removed"))
         changed = Difference("extension", root, "changed", name, difference.old or "-", difference.new)
         return find_extension_reason(changed) or find_controller_file_reason(changed, self.pair.versions)
+
+    def _is_passed_to_macro(self, name: str) -> bool:
+        """Return whether a call of a macro newly has a name, so that the macro may make the link or joint."""
+        calls = [
+            [element for element in outline.root.walk() if element.tag.startswith(_XACRO)]
+            for outline in (self.pair.old, self.pair.new)
+        ]
+        old, new = (
+            sum(element.tag not in STATEMENTS and name in element.attributes.values() for element in elements)
+            for elements in calls
+        )
+        return new > old
 
     def _find_joint_reason(self, old: Element) -> Phrase | None:
         """Return the reason why a changed type or limit of a joint is breaking; None if it is not."""

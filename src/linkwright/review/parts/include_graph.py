@@ -85,7 +85,7 @@ class IncludeGraph:
         """The outlines of the descriptions that can be read, by path."""
         outlines: dict[str, Outline] = {}
         for file in self._description_files[0]:
-            outline, path = try_read_outline(file), self._version.relative(file)
+            outline, path = try_read_outline(file, self._version.overlay), self._version.relative(file)
             if outline is not None and path is not None:
                 outlines[path] = outline
         return outlines

@@ -14,7 +14,7 @@ from linkwright.lint.inclusions import Inclusion, inclusions_in
 from linkwright.xacro.cache import read_document
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
-from linkwright.xmltree import Document, Element
+from linkwright.xmltree import Document, Element, Overlay
 
 ARG, INCLUDE, MACRO, PROPERTY = "xacro:arg", "xacro:include", "xacro:macro", "xacro:property"
 _CONDITIONS = {"xacro:if": "if", "xacro:unless": "unless"}
@@ -85,13 +85,17 @@ class Outline:
         return self.root.tag == "robot" or bool(self.macros) or bool(self.arguments)
 
 
-def read_outline(file: Path) -> Outline:
+def read_outline(file: Path, overlay: Overlay | None = None) -> Outline:
     """Return the outline of a file.
+
+    Args:
+        file: the file.
+        overlay: texts that replace the contents of files.
 
     Raises:
         LinkwrightError: the file cannot be read.
     """
-    document: Document = read_document(str(file))
+    document: Document = read_document(str(file), overlay)
     macros: dict[str, MacroOutline] = {}
     arguments: dict[str, Element] = {}
     for element in document.root.walk():
@@ -104,10 +108,10 @@ def read_outline(file: Path) -> Outline:
     return Outline(document.root, macros, arguments, tuple(inclusions_in(text)))
 
 
-def try_read_outline(file: Path) -> Outline | None:
+def try_read_outline(file: Path, overlay: Overlay | None = None) -> Outline | None:
     """Return the outline of a file, or None if it cannot be read."""
     try:
-        return read_outline(file) if file.is_file() else None
+        return read_outline(file, overlay) if file.is_file() else None
     except LinkwrightError:
         return None
 

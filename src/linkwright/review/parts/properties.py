@@ -11,10 +11,12 @@ from linkwright.review.changes import MAX_NAMES
 from linkwright.review.merging import name_edit
 from linkwright.review.parts.include_graph import IncludeGraph
 from linkwright.review.parts.name_substitution import iterate_properties
-from linkwright.review.parts.outline import PROPERTY, MacroOutline, Outline, iterate_items, uses_name
+from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, uses_name
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.xmltree import Element
 
+_DEFINITIONS = (PROPERTY, INCLUDE, "material")
+"""The tags of elements that only define something for other elements."""
 _MIN_ALIKE = 2
 """The minimum number of names that are edited alike, so that they count as renamed."""
 
@@ -99,7 +101,8 @@ def _report_lost_properties(
 ) -> None:
     """Report the properties outside of macros that no file defines any more.
 
-    They are breaking if the old file does not use them itself, so that they are there for other files.
+    They are breaking in a file without elements of its own, if the file does not use them itself: such a file defines
+    colors or dimensions for others.
     """
     defined = {name for _, outline in graph.iterate_outlines() for name, _ in iterate_properties(outline.root)}
     lost = {
@@ -110,7 +113,8 @@ def _report_lost_properties(
     if not lost:
         return
     reason = None
-    if any(not _is_used(pair.old.root, name) for name in lost):
+    has_elements = any(item.element.tag not in _DEFINITIONS for item in iterate_items(pair.old.root))
+    if not has_elements and any(not _is_used(pair.old.root, name) for name in lost):
         reason = phrase("descriptions that include the file and use them cannot be expanded")
     added = {name: definitions[0] for name, definitions in new.items() if name not in old}
     renamed = dict(_find_renamed(lost, added))

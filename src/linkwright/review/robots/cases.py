@@ -14,8 +14,8 @@ from linkwright.lint.argument_sets import UNDECLARED_CODE, UNUSED_CODE
 from linkwright.review.changes import Change
 from linkwright.review.file_pair import Fault, FilePair
 from linkwright.review.folders import without_folder
-from linkwright.review.robots.unpaired_robots import format_robot
 from linkwright.review.robots.partial_robots import PartialPair, find_missing_names, read_partial_robot
+from linkwright.review.robots.unpaired_robots import format_robot
 from linkwright.review.versions import Version
 
 _MAX_CASES = 12
@@ -24,6 +24,8 @@ _MAX_CASES = 12
 
 _MAX_SWITCHES = 8
 """The maximum number of boolean arguments whose opposite value is tried."""
+_MISSING_CODES = ("PKG101", "XML101")
+"""The codes of packages and files that are not found."""
 _OPPOSITES = {"true": "false", "false": "true", "True": "False", "False": "True"}
 
 
@@ -271,6 +273,8 @@ def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
     for failure in failures:
         old = find_fault(failure.old, pair.versions.old)
         new = find_fault(failure.new, pair.versions.new)
+        if new is not None and pair.versions.has_added_submodule and _needs_other_files(failure.new):
+            new = new._replace(is_certain=False)  # the submodule may have them
         if old is not None and failure.values.doubt and (pair.cases or failure is not failures[0]):
             continue
         if old is not None and new is not None and pair.cases and not failure.values.new:
@@ -287,6 +291,10 @@ def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
         if new is None:
             _report_contents(pair, next(failure.new for failure in failures if failure.name == cases_of_fault[0]))
     pair.cases += (name for cases_of_fault in names.values() for name in cases_of_fault)
+
+
+def _needs_other_files(result: Description | LinkwrightError) -> bool:
+    return isinstance(result, LinkwrightError) and result.diagnostics[0].code in _MISSING_CODES
 
 
 def _find_callers(version: Version, path: str, cases: Sequence[str]) -> list[str]:

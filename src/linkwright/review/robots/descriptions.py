@@ -10,7 +10,6 @@ from pathlib import Path
 from linkwright.descriptions.comparison import Comparison, Difference, DifferenceLocation, sentence
 from linkwright.diagnostics import Phrase, joined, phrase, term
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.geometry.single import Pose, pose_quaternion
 from linkwright.review.breaking import find_breaking_reason, frame_reason
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.controller_files import find_controller_file_reason
@@ -23,6 +22,7 @@ from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.joint_limits import find_limits_reason
 from linkwright.review.left_names import find_left_names
 from linkwright.review.merging import merge_changes, merge_reasons
+from linkwright.review.motions import compute_angle
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.parts.expanded import find_expanded_elements
 from linkwright.review.plugins import (
@@ -268,7 +268,7 @@ def format_difference(difference: Difference) -> Phrase:
     if difference.property.endswith("origin xyz"):
         return phrase("{change} (moved by {distance:.4g} m)", change=text, distance=math.dist(old, new))
     if difference.property.endswith("origin rpy"):
-        return phrase("{change} (rotated by {angle:.3g}°)", change=text, angle=_compute_angle(old, new))
+        return phrase("{change} (rotated by {angle:.3g}°)", change=text, angle=compute_angle(old, new))
     return text
 
 
@@ -309,10 +309,3 @@ def _drop_details(difference: Difference) -> str:
     if difference.property == "inertial":
         parts = [part for part in parts if not part.startswith(_DETAILS_OF_INERTIAL)]
     return ", ".join(parts)
-
-
-def _compute_angle(old: Sequence[float], new: Sequence[float]) -> float:
-    """Return the angle in degrees between two rotations, each in roll, pitch and yaw in rad."""
-    first, second = (pose_quaternion(Pose((0.0, 0.0, 0.0), (rpy[0], rpy[1], rpy[2]))) for rpy in (old, new))
-    cosine = abs(sum(a * b for a, b in zip(first, second, strict=True)))
-    return math.degrees(2.0 * math.acos(min(1.0, cosine)))

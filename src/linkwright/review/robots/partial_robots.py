@@ -92,7 +92,9 @@ def read_partial_robot(model: Model) -> PartialRobot | None:
     The result is None if the robot cannot be expanded without them.
     """
     try:
-        expansion, omissions = expand_with_omissions(Inputs(str(model.path), model.values), model.finder)
+        expansion, omissions = expand_with_omissions(
+            Inputs(str(model.path), model.values, overlay=model.overlay), model.finder
+        )
     except LinkwrightError:
         return None
     root = expansion.document.root
