@@ -127,7 +127,10 @@ class _SourcePair(WholeSourcePair):
         lacks = self.old.lacks
         if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
             lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it
-        is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
+        is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1
+        if is_sole_node and only_new and self.old.lacks(next(iter(only_new.values())), old_path):
+            removed = list(only_old.values())  # even if another node of the package has the old name
+        is_sole_node = is_sole_node and bool(removed)
         added = [
             item
             for item in only_new.values()

@@ -33,7 +33,7 @@ from linkwright.review.sources.cpp_helpers import Helper, find_helper_uses, find
 from linkwright.review.sources.cpp_lifecycle import LifecycleCallbacks
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.cpp_options import find_options
-from linkwright.review.sources.cpp_parameter_calls import find_table_names, is_required_parameter
+from linkwright.review.sources.cpp_parameter_calls import find_fallback, find_table_names, is_required_parameter
 from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
 from linkwright.review.sources.cpp_text_functions import TextFunctions
@@ -319,7 +319,7 @@ class _Reader:
             if is_required_parameter(self._text, call):
                 details.append((Detail.REQUIRED, YES))
             is_output = call.function in _OUTPUT_CALLS or is_known_to_be_set(self._text, name, call.start)
-            type_name = "" if is_output else self._find_literal_default(call, texts)
+            type_name = find_fallback(self._text, call) if is_output else self._find_literal_default(call, texts)
         else:
             details += self._find_qos(call, texts)
         callback = self._lifecycle.find(offsets[0])
