@@ -66,3 +66,11 @@ def test_the_value_that_a_variable_gets_without_its_parameter_is_the_default(rep
     repository.write({"arm/src/arm.cpp": SOURCE.format(code.replace("1.5", "2.5"))})
     (found,) = compare(repository).subjects
     assert sentences(found)[0] == "parameter 'mass': default 1.5 -> 2.5"
+
+
+def test_a_variable_that_a_call_does_not_set_keeps_its_value(repository, compare):
+    code = '  bool is_heavy = false;\n  nh.getParam("is_heavy", is_heavy);\n'
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": SOURCE.format("")})
+    repository.write({"arm/src/arm.cpp": SOURCE.format(code)})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == "parameters added: 'is_heavy' (false)"

@@ -319,7 +319,7 @@ class _Reader:
             if is_required_parameter(self._text, call):
                 details.append((Detail.REQUIRED, YES))
             is_output = call.function in _OUTPUT_CALLS or is_known_to_be_set(self._text, name, call.start)
-            type_name = find_fallback(self._text, call) if is_output else self._find_literal_default(call, texts)
+            type_name = self._find_kept_value(call, texts) if is_output else self._find_literal_default(call, texts)
         else:
             details += self._find_qos(call, texts)
         callback = self._lifecycle.find(offsets[0])
@@ -442,6 +442,12 @@ class _Reader:
         if constant is not None:
             return f'"{constant}"'
         return self._initial_values.find_default(texts[index], call.start) or ""
+
+    def _find_kept_value(self, call: Call, texts: Sequence[str]) -> str:
+        """Return the literal that a variable has if a call does not find its parameter; empty if it is unknown."""
+        if call.function != "getParam" or len(texts) != 1 or is_required_parameter(self._text, call):
+            return ""
+        return find_fallback(self._text, call) or self._initial_values.find_default(texts[0], call.start) or ""
 
     def _read_members(self) -> None:
         """Add the topics and actions with which members and variables are constructed."""
