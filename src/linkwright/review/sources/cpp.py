@@ -93,6 +93,7 @@ _CLASS = re.compile(
     r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)(?P<bases>[^;{]*))?\{",
     re.MULTILINE,
 )
+_FORWARD_CLASS = re.compile(r"^[ \t]*(?:class|struct)\s+(\w+)\s*;", re.MULTILINE)
 _QOS = re.compile(r"\d+|[\w:]*QoS\w*\s*[({].*|rmw_qos_profile_\w+|(?:rclcpp::)?(?:\w+::)?\w*QoS\w*", re.DOTALL)
 
 
@@ -190,6 +191,9 @@ class _Reader:
         for match in _ALIAS.finditer(self._text):
             type_name = re.sub(r"\s*([*&<>,:()])\s*", r"\1", " ".join((match["type"] or match["used"]).split()))
             self._names.aliases[match["name"] or match["using"]] = type_name
+        for match in _FORWARD_CLASS.finditer(self._text):
+            if self._text.count("{", 0, match.start()) == self._text.count("}", 0, match.start()):
+                self._names.forward_classes.add(match[1])
         for match in _NAMESPACE.finditer(self._text):
             self._names.namespaces.setdefault(match["name"], self._make_span(match.start("name"), match.end("name")))
         for enumeration, enumerators in read_enumerations(self._text).items():
