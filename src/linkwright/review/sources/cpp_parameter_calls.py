@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from linkwright.review.sources.cpp_calls import Call
 from linkwright.review.sources.cpp_text import find_closing_bracket
+from linkwright.review.sources.cpp_values import VARIABLE, InitialValues, parse_literal
 
 _IF = re.compile(r"\bif\s*(?=\()")
 _NEGATED = re.compile(r"!\s*(?:\w+\s*(?:\(\s*\))?\s*(?:\.|->|::)\s*)*\Z")
@@ -21,6 +22,7 @@ _READ_ARGUMENTS = 2
 _LITERAL = r"-?[\d.]+(?:e-?\d+)?f?|true|false|\"[^\"\\]*\""
 _BRACE = re.compile(r"[{}]")
 _CONDITIONAL_HEAD = re.compile(r"\b(?:if|else|case|switch|catch)\b")
+_DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2}
 _TYPED_CALLS = frozenset({"declare_parameter"})
 _LOOP = r"\bfor\s*\(\s*(?:const\s+)?[\w:<>,\s*]*?[&*\s]+(?:{name}|\[\s*{name}\b[^\]]*\])\s*:\s*(?P<table>\w+)\s*\)"
 _TABLE = r"\b{table}\s*(?:\[\w*\]\s*)?(?:=\s*)?(?=\{{)"
@@ -40,6 +42,49 @@ class TableName(NamedTuple):
     name: str
     start: int
     end: int
+
+
+class ParameterDefaults:
+    """The defaults of parameters in the calls of a C++ source.
+
+    Args:
+        text: the source without comments.
+        constants: the texts of its constants, by name.
+        initial_values: the initial values of members and variables.
+    """
+
+    def __init__(self, text: str, constants: Mapping[str, str], initial_values: InitialValues) -> None:
+        self._text = text
+        self._constants = constants
+        self._initial_values = initial_values
+
+    def find(self, call: Call, texts: Sequence[str]) -> str:
+        """Return the literal default of a parameter, or the initial value of a member; empty if there is none.
+
+        Functions that return the value have the default as their second argument.
+
+        Args:
+            call: the call that reads or declares the parameter.
+            texts: the arguments behind the name.
+        """
+        index = _DEFAULT_INDEX.get(call.function, 1) - 1
+        index = index if index < len(texts) else 0
+        if index >= len(texts):
+            return ""
+        value = parse_literal(texts[index])
+        if value is not None:
+            return value
+        variable = VARIABLE.fullmatch(texts[index])
+        constant = self._constants.get(variable["name"]) if variable else None
+        if constant is not None:
+            return f'"{constant}"'
+        return self._initial_values.find_default(texts[index], call.start) or ""
+
+    def find_kept(self, call: Call, texts: Sequence[str]) -> str:
+        """Return the literal that a variable has if a call does not find its parameter; empty if it is unknown."""
+        if call.function != "getParam" or len(texts) != 1 or is_required_parameter(self._text, call):
+            return ""
+        return find_fallback(self._text, call) or self._initial_values.find_default(texts[0], call.start) or ""
 
 
 def is_required_parameter(text: str, call: Call) -> bool:
