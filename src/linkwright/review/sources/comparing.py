@@ -58,6 +58,8 @@ from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.whole_sources import WholeSourcePair
 from linkwright.review.versions import Versions
 
+_MAIN = "main"
+"""The function of a program that its build file or its last statement names."""
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -294,7 +296,10 @@ class _SourcePair(WholeSourcePair):
     ) -> Iterator[Change]:
         if not is_used_by_others(kind, self.file.path, old_names):
             return
-        if added and (kind not in (NameKind.FUNCTION, NameKind.MEMBER) or self.file.old_path is not None):
+        if kind in (NameKind.FUNCTION, NameKind.MEMBER) and self.file.old_path is None:
+            is_module = self.file.path.endswith(PYTHON_SUFFIX)
+            added = [item for item in added if is_module and "." not in item.name and item.name != _MAIN]
+        if added:
             text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
             reason = find_required_reason(added) if self.file.old_path is not None else None
             yield self.make_change(text, added[0].span, self.new, reason)

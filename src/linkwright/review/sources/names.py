@@ -74,6 +74,7 @@ class Detail(Enum):
     MINIMUM = phrase("minimum")
     MAXIMUM = phrase("maximum")
     CHOICES = phrase("choices")
+    SHORT_FORM = phrase("short form")
     LEVEL = phrase("level")
     REQUIRED = phrase("required")
     ARGUMENTS = phrase("arguments")
