@@ -22,7 +22,7 @@ _RUN = re.compile(r"\b(?:ros2\s+run|rosrun)\s+(?P<package>[\w-]+)\s+(?P<program>
 _LIST_ITEM = re.compile(r"\s*-\s*[\"']?[\w./*-]+[\"']?\s*")
 """A line of YAML that lists a path, such as one whose changes start a job."""
 _NO_USE = re.compile(r"\s*@?(?:#|echo\b|printf\b)|.*(?:\brm\b|\s-[efrsx]\s|\|\|)")
-"""A line that is a comment or a message, removes or tests a file, or goes on without it."""
+"""A line that is a comment or a message, removes or tests a file, or continues without it."""
 _YAML_SUFFIXES = (".yml", ".yaml")
 
 
