@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from tests.review.conftest import breaking
+
 LONG_OPTIONS = " ".join(f"_option_{number}:=value" for number in range(15))
 
 
@@ -16,7 +18,8 @@ LONG_OPTIONS = " ".join(f"_option_{number}:=value" for number in range(15))
          '`KERNEL=="ttyUSB*", SYMLINK+="sonar"` added'),
         ("start.sh", "run a && run b\n", "run a\n# && run b\n", "run a && run b -> run a"),
         ("Dockerfile", "FROM a\nRUN a \\\n  b\n", "FROM a\nRUN a b\n", None),
-        ("start.sh", "a b\n", "a b\n" + "".join(f"echo {n} x\n" for n in range(8)), "8 lines added"),
+        ("start.sh", "a b\n", "a b\n" + "".join(f"echo {n} x\n" for n in range(7)) + "ros2 run arm driver\n",
+         "`ros2 run arm driver`, `echo 0 x`, `echo 1 x`, `echo 2 x`, 4 more lines added"),
         ("notes.md", "a\n", "b\n", None),
     ],
 )  # fmt: skip
@@ -58,6 +61,9 @@ def test_added_and_removed_scripts_and_units_show_their_commands(repository, com
     repository.commit({path: None})
     for commits, word in (("HEAD~2..HEAD~1", "added"), ("HEAD~1..HEAD", "removed")):
         result = compare(repository, commits)
+        if word == "removed" and path.endswith(".service"):
+            assert breaking(result) == [f"systemd unit removed: {state}"]
+            continue
         assert str(result.file_states[path]) == (word if state is None else f"{word}: {state}")
 
 

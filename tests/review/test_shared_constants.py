@@ -74,3 +74,51 @@ def test_a_module_outside_of_the_package_is_not_read(repository, compare):
     repository.commit({**MANIFEST, "other/names.py": MODULE, "arm/arm/node.py": node, "arm/arm/__init__.py": ""})
     repository.write({"arm/arm/node.py": node.replace("'arm'", "'leg'")})
     assert "scan" not in " ".join(sentences(subject(compare(repository), "arm/arm/node.py")))
+
+
+PACKAGE_CONSTANTS = "NAMESPACE = '/arm/'\nSCAN = NAMESPACE + 'scan'\n\n\nclass Topics:\n    SCAN = f'{NAMESPACE}scan'\n"
+
+
+@pytest.mark.parametrize(
+    ("statement", "name"),
+    [
+        ("import arm as names", "names.SCAN"),
+        ("from arm import SCAN", "SCAN"),
+        ("from . import Topics", "Topics.SCAN"),
+        ("from arm import Topics as T", "T.SCAN"),
+    ],
+)
+def test_a_constant_of_constants_in_the_package_is_the_name_of_a_topic(repository, compare, statement, name):
+    node = NODE.format(statement, name)
+    package = {**MANIFEST, "arm/arm/node.py": node, "arm/arm/__init__.py": PACKAGE_CONSTANTS}
+    repository.commit({**package, "arm/setup.py": ""})
+    repository.write({"arm/arm/__init__.py": PACKAGE_CONSTANTS.replace("/arm/", "/leg/")})
+    expected = "publisher '/arm/scan' (LaserScan) renamed to '/leg/scan' (LaserScan)"
+    assert expected in breaking(compare(repository))
+
+
+RESULT = """class Arm(Node):
+    {decorator}def topic(self):
+        \"\"\"Return the topic.\"\"\"
+        return {result}
+
+    def start(self):
+        self.create_publisher(LaserScan, {name}, 10)
+"""
+
+
+@pytest.mark.parametrize(
+    ("values", "is_known"),
+    [
+        ({"decorator": "", "result": "'{}'", "name": "self.topic()"}, True),
+        ({"decorator": "@property\n    ", "result": "'{}'", "name": "self.topic"}, True),
+        ({"decorator": "@property\n    ", "result": "'{}'", "name": "'/arm/' + self.topic"}, True),
+        ({"decorator": "@other\n    ", "result": "'{}'", "name": "self.topic()"}, False),
+        ({"decorator": "@property\n    ", "result": "self.topic + '{}'", "name": "self.topic"}, False),
+    ],
+)
+def test_result_of_a_function_is_the_name_of_a_topic(repository, compare, values, is_known):
+    for name, write in (("scan", repository.commit), ("laser", repository.write)):
+        write({**MANIFEST, "arm/arm/node.py": RESULT.format(**{**values, "result": values["result"].format(name)})})
+    found = [sentence for sentence in breaking(compare(repository)) if "renamed to" in sentence]
+    assert len(found) == is_known

@@ -80,6 +80,22 @@ def test_imports_of_other_packages(repository, compare, old, new, expected):
     assert find_sentences(repository, compare, files, {"arm/arm/a.py": new}) == expected
 
 
+def test_package_that_a_script_without_suffix_imports_is_not_new(repository, compare):
+    script = "#!/usr/bin/env python3\nimport rclpy\nimport serial\n"
+    files = {"arm/scripts/driver": script, "arm/scripts/notes": "import numpy\n"}
+    repository.commit({**MANIFEST, **files})
+    repository.write({"arm/arm/driver.py": "import serial\nimport numpy\n"})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["packages imported for the first time: 'numpy'"]
+
+
+def test_undeclared_package_of_a_script_without_suffix_is_breaking(repository, compare):
+    script = "#!/usr/bin/env python3\nimport rclpy\n"
+    repository.commit({**MANIFEST, "arm/scripts/driver": script})
+    repository.write({"arm/scripts/driver": f"{script}import serial\n"})
+    assert breaking(compare(repository)) == ["packages imported for the first time: 'serial'"]
+
+
 def test_sources_of_a_new_package_use_no_new_packages(repository, compare):
     repository.commit(MANIFEST)
     repository.write(

@@ -15,8 +15,9 @@ from linkwright.review.excerpts import differing_excerpts, shorten
 from linkwright.review.versions import Version, Versions
 
 _SHELL_SUFFIXES = frozenset({".sh", ".bash", ".zsh"})
-_UNIT_SUFFIX = ".service"
-_SUFFIXES = _SHELL_SUFFIXES | {".rules", _UNIT_SUFFIX, ".dockerfile"}
+UNIT_SUFFIX = ".service"
+"""The end of the names of units of systemd that start programs."""
+_SUFFIXES = _SHELL_SUFFIXES | {".rules", UNIT_SUFFIX, ".dockerfile"}
 _HEAD_BYTES = 100
 _FILE_NAME = re.compile(
     r"(.*\.)?(docker|container)file(\..*)?|\w*(packages?|apt|requirements?|dependencies)\w*\.txt|\.env"
@@ -31,6 +32,9 @@ _ROS_COMMAND = re.compile(r"\b(?:ros2 (?:run|launch)|rosrun|roslaunch)\b.*")
 _MAX_LINES = 6
 """The maximum number of changed lines that are shown, except in a list of packages."""
 _MAX_LINE_LENGTH = 160
+_MAX_SHOWN = 4
+"""The maximum number of added lines, and of removed ones, that are shown if there are many."""
+_MAX_SHORT_LENGTH = 80
 _MAX_COMMAND_LENGTH = 500
 """The maximum number of characters of a command, whose last words are its remappings."""
 _MAX_BYTES = 1 << 18
@@ -40,7 +44,7 @@ _MIN_SIMILARITY = 0.5
 def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
     """Return the added and removed lines of a text file, or None for other kinds of files.
 
-    Comments and empty lines are left out. If there are many lines, only their number is given.
+    Comments and empty lines are left out. Of many lines, the first ones are given, and the number of the rest.
     """
     if file.old_path is None or file.new_path is None or file.is_submodule or not _has_lines(versions.new, file.path):
         return None
@@ -64,24 +68,37 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
         return _format_lines(
             *(joined([f"`{shorten(line, _MAX_LINE_LENGTH)}`" for line in lines]) for lines in (added, removed))
         )
-    counts = (counted("{count} line", "{count} lines", len(lines)) if lines else "" for lines in (added, removed))
-    return _format_lines(*counts)
+    return _format_lines(*(_format_first(lines) if lines else "" for lines in (added, removed)))
 
 
 def list_commands(version: Version, path: str) -> Phrase | None:
     """Return the first commands of an added or removed shell script or unit of systemd, or None for other files."""
-    is_unit = path.endswith(_UNIT_SUFFIX)
-    if not is_unit and not _is_shell_script(version, path):
+    is_unit = path.endswith(UNIT_SUFFIX)
+    if not is_unit and not is_shell_script(version, path):
         return None
-    lines = [*_split_content_lines(version.text(path))]
-    lines = [_find_started_program(line) for line in lines if _UNIT_COMMAND.match(line)] if is_unit else lines
+    lines = list_started_programs(version, path) if is_unit else [*_split_content_lines(version.text(path))]
     return joined_first([f"`{shorten(line, _MAX_COMMAND_LENGTH)}`" for line in lines], _MAX_LINES) if lines else None
+
+
+def list_started_programs(version: Version, path: str) -> list[str]:
+    """Return the commands of a unit of systemd, from the part that starts a program of ROS on."""
+    lines = _split_content_lines(version.text(path))
+    return [_find_started_program(line) for line in lines if _UNIT_COMMAND.match(line)]
 
 
 def _find_started_program(line: str) -> str:
     """Return the part of a command that starts a program of ROS, or the whole command."""
     match = _ROS_COMMAND.search(line)
     return line if match is None else match[0].rstrip("'\"")
+
+
+def _format_first(lines: list[str]) -> Phrase:
+    """Return the first lines, those with commands of ROS before others."""
+    ordered = sorted(lines, key=lambda line: _ROS_COMMAND.search(line) is None)
+    if len(ordered) > _MAX_SHOWN:
+        rest = counted("{count} more line", "{count} more lines", len(ordered) - _MAX_SHOWN)
+        return joined([*(f"`{shorten(line, _MAX_SHORT_LENGTH)}`" for line in ordered[:_MAX_SHOWN]), rest])
+    return joined([f"`{shorten(line, _MAX_SHORT_LENGTH)}`" for line in ordered])
 
 
 def _format_lines(added: Phrase | str, removed: Phrase | str) -> Phrase:
@@ -94,10 +111,10 @@ def _format_lines(added: Phrase | str, removed: Phrase | str) -> Phrase:
 def _has_lines(version: Version, path: str) -> bool:
     name = PurePosixPath(path).name.lower()
     is_known = PurePosixPath(name).suffix in _SUFFIXES or _FILE_NAME.fullmatch(name) is not None
-    return is_known or _is_shell_script(version, path)
+    return is_known or is_shell_script(version, path)
 
 
-def _is_shell_script(version: Version, path: str) -> bool:
+def is_shell_script(version: Version, path: str) -> bool:
     """Return whether a file is a shell script by its suffix or its first line."""
     if PurePosixPath(path).suffix in _SHELL_SUFFIXES:
         return True

@@ -31,6 +31,8 @@ _READING_METHODS = frozenset(
 """The methods whose first argument is a key or a text to compare with."""
 _READING_FUNCTIONS = frozenset({"getenv", "strcmp"})
 _QUOTED = re.compile("\"([^\"]*)\"|'([^']*)'")
+_CONSTANT_NAME = re.compile(r"_?[A-Z][A-Z0-9_]+")
+_ARITHMETIC = frozenset("+-*/")
 _NO_VALUES = ("None", "nullptr", "NULL")
 _CHANGES = frozenset({"=", "+=", "-=", "*=", "/=", "%=", "|=", "&=", "//=", "**=", ":=", "++", "--", "in", ","})
 """The tokens after a name that a statement assigns or changes, such as the name of a loop."""
@@ -222,14 +224,9 @@ def _find_constants(scopes: Mapping[str, Sequence[Statement]]) -> Iterator[OneSi
     for statement in constant:
         tokens = [token for token in statement.tokens if token.text != ";"]
         sign = next((index for index, token in enumerate(tokens) if token.text == "="), 0)
-        literals = parse_statement(tokens).literals
-        if not sign or len(literals) != 1 or literals[0].constant or tokens[-1].text in _NO_VALUES:
-            continue
-        (literal,) = literals
-        name = _find_constant_name(tokens[:sign])
-        is_whole_value = (literal.first, literal.last) == (sign + 1, len(tokens) - 1)
-        if name is not None and is_whole_value and counts[name.text] <= 1:
-            value = shorten_middle(statement.get_text(literal.first, literal.last), _MAX_TEXT_LENGTH)
+        name = _find_constant_name(tokens[:sign]) if sign else None
+        if name is not None and counts[name.text] <= 1 and _has_constant_value(tokens, sign + 1):
+            value = shorten_middle(statement.get_text(sign + 1, len(tokens) - 1), _MAX_TEXT_LENGTH)
             yield OneSidedText(f"{name.text} = {value}", name.text, name)
 
 
@@ -237,6 +234,25 @@ def _is_class(statements: Sequence[Statement]) -> bool:
     """Return whether statements are those of a class in C++, which begin with its head."""
     words = {token.text for token in statements[0].tokens} if statements else set()
     return not words.isdisjoint({"class", "struct"}) and "(" not in words
+
+
+def _has_constant_value(tokens: Sequence[Token], first: int) -> bool:
+    """Return whether the value of an assignment is a literal, or made of constants and literals by operators.
+
+    Args:
+        tokens: the tokens of the assignment.
+        first: the index of the first token of the value.
+    """
+    literals = parse_statement(tokens).literals
+    if len(literals) == 1 and (literals[0].first, literals[0].last) == (first, len(tokens) - 1):
+        return not literals[0].constant and tokens[-1].text not in _NO_VALUES
+    operands, operators = tokens[first::2], tokens[first + 1 :: 2]
+    is_sum = len(operands) == len(operators) + 1 and all(token.text in _ARITHMETIC for token in operators)
+    is_named = any(_CONSTANT_NAME.fullmatch(token.text) for token in operands)
+    is_known = all(
+        token.kind in (TokenKind.TEXT, TokenKind.NUMBER) or _CONSTANT_NAME.fullmatch(token.text) for token in operands
+    )
+    return is_sum and is_named and is_known and len(operands) > 1
 
 
 def _is_constant(statement: Statement) -> bool:

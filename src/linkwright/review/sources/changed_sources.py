@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from linkwright.packages.manifest import MANIFEST
@@ -109,6 +109,15 @@ class ChangedSources:
         """Return the number of expressions in changed sources with the same kind and type."""
         return self._expressions.count((item.kind, item.type))
 
+    def list_similar(self, item: SourceName) -> set[str]:
+        """Return the literal and computed names of the same kind and type in all changed sources."""
+        return {
+            other.name
+            for names in self._names.values()
+            for other in (*names.names, *names.expressions)
+            if (other.kind, other.type) == (item.kind, item.type)
+        }
+
     def lacks_in_changed(self, item: SourceName, path: str) -> bool:
         """Return whether no other changed source has a name.
 
@@ -165,6 +174,18 @@ class ChangedSources:
         }
         return {**changed, **self._get_unchanged(package).list_owners(item)}
 
+    def find_moved(self, item: SourceName, path: str) -> SourceName | None:
+        """Return the same name in the only other changed source of the package that has it, or None."""
+        package, key = self.find_package(path), get_comparison_name(item)
+        found = [
+            known
+            for other, names in self._names.items()
+            if other != path and self.find_package(other) == package
+            for known in names.of_kind(item.kind)
+            if get_comparison_name(known) == key
+        ]
+        return found[0] if len(found) == 1 else None
+
     def has_in_unchanged(self, item: SourceName, path: str) -> bool:
         """Return whether an unchanged source of the package has the same topic, service or action."""
         package = self.find_package(path) if item.kind in COMMUNICATION_KINDS else None
@@ -188,6 +209,13 @@ class ChangedSources:
         kind = get_counterpart(item.kind)
         found = (known for names in self._names.values() for known in (names.of_kind(kind) if kind else ()))
         return any(is_same_topic(item, known) for known in found)
+
+    def list_sources(self, path: str, text: str) -> Iterator[tuple[str, SourceNames]]:
+        """Yield the paths and names of the sources in the package of a file. Unchanged ones must contain a text."""
+        package = self.find_package(path)
+        if package is not None:
+            yield from ((other, names) for other, names in self._names.items() if self.find_package(other) == package)
+            yield from self._get_unchanged(package).list_sources(text)
 
     def find_package(self, path: str) -> str | None:
         """Return the folder of the package of a file, or None for a file outside of packages."""

@@ -23,7 +23,7 @@ from linkwright.review.sources.statements import normalize_number
 from linkwright.review.sources.tokens import Token, TokenKind
 
 _OUTPUT_FUNCTION = re.compile(
-    r"p?print|log\w*|debug|info|warn|warning|error|critical|exception|fatal|echo", re.IGNORECASE
+    r"p?print|log\w*|(?:local|ros)?_?(?:debug|info|warn|warning|err|error|critical|exception|fatal)|echo", re.IGNORECASE
 )
 """The functions that only print or log."""
 _FUNCTION_NAME = re.compile(r"(?:\w+(?:\.|::))*(?:~?\w+|operator\W+)")

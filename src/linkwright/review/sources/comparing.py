@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
@@ -22,11 +22,13 @@ from linkwright.review.sources.details import (
     format_names,
     format_rename,
 )
-from linkwright.review.sources.function_changes import NameChange, merge_function_changes
+from linkwright.review.sources.function_changes import NameChange, find_ignored_reason, merge_function_changes
+from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
 from linkwright.review.sources.names import (
     PYTHON_SUFFIX,
     DefaultName,
+    Detail,
     NameKind,
     SourceName,
     SourceNames,
@@ -39,11 +41,13 @@ from linkwright.review.sources.package_imports import (
 )
 from linkwright.review.sources.pairing import (
     compute_similarity,
+    drop_replaceable,
     has_same_types,
     is_same_frame,
     pair_similar,
     take_pairs,
 )
+from linkwright.review.sources.parameter_scopes import find_scoped
 from linkwright.review.sources.parameter_uses import ParameterUses
 from linkwright.review.sources.python_bases import select_methods
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
@@ -54,6 +58,8 @@ from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.whole_sources import WholeSourcePair
 from linkwright.review.versions import Versions
 
+_MAIN = "main"
+"""The function of a program that its build file or its last statement names."""
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -102,7 +108,7 @@ class _SourcePair(WholeSourcePair):
         """Yield the changes to the names of a kind."""
         before = {get_comparison_name(item): item for item in old_names.of_kind(kind)}
         after = {get_comparison_name(item): item for item in new_names.of_kind(kind)}
-        scoped = self._find_scoped(before, after, old_names, new_names) if kind is NameKind.PARAMETER else []
+        scoped = find_scoped(before, after, old_names, new_names) if kind is NameKind.PARAMETER else []
         shown = {get_comparison_name(item): item.type for _, item in scoped}  # the lines of these have their defaults
         changed = [
             NameChange(item, *detail)
@@ -110,6 +116,8 @@ class _SourcePair(WholeSourcePair):
             if name in before and not has_same_types(before[name], item, old_names, new_names)
             for detail in compare_details(replace(before[name], type=shown.get(name, before[name].type)), item)
         ]
+        if kind is NameKind.PARAMETER:
+            changed += self._compare_moved([item for name, item in before.items() if name not in after])
         yield from self._report_details(kind, changed, old_names)
         for old, new in scoped:
             reason = self._find_removal_reason([old], old_names)
@@ -158,27 +166,12 @@ class _SourcePair(WholeSourcePair):
         yield from self._compare_expressions(kind, removed, added)
         yield from self._report_unpaired(kind, removed, added, old_names)
 
-    @staticmethod
-    def _find_scoped(
-        before: Mapping[str, SourceName],
-        after: Mapping[str, SourceName],
-        old_names: SourceNames,
-        new_names: SourceNames,
-    ) -> list[tuple[SourceName, SourceName]]:
-        """Return the parameters of ROS 1 that become private, or no longer are, each in both versions."""
-        unknown = old_names.unknown_scopes | new_names.unknown_scopes
-        known = [
-            {item.name.lstrip("/") for item in names.of_kind(NameKind.PARAMETER)} for names in (old_names, new_names)
-        ]
-        return [
-            (before[name], item)
-            for name, item in after.items()
-            if name in before
-            and name not in unknown
-            and before[name].name.startswith("~") != item.name.startswith("~")
-            and before[name].name.lstrip("/") not in known[1]
-            and item.name.lstrip("/") not in known[0]
-        ]
+    def _compare_moved(self, items: Sequence[SourceName]) -> Iterator[NameChange]:
+        """Yield the changes to parameters that another changed source of the package declares now."""
+        for item in items:
+            moved = self.new.find_moved(item, self.file.path)
+            if moved is not None and self.old.find_moved(item, self.file.old_path or self.file.path) is None:
+                yield from (NameChange(moved, *detail) for detail in compare_details(item, moved))
 
     def _is_reported(self, kind: NameKind) -> bool:
         """Return whether removed and added names of a kind matter outside of the file."""
@@ -279,7 +272,9 @@ class _SourcePair(WholeSourcePair):
             return
         if kind is NameKind.FUNCTION:
             changed = list(merge_function_changes(changed, is_python=self.file.path.endswith(PYTHON_SUFFIX)))
-        for item, text, reason, _ in changed:
+        for item, text, reason, detail in changed:
+            if detail is Detail.ARGUMENTS and reason is None:
+                reason = find_ignored_reason(item, old_names, self.new.get_names(self.file.new_path))
             is_breaking = is_called or kind is not NameKind.CLASS
             is_breaking = is_breaking and (kind is not NameKind.FUNCTION or self.can_be_linked(item.name))
             if kind is NameKind.PARAMETER and reason is None:
@@ -305,7 +300,10 @@ class _SourcePair(WholeSourcePair):
     ) -> Iterator[Change]:
         if not is_used_by_others(kind, self.file.path, old_names):
             return
-        if added and (kind not in (NameKind.FUNCTION, NameKind.MEMBER) or self.file.old_path is not None):
+        if kind in (NameKind.FUNCTION, NameKind.MEMBER) and self.file.old_path is None:
+            is_module = self.file.path.endswith(PYTHON_SUFFIX)
+            added = [item for item in added if is_module and "." not in item.name and item.name != _MAIN]
+        if added:
             text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
             reason = find_required_reason(added) if self.file.old_path is not None else None
             yield self.make_change(text, added[0].span, self.new, reason)
@@ -361,7 +359,8 @@ class _SourcePair(WholeSourcePair):
         server = self.new.find_user(old_item, path)
         if server is not None:
             return make_user_reason(old_item.kind, server, old_item.name)
-        return phrase("servers that offer '{name}' get no requests", name=old_item.name)
+        reason = phrase("servers that offer '{name}' get no requests", name=old_item.name)
+        return reason if new_item.name else None
 
     # --- expressions ------------------------------------------------------------------------------------------------
 
@@ -422,15 +421,16 @@ class _SourcePair(WholeSourcePair):
                 "{kind} with computed names added: {names}", kind=kind.plural, names=format_names(added_expressions)
             )
             yield self.make_change(text, added_expressions[0].span, self.new, None)
-            removed[:] = [item for item in removed if not any(can_make(it.name, item.name) for it in added_expressions)]
+            drop_replaceable(removed, added_expressions)
         if removed_expressions:
             text = phrase(
                 "{kind} with computed names removed: {names}",
                 kind=kind.plural,
                 names=format_names(removed_expressions),
             )
-            yield self.make_change(text, removed_expressions[0].span, self.old, None)
-            added.clear()
+            reason = find_lost_pattern_reason(removed_expressions, self.old, self.new, self.file.path)
+            yield self.make_change(text, removed_expressions[0].span, self.old, reason)
+            drop_replaceable(added, removed_expressions)
 
     def _compare_prefixed(self, kind: NameKind, removed: list[SourceName], added: list[SourceName]) -> Iterator[Change]:
         """Yield a line about the names that are computed now, because another text stands before them.

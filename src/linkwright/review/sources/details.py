@@ -81,6 +81,11 @@ def compare_details(
         before, after = old_details.get(detail), new_details.get(detail)
         if before == after or (detail in _KNOWN_IN_BOTH and None in (before, after)):
             continue
+        if detail is Detail.DEFAULT:
+            yield from _compare_missing_defaults(old, new)
+            continue
+        if detail is Detail.VALUE_TYPE and (Detail.DEFAULT, NO) in old.details and before is None:
+            continue  # the line about the default shows the type
         if detail is Detail.QOS and normalize_qos(before or "") == normalize_qos(after or ""):
             continue
         if detail is Detail.CONSTANT and after is not None:
@@ -97,6 +102,16 @@ def compare_details(
             new=after or missing,
         )
         yield text, _find_detail_reason(new, detail, before, after), detail
+
+
+def _compare_missing_defaults(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None, Detail]]:
+    """Yield the literal default of a parameter that only one version has."""
+    before, after = ("-" if (Detail.DEFAULT, NO) in item.details else item.type for item in (old, new))
+    if before and after:
+        text = phrase(
+            "{kind} '{name}': default {old} -> {new}", kind=new.kind.title, name=new.name, old=before, new=after
+        )
+        yield text, None, Detail.DEFAULT
 
 
 def _compare_types(old: SourceName, new: SourceName, *, is_computed: bool) -> Iterator[tuple[Phrase, Phrase | None]]:
@@ -204,6 +219,9 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
         return (
             None if is_accepted else phrase("programs that call '{name}' with the old arguments fail", name=name.name)
         )
+    if detail is Detail.SHORT_FORM:
+        lost = sorted(set(old.split(", ")) - {*new.split(", "), ""})
+        return phrase("callers that pass '{name}' get an error", name=", ".join(lost)) if lost else None
     if detail is Detail.LATCH and before:
         return phrase("subscribers that start later do not get the last message")
     return None

@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.sources.names import Detail, SourceName
+from linkwright.review.sources.names import Detail, SourceName, SourceNames
+from linkwright.review.sources.signatures import parse_signature
 
 _MAX_CHANGES = 3
 """The largest number of changes of a kind that have lines of their own."""
@@ -27,6 +28,27 @@ class NameChange(NamedTuple):
     text: Phrase
     reason: Phrase | None
     detail: Detail | None = None
+
+
+def find_ignored_reason(item: SourceName, old: SourceNames, new: SourceNames) -> Phrase | None:
+    """Return the reason why a Python function that ignores further keyword arguments is breaking; None if it is not.
+
+    It is if such a function has lost a parameter.
+
+    Args:
+        item: the function or class in the new version.
+        old: the names in the old source.
+        new: the names in the new source.
+    """
+    before = next((other for other in old.of_kind(item.kind) if other.name == item.name), None)
+    if before is None or item.name not in old.ignoring_keywords & new.ignoring_keywords:
+        return None
+    signatures = [parse_signature(dict(other.details).get(Detail.ARGUMENTS, "")) for other in (before, item)]
+    names = [() if signature is None else (*signature.positional, *signature.keywords) for signature in signatures]
+    lost = [name for name in names[0] if name not in names[1]]
+    if not lost or len(names[1]) >= len(names[0]):
+        return None
+    return phrase("'{name}' ignores {arguments} now", name=item.name, arguments=joined_first(lost, MAX_NAMES))
 
 
 def merge_function_changes(changes: Sequence[NameChange], *, is_python: bool) -> Iterator[NameChange]:

@@ -68,11 +68,13 @@ class Detail(Enum):
     QOS = phrase("QoS")
     QUEUE = phrase("queue")
     LATCH = phrase("latched")
+    DEFAULT = phrase("default")
     VALUE_TYPE = phrase("type")
     READ_AS = phrase("read as")
     MINIMUM = phrase("minimum")
     MAXIMUM = phrase("maximum")
     CHOICES = phrase("choices")
+    SHORT_FORM = phrase("short form")
     LEVEL = phrase("level")
     REQUIRED = phrase("required")
     ARGUMENTS = phrase("arguments")
@@ -218,6 +220,7 @@ class SourceNames:
         aliases: the types that a C++ header names with ``typedef`` and ``using``, by name.
         namespaces: the named namespaces that a C++ header opens, each with its first location.
         enumerations: the values and locations of the enumerators of each public enumeration of a C++ header.
+        ignoring_keywords: the functions and classes of a Python source that take any keyword argument but use none.
         hidden_classes: the names of the protected and private classes in a C++ source.
         has_star_import: whether an ``__init__.py`` imports all names of a module, so that it may have other names.
     """
@@ -252,6 +255,7 @@ class SourceNames:
     aliases: dict[str, str] = field(default_factory=dict)
     namespaces: dict[str, Span] = field(default_factory=dict)
     enumerations: dict[str, dict[str, tuple[str, Span]]] = field(default_factory=dict)
+    ignoring_keywords: set[str] = field(default_factory=set)
     hidden_classes: set[str] = field(default_factory=set)
     has_star_import: bool = False
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 
 from linkwright.review.sources.details import has_same_parameters
+from linkwright.review.sources.name_patterns import can_make, ends_with_name
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 
 _MIN_SIMILARITY = 0.6
@@ -69,8 +70,14 @@ def pair_similar(
 def take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> Iterator[tuple[SourceName, SourceName]]:
     """Yield the pairs of a name and an expression that probably mean the same.
 
-    They are removed from both lists.
+    They are removed from both lists. First come the expressions whose text is the name, such as ``name + ".rate"``.
     """
+    for item in list(literals):
+        other = next((expression for expression in expressions if ends_with_name(expression.name, item.name)), None)
+        if other is not None:
+            literals.remove(item)
+            expressions.remove(other)
+            yield item, other
     for item in list(literals):
         is_only_pair = len(literals) == len(expressions) == 1
         other = next((expression for expression in expressions if is_only_pair or expression.type == item.type), None)
@@ -78,6 +85,19 @@ def take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> Ite
             literals.remove(item)
             expressions.remove(other)
             yield item, other
+
+
+def drop_replaceable(literals: list[SourceName], expressions: Sequence[SourceName]) -> None:
+    """Remove the names from a list that one of the expressions may give."""
+    literals[:] = [
+        item
+        for item in literals
+        if not any(
+            can_make(expression.name, item.name)
+            and (item.kind in _UNTYPED_KINDS or _has_compatible_type(item, expression))
+            for expression in expressions
+        )
+    ]
 
 
 def _has_compatible_type(old: SourceName, new: SourceName) -> bool:

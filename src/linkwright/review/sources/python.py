@@ -8,30 +8,35 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
-from functools import cached_property
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python2 import as_python3
-from linkwright.packages.readers.python_values import PythonFile, Value, argument_of, called_name
+from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.sources.conditions import find_python_conditions
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.frame_helpers import find_frame_arguments
 from linkwright.review.sources.interface_types import PythonTypes
-from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames, Timer
+from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_defaults import find_parameter_default
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
 from linkwright.review.sources.python_bases import find_inherited_names
 from linkwright.review.sources.python_callbacks import CallbackFunctions
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
+from linkwright.review.sources.python_source import PythonSource
 from linkwright.review.sources.required_parameters import is_required_parameter
-from linkwright.review.sources.shared_constants import read_imported_constants
-from linkwright.review.sources.signatures import find_argument_default, read_method_signatures, read_signature
+from linkwright.review.sources.signatures import (
+    find_argument_default,
+    ignores_keywords,
+    read_method_signatures,
+    read_signature,
+)
 from linkwright.review.sources.undefined_names import find_bound_names, find_undefined_names
 
 _RCLPY_METHODS = {
     "create_publisher": (NameKind.PUBLISHER, "msg_type", "topic", 2),
+    "create_lifecycle_publisher": (NameKind.PUBLISHER, "msg_type", "topic", 2),
     "create_subscription": (NameKind.SUBSCRIPTION, "msg_type", "topic", 3),
     "create_service": (NameKind.SERVICE, "srv_type", "srv_name", -1),
     "create_client": (NameKind.CLIENT, "srv_type", "srv_name", -1),
@@ -70,6 +75,8 @@ _PARAMETER_CALLS = ("declare_parameter", "get_param", "get_param_cached", "get_p
 _PARAMETER_NAME_CALLS = (*_PARAMETER_CALLS, "search_param", "has_param")
 _DICTIONARY_METHODS = ("items", "iteritems", "keys", "iterkeys")
 _FRAME_FIELDS = {"frame_id": NameKind.MESSAGE_FRAME, "child_frame_id": NameKind.FRAME}
+_CLICK_OPTION = "click.option"
+_SHORT_OPTION = re.compile(r"-\w")
 _QOS = re.compile(r"\d+|[\w.]*(QoS|qos_profile|QOS)\w*(\(.*\))?", re.DOTALL)
 
 
@@ -142,10 +149,10 @@ def parse_source(source: SourceText) -> PythonFile:
         SyntaxError: the text is neither.
     """
     try:
-        return _SourceFile(source)
+        return PythonSource(source)
     except SyntaxError:
         text = as_python3(source.text)
-        return _SourceFile(SourceText(source.name, text))
+        return PythonSource(SourceText(source.name, text))
 
 
 def _get_argument(call: ast.Call, index: int, keyword: str) -> ast.expr | None:
@@ -162,62 +169,19 @@ def _format_expression(python: PythonFile, node: ast.expr | None) -> str:
     return " ".join(ast.unparse(value if isinstance(value, (ast.Constant, ast.UnaryOp)) else node).split())
 
 
+def _has_uncertain_arguments(call: ast.Call) -> bool:
+    """Return whether a call passes on arguments with ``*`` or ``**``."""
+    return any(keyword.arg is None for keyword in call.keywords) or any(
+        isinstance(argument, ast.Starred) for argument in call.args
+    )
+
+
 def _is_required(call: ast.Call, option: str) -> bool:
     """Return whether an option or argument of a command line is required."""
     if not option.startswith("-"):
         return argument_of(call, "nargs") is None and argument_of(call, "default") is None
     value = argument_of(call, "required")
     return isinstance(value, ast.Constant) and value.value is True
-
-
-class _SourceFile(PythonFile):
-    """A Python source that also resolves attributes which are assigned once."""
-
-    @cached_property
-    def _attributes(self) -> dict[str, ast.expr | None]:
-        attributes: dict[str, ast.expr | None] = {}
-        for node in ast.walk(self.tree):
-            targets = node.targets if isinstance(node, ast.Assign) else ()
-            for target in targets:
-                for part in ast.walk(target):
-                    if isinstance(part, ast.Attribute):
-                        is_first = part is target and part.attr not in attributes
-                        attributes[part.attr] = node.value if is_first and isinstance(node, ast.Assign) else None
-            if isinstance(node, (ast.AugAssign, ast.AnnAssign)) and isinstance(node.target, ast.Attribute):
-                attributes[node.target.attr] = None
-        return attributes
-
-    @cached_property
-    def _imported_constants(self) -> dict[str, ast.expr]:
-        return read_imported_constants(Path(self.source.name), self.tree)
-
-    def assigned_expression(self, name: str) -> ast.expr | None:
-        """Return the expression assigned to a name or imported as it, or None if it is not certain."""
-        if name in self._assignments:
-            return super().assigned_expression(name)
-        return self._imported_constants.get(name)
-
-    def resolved(self, node: ast.expr) -> ast.expr:
-        """Return the expression assigned to a name or attribute.
-
-        Other expressions are returned unchanged.
-        """
-        if isinstance(node, ast.Attribute) and ast.unparse(node) in self._imported_constants:
-            return self._imported_constants[ast.unparse(node)]
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
-            value = self._attributes.get(node.attr)
-            if node.attr not in self._attributes:
-                value = self.assigned_expression(node.attr)  # a constant of the class
-            return node if value is None or isinstance(value, ast.Attribute) else self.resolved(value)
-        return super().resolved(node)
-
-    def value(self, node: ast.expr | None, depth: int = 0) -> Value:
-        """Return the value of an expression, or `UNKNOWN` if the value is not certain."""
-        if isinstance(node, ast.Attribute):
-            resolved = self.resolved(node)
-            if resolved is not node:
-                return super().value(resolved, depth + 1)
-        return super().value(node, depth)
 
 
 class _Reader:
@@ -258,6 +222,8 @@ class _Reader:
                 kind = NameKind.CLASS if isinstance(statement, ast.ClassDef) else NameKind.FUNCTION
                 signature = read_signature(statement)
                 details = () if signature is None else ((Detail.ARGUMENTS, signature.text),)
+                if ignores_keywords(statement):
+                    self._names.ignoring_keywords.add(statement.name)
                 self._names.add(SourceName(kind, statement.name, "", self._python.span(statement), details))
                 if isinstance(statement, ast.ClassDef):
                     self._read_methods(statement)
@@ -294,6 +260,8 @@ class _Reader:
             if method.name not in passed_on:
                 name, details = f"{definition.name}.{method.name}", ((Detail.ARGUMENTS, signature.text),)
                 self._names.add(SourceName(NameKind.FUNCTION, name, "", self._python.span(method), details))
+                if ignores_keywords(method):
+                    self._names.ignoring_keywords.add(name)
 
     def _read_assignment(self, node: ast.Assign) -> None:
         for target in node.targets:
@@ -415,7 +383,7 @@ class _Reader:
         elif function == "Server" and len(call.args) > 1 and ast.unparse(call.args[0]).endswith("Config"):
             name = ast.unparse(call.args[0]).rpartition(".")[2]
             self._names.add(SourceName(NameKind.RECONFIGURATION, name, "", self._python.span(call)))
-        elif function in ("add_argument", "add_option"):
+        elif function in ("add_argument", "add_option") or self._types.resolve(call.func) == _CLICK_OPTION:
             self._read_option(call)
         elif function in ("getopt", "gnu_getopt"):
             self._read_getopt(call)
@@ -448,9 +416,11 @@ class _Reader:
         texts = [text for text in map(self._python.text, call.args) if text]
         if not texts:
             return
-        name = max(texts, key=len)
+        name = max([text for text in texts if text.startswith("-")] or texts, key=len)
         default = argument_of(call, "default")
         details = [(Detail.REQUIRED, YES)] if _is_required(call, name) else []
+        short = [text for text in texts if _SHORT_OPTION.fullmatch(text) and text != name]
+        details += [(Detail.SHORT_FORM, ", ".join(sorted(short)))] if short else []
         for detail, keyword in ((Detail.VALUE_TYPE, "type"), (Detail.CHOICES, "choices")):
             node = argument_of(call, keyword)
             if node is not None:
@@ -484,6 +454,8 @@ class _Reader:
                 details = ((Detail.VALUE_TYPE, type(literal.value).__name__),)
         elif is_required_parameter(self._python, call):
             details = ((Detail.REQUIRED, YES),)
+        elif function == "declare_parameter" and value is None and not _has_uncertain_arguments(call):
+            details = ((Detail.DEFAULT, NO),)
         self._add(NameKind.PARAMETER, node, value, details)
 
     def _read_parameters(self, namespace: ast.expr | None, parameters: ast.expr | None) -> None:
@@ -497,7 +469,8 @@ class _Reader:
             pair = self._python.resolved(item)
             if isinstance(pair, (ast.Tuple, ast.List)) and pair.elts:
                 value = pair.elts[1] if len(pair.elts) > 1 else None
-                self._add(NameKind.PARAMETER, pair.elts[0], value, prefix=f"{prefix}." if prefix else "")
+                details = ((Detail.DEFAULT, NO),) if value is None else ()
+                self._add(NameKind.PARAMETER, pair.elts[0], value, details, f"{prefix}." if prefix else "")
             else:
                 self._add_expression(NameKind.PARAMETER, item, "")
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import SourceText
 from linkwright.review.sources.interface_uses import WHOLE, InterfaceUse, LostInterface
 from linkwright.review.sources.python import parse_source
 
-_SUBSCRIPTIONS = frozenset({"Subscriber", "create_subscription"})
+_SUBSCRIPTION = re.compile(r"\w*subscri(?:be|ber|ption)", re.IGNORECASE)
+"""The functions that make a subscription, of rospy and rclpy or their wrappers in a repository."""
 _SERVICES = frozenset({"Service", "create_service"})
 _TESTS = frozenset({"hasattr", "getattr"})
 """The functions with which a source tests whether an object has a field."""
@@ -154,7 +156,7 @@ class _UseFinder:
 
     def _find_callback_arguments(self, call: ast.Call) -> Iterator[tuple[ast.AST, str, str]]:
         name = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
-        if name not in _SUBSCRIPTIONS | _SERVICES:
+        if name not in _SERVICES and not _SUBSCRIPTION.fullmatch(name):
             return
         part = next((found for node in call.args[:2] if (found := self._find_part(node)) is not None), None)
         keywords = {keyword.arg: keyword.value for keyword in call.keywords}

@@ -13,7 +13,7 @@ from linkwright.review.sources.tokens import tokenize_python
 
 _OUTPUT = re.compile(
     r"(?:print|pprint|warn|log\w*|_?log(?:ger)?|debug|info|warning|error|critical|exception|fatal|echo|write|"
-    r"set_description|input|exit)",
+    r"set_description|input|exit|(?:local|ros)_?(?:debug|info|warn|warning|err|error|critical|fatal))",
     re.IGNORECASE,
 )
 """The functions whose strings are for human readers."""

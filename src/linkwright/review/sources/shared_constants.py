@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
@@ -21,6 +22,7 @@ _CONSTANT = re.compile(
     r"^[ \t]*#[ \t]*define[ \t]+(?P<macro>\w+)[ \t]+\(?\"(?P<value>[^\"\\]*)\"\)?[ \t]*$",
     re.MULTILINE,
 )
+_PACKAGE_FILE = "__init__.py"
 _MAX_BYTES = 1 << 20
 _MAX_USERS = 50
 """The maximum number of unchanged sources that are compared because of a changed constant."""
@@ -54,6 +56,8 @@ def read_imported_constants(path: Path, tree: ast.Module) -> dict[str, ast.expr]
                 if alias.name in own:
                     constants[local] = own[alias.name]
                     continue
+                members = {name: value for name, value in own.items() if name.startswith(f"{alias.name}.")}
+                constants |= {f"{local}{name.removeprefix(alias.name)}": value for name, value in members.items()}
                 module = f"{node.module}.{alias.name}" if node.module else alias.name
                 inner = _read_module_constants(path, module, node.level)
                 constants |= {f"{local}.{name}": value for name, value in inner.items()}
@@ -93,7 +97,8 @@ def find_own_module(path: Path, module: str, level: int) -> Path | None:
         bases += [parent.parent.joinpath(*parts) for parent in path.parents if parent.name == parts[0]]
         folders = [root / part for part in ("", "src") if (root / part / parts[0] / "__init__.py").is_file()]
         bases += [folder.joinpath(*parts) for folder in folders]
-    files = (base_path.with_name(f"{base_path.name}{PYTHON_SUFFIX}").resolve() for base_path in bases if parts)
+    ends = (base_path.with_name(f"{base_path.name}{PYTHON_SUFFIX}") for base_path in bases if parts)
+    files = (file.resolve() for file in (*ends, *(base_path / _PACKAGE_FILE for base_path in bases)))
     return next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
 
 
@@ -111,20 +116,32 @@ def read_module(path: str, _modified_ns: int) -> ast.Module | None:
 
 @lru_cache(maxsize=256)
 def _read_python_constants(path: str, modified_ns: int) -> Mapping[str, ast.expr]:
-    """Return the names at the top of a Python file that are assigned a text once."""
+    """Return the names at the top of a Python file, and in its classes, that get a text once.
+
+    The text may be made of other such names. Names in classes are qualified, such as ``Topics.SCAN``.
+    """
     tree = read_module(path, modified_ns)
     if tree is None:
         return {}
-    assigned_names = [
-        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
-    ]
-    return {
-        target.id: node.value
-        for node in tree.body
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
-        for target in node.targets
-        if isinstance(target, ast.Name) and assigned_names.count(target.id) == 1
-    }
+    file = PythonFile(SourceText(path, Path(path).read_text("utf-8")))
+    constants: dict[str, ast.expr] = {}
+    classes = [node for node in tree.body if isinstance(node, ast.ClassDef)]
+    counts = {f"{node.name}.": _count_assigned(node) for node in classes}
+    counts[""] = _count_assigned(tree)
+    for own in classes:
+        counts[""] -= counts[f"{own.name}."]
+    for scope, body in (("", tree.body), *((f"{node.name}.", node.body) for node in classes)):
+        for node in body:
+            text = file.text(node.value) if isinstance(node, ast.Assign) else None
+            for target in node.targets if isinstance(node, ast.Assign) and text is not None else ():
+                if isinstance(target, ast.Name) and counts[scope][target.id] == 1:
+                    constants[f"{scope}{target.id}"] = ast.Constant(text)
+    return constants
+
+
+def _count_assigned(tree: ast.AST) -> Counter[str]:
+    """Return how often the statements in a module or class assign each name."""
+    return Counter(node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store))
 
 
 def find_constant_users(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[ChangedFile]:
@@ -147,6 +164,8 @@ def find_constant_users(versions: Versions, changed_files: Sequence[ChangedFile]
             continue
         suffixes = (PYTHON_SUFFIX,) if path.suffix == PYTHON_SUFFIX else CPP_SUFFIXES
         word = path.stem if path.suffix == PYTHON_SUFFIX else path.name
+        if path.name == _PACKAGE_FILE:
+            word = path.parent.name
         pattern = re.compile(rf"\b(?:{'|'.join(map(re.escape, names))})\b")
         for user in versions.new.paths(suffixes, versions.new.package_of(file.path) or ""):
             text = versions.new.text(user)

@@ -51,6 +51,9 @@ class Signature:
 
         Calls with keyword arguments for positional parameters are not considered.
         """
+        count = len(other.positional)
+        if set(other.positional) <= set(self.positional) and self.positional[:count] != other.positional:
+            return False  # a parameter before others, which get other arguments now
         has_room = len(self.positional) >= len(other.positional) or self.has_varargs
         missing_keywords = set(other.keywords) - {*self.keywords, *self.positional}
         return (
@@ -98,6 +101,18 @@ def read_signature(definition: ast.stmt) -> Signature | None:
         is_certain = not methods["__init__"].decorator_list
         return _make_signature(methods["__init__"].args, first=1) if is_certain else None
     return _NO_PARAMETERS if is_self_contained(definition) else None
+
+
+def ignores_keywords(definition: ast.stmt) -> bool:
+    """Return whether a function, or the constructor of a class, takes any keyword argument but uses none of them."""
+    if isinstance(definition, ast.ClassDef):
+        constructors = (node for node in definition.body if getattr(node, "name", "") == "__init__")
+        return any(ignores_keywords(node) for node in constructors)
+    if not isinstance(definition, (ast.FunctionDef, ast.AsyncFunctionDef)) or definition.args.kwarg is None:
+        return False
+    name = definition.args.kwarg.arg
+    names = {node.id for part in definition.body for node in ast.walk(part) if isinstance(node, ast.Name)}
+    return names.isdisjoint((name, "locals"))
 
 
 def find_argument_default(tree: ast.AST, name: ast.Name) -> ast.expr | None:

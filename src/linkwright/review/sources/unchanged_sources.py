@@ -77,6 +77,13 @@ class UnchangedSources:
             (path for path in paths if any(is_same_topic(item, other) for other in self._read_names(path, kind))), None
         )
 
+    def list_sources(self, text: str) -> Iterator[tuple[str, SourceNames]]:
+        """Yield the paths and names of the sources that contain a text."""
+        for path, content in self._texts.items():
+            if text in content:
+                self._read_names(path, NameKind.NODE)
+                yield path, self._names[path]
+
     def _read_names(self, path: str, kind: NameKind) -> Iterator[SourceName]:
         if path not in self._names:
             self._names[path] = read_source_names(self._version.file(path))

@@ -13,7 +13,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import package_name
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
-from linkwright.review.sources.reading import try_read_source
+from linkwright.review.sources.reading import is_program_text, try_read_source
 from linkwright.review.versions import TEST_FOLDERS, Version
 
 _BLOCK_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
@@ -71,15 +71,14 @@ class UsedPackages:
         source = try_read_source(self._version.file(path))
         if source is None:
             return {}
-        uses = _read_imports(source) if path.endswith(PYTHON_SUFFIX) else _read_includes(source)
+        uses = _read_imports(source) if is_python_source(path) else _read_includes(source)
         return {name: span for name, span in uses.items() if get_package(name) not in self._own_names}
 
     def uses(self, name: str, *, is_python: bool) -> bool:
         """Return whether a source of the package uses a package, header or module."""
         if is_python not in self._used:
-            suffixes: tuple[str, ...] = (PYTHON_SUFFIX,) if is_python else CPP_SUFFIXES
-            paths = [path for path in self._version.paths(suffixes, self._package) if _is_searched(path)]
-            names = {name for path in paths for name in self.read(path)}
+            paths = self._list_python_sources() if is_python else self._version.paths(CPP_SUFFIXES, self._package)
+            names = {name for path in paths if _is_searched(path) for name in self.read(path)}
             self._used[is_python] = frozenset(names | {get_package(name) for name in names})
         return name in self._used[is_python]
 
@@ -88,6 +87,13 @@ class UsedPackages:
         is_new = name not in self._reported
         self._reported.add(name)
         return is_new
+
+    def _list_python_sources(self) -> Iterator[str]:
+        """Yield the modules of the package, and its scripts without a suffix."""
+        for path in self._version.paths(("",), self._package):
+            suffix = PurePosixPath(path).suffix
+            if suffix == PYTHON_SUFFIX or (not suffix and is_program_text(self._version.file(path))):
+                yield path
 
     @property
     def _own_names(self) -> frozenset[str]:
@@ -102,6 +108,11 @@ class UsedPackages:
             name = package_name(self._version.file(self._package))
             self._own = frozenset(folders | modules | _CLIENT_LIBRARIES | ({name} if name else set()))
         return self._own
+
+
+def is_python_source(path: str) -> bool:
+    """Return whether a source is in Python, by its path: a module, or a script without a suffix."""
+    return PurePosixPath(path).suffix in (PYTHON_SUFFIX, "")
 
 
 def get_package(name: str) -> str:
@@ -123,7 +134,7 @@ def compare_usage(
     if old is None or new is None:
         return
     yield from _compare_packages(old, new, file.old_path, file.new_path)
-    is_header_told = are_headers_told and not file.path.endswith(PYTHON_SUFFIX)
+    is_header_told = are_headers_told and not is_python_source(file.path)
     if is_header_told and file.old_path is not None and file.new_path is not None:
         yield from _compare_headers(old, new, file.old_path, file.new_path)
 
@@ -131,7 +142,7 @@ def compare_usage(
 def _compare_packages(
     old: UsedPackages, new: UsedPackages, old_path: str | None, new_path: str | None
 ) -> Iterator[UsageChange]:
-    is_python = (new_path or old_path or "").endswith(PYTHON_SUFFIX)
+    is_python = is_python_source(new_path or old_path or "")
     for sides, path, is_old in (((new, old), new_path, False), ((old, new), old_path, True)):
         if path is None:
             continue

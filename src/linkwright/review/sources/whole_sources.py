@@ -24,6 +24,7 @@ from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.rates import compare_rates, compare_timers
 from linkwright.review.sources.transform_senders import find_lost_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
+from linkwright.review.sources.undefined_uses import find_undefined_uses
 from linkwright.review.sources.used_packages import compare_usage
 
 
@@ -122,15 +123,9 @@ class WholeSourcePair:
                 )
 
     def find_undefined(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the names and methods that are still used but no longer defined or imported."""
-        for name, span in new_names.undefined_names.items() if self.file.old_path is not None else ():
-            if name in old_names.bound_names:
-                text = phrase("uses '{name}', which it no longer defines or imports", name=name)
-                yield self.make_change(text, span, self.new, phrase("the code that uses the name fails"))
-        for name, span in new_names.undefined_methods.items():
-            if name in old_names.attributes:
-                text = phrase("calls its method '{name}', which is no longer defined", name=name)
-                yield self.make_change(text, span, self.new, phrase("the call fails"))
+        """Yield the names and methods that the source uses although nothing defines or imports them any more."""
+        for use in find_undefined_uses(old_names, new_names, is_added=self.file.old_path is None):
+            yield self.make_change(use.text, use.span, self.new, use.reason)
 
     def find_added_header(self) -> Iterator[Change]:
         """Yield a line with the text by which other packages include an added header."""

@@ -1,0 +1,96 @@
+"""Resolve the names, attributes, constants and results of functions of a Python source."""
+
+from __future__ import annotations
+
+import ast
+from functools import cached_property
+from pathlib import Path
+
+from linkwright.packages.readers.python_values import UNKNOWN, PythonFile, Value
+from linkwright.review.sources.shared_constants import read_imported_constants
+
+_MAX_DEPTH = 10
+_PLAIN_DECORATORS = frozenset({"property", "staticmethod", "classmethod"})
+
+
+class PythonSource(PythonFile):
+    """A Python source that also resolves attributes which are assigned once, constants of other modules and results."""
+
+    @cached_property
+    def _attributes(self) -> dict[str, ast.expr | None]:
+        attributes: dict[str, ast.expr | None] = {}
+        for node in ast.walk(self.tree):
+            targets = node.targets if isinstance(node, ast.Assign) else ()
+            for target in targets:
+                for part in ast.walk(target):
+                    if isinstance(part, ast.Attribute):
+                        is_first = part is target and part.attr not in attributes
+                        attributes[part.attr] = node.value if is_first and isinstance(node, ast.Assign) else None
+            if isinstance(node, (ast.AugAssign, ast.AnnAssign)) and isinstance(node.target, ast.Attribute):
+                attributes[node.target.attr] = None
+        return attributes
+
+    @cached_property
+    def _imported_constants(self) -> dict[str, ast.expr]:
+        return read_imported_constants(Path(self.source.name), self.tree)
+
+    def assigned_expression(self, name: str) -> ast.expr | None:
+        """Return the expression assigned to a name or imported as it, or None if it is not certain."""
+        if name in self._assignments:
+            return super().assigned_expression(name)
+        return self._imported_constants.get(name)
+
+    def resolved(self, node: ast.expr) -> ast.expr:
+        """Return the expression assigned to a name or attribute.
+
+        Other expressions are returned unchanged.
+        """
+        if isinstance(node, ast.Attribute) and ast.unparse(node) in self._imported_constants:
+            return self._imported_constants[ast.unparse(node)]
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            value = self._attributes.get(node.attr)
+            if node.attr not in self._attributes:
+                value = self.assigned_expression(node.attr)  # a constant of the class
+            return node if value is None or isinstance(value, ast.Attribute) else self.resolved(value)
+        return super().resolved(node)
+
+    def value(self, node: ast.expr | None, depth: int = 0) -> Value:
+        """Return the value of an expression, or `UNKNOWN` if the value is not certain."""
+        if depth > _MAX_DEPTH:
+            return UNKNOWN
+        if isinstance(node, ast.Attribute):
+            resolved = self.resolved(node)
+            if resolved is not node:
+                return super().value(resolved, depth + 1)
+        result = self._find_result(node)
+        return super().value(node, depth) if result is None else self.value(result, depth + 1)
+
+    def _find_result(self, node: ast.expr | None) -> ast.expr | None:
+        """Return the result of a function without arguments that only returns an expression, or None for others.
+
+        The function is called as ``topic()`` or ``self.topic()``, or read as the property ``self.topic``.
+        """
+        function = node.func if isinstance(node, ast.Call) and not node.args and not node.keywords else node
+        if isinstance(function, ast.Attribute) and ast.unparse(function.value) in ("self", "cls"):
+            return self._results.get((function.attr, isinstance(node, ast.Call)))
+        is_called = isinstance(function, ast.Name) and isinstance(node, ast.Call)
+        return self._results.get((function.id, True)) if is_called and isinstance(function, ast.Name) else None
+
+    @cached_property
+    def _results(self) -> dict[tuple[str, bool], ast.expr]:
+        """The results of functions that only return an expression, by name and whether they are called."""
+        functions = [node for node in ast.walk(self.tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
+        count = [node.name for node in functions].count
+        results: dict[tuple[str, bool], ast.expr] = {}
+        for node in functions:
+            body = node.body[ast.get_docstring(node) is not None :]
+            decorators = {ast.unparse(decorator) for decorator in node.decorator_list}
+            returned = body[0].value if len(body) == 1 and isinstance(body[0], ast.Return) else None
+            is_plain = isinstance(node, ast.FunctionDef) and decorators <= _PLAIN_DECORATORS
+            if returned is not None and is_plain and count(node.name) == 1 and not self._overrides(node.name):
+                results[node.name, "property" not in decorators] = returned
+        return results
+
+    def _overrides(self, name: str) -> bool:
+        """Return whether the source assigns the name of a function."""
+        return self._assignments.get(name) is not None or name in self._attributes

@@ -1,0 +1,105 @@
+"""Find the variables of Python sources that get a parameter with another default instead of a literal."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+from linkwright.review.sources.parameter_defaults import find_declarations, get_name_argument
+from linkwright.review.sources.python import parse_source
+from linkwright.review.sources.reading import try_read_source
+
+_READERS = ("get_param", "get_parameter", "get_parameter_or", "declare_parameter")
+_CONVERSIONS = ("bool", "float", "int", "str")
+_MAX_DEPTH = 6
+
+
+def find_replaced_literals(old_path: Path, new_path: Path) -> Iterator[tuple[Phrase, Span]]:
+    """Yield the variables that had a literal and get a parameter now, whose default has another value.
+
+    Args:
+        old_path: the old source.
+        new_path: the new source.
+    """
+    sources = [try_read_source(path) for path in (old_path, new_path)]
+    try:
+        old, new = (parse_source(source) for source in sources if source is not None)
+    except (ValueError, SyntaxError, RecursionError):
+        return
+    literals = {key: values[0] for key, values in _read_assignments(old).items() if len(values) == 1}
+    for key, values in _read_assignments(new).items():
+        literal = literals.get(key)
+        call = _find_read(values[0]) if len(values) == 1 else None
+        if literal is None or call is None or not _is_literal(literal):
+            continue
+        name, default = new.text(get_name_argument(call)), _find_default(new, call)
+        if name is not None and default is not None and ast.literal_eval(literal) != ast.literal_eval(default):
+            yield (
+                phrase(
+                    "{variable} gets the parameter '{name}' now: by default, {old} -> {new}",
+                    variable=key[1],
+                    name=name,
+                    old=ast.unparse(literal),
+                    new=ast.unparse(default),
+                ),
+                new.span(values[0]),
+            )
+
+
+def _read_assignments(python: PythonFile) -> dict[tuple[str, str], list[ast.expr]]:
+    """Return the expressions that each function assigns to each variable and attribute."""
+    assignments: dict[tuple[str, str], list[ast.expr]] = {}
+
+    def read(body: list[ast.stmt], scope: str) -> None:
+        for node in body:
+            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+                read(node.body, f"{scope}.{node.name}")
+                continue
+            for part in ast.walk(node):
+                if isinstance(part, ast.Assign):
+                    for target in part.targets:
+                        assignments.setdefault((scope, ast.unparse(target)), []).append(part.value)
+                elif isinstance(part, (ast.AugAssign, ast.AnnAssign)) and part.value is not None:
+                    assignments.setdefault((scope, ast.unparse(part.target)), []).append(part.value)
+
+    read(python.tree.body, "")
+    return assignments
+
+
+def _find_read(node: ast.expr) -> ast.Call | None:
+    """Return the call that reads the parameter of an expression such as ``float(node.get_parameter("x").value)``."""
+    for _ in range(_MAX_DEPTH):
+        if isinstance(node, ast.Attribute):
+            node = node.value
+        elif not isinstance(node, ast.Call):
+            return None
+        elif called_name(node).rpartition(".")[2] in _READERS:
+            return node
+        elif called_name(node) in _CONVERSIONS and len(node.args) == 1:
+            node = node.args[0]
+        elif isinstance(node.func, ast.Attribute) and node.func.attr == "get_parameter_value":
+            node = node.func.value
+        else:
+            return None
+    return None
+
+
+def _find_default(python: PythonFile, call: ast.Call) -> ast.expr | None:
+    """Return the literal default in a call that reads or declares a parameter, or in the only declaration of it."""
+    given = call.args[1] if len(call.args) > 1 else argument_of(call, "default") or argument_of(call, "value")
+    if given is not None:
+        default = python.resolved(given)
+        return default if _is_literal(default) else None
+    declarations = find_declarations(python, call, python.text(get_name_argument(call)))
+    has_own = len(declarations) == 1 and len(declarations[0].args) + len(declarations[0].keywords) > 1
+    return _find_default(python, declarations[0]) if has_own else None
+
+
+def _is_literal(node: ast.expr) -> bool:
+    try:
+        return ast.literal_eval(node) is not None
+    except (ValueError, TypeError, SyntaxError):
+        return False

@@ -1,0 +1,39 @@
+"""Find the names and methods that a changed Python source uses although nothing defines them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.review.sources.names import SourceNames
+
+
+class UndefinedUse(NamedTuple):
+    """A use of an undefined name, with the text of its line, its location and the reason why it is breaking."""
+
+    text: Phrase
+    span: Span
+    reason: Phrase
+
+
+def find_undefined_uses(old: SourceNames, new: SourceNames, *, is_added: bool) -> Iterator[UndefinedUse]:
+    """Yield the undefined names and methods that only the new version of a source uses.
+
+    If the old version used undefined names, something unknown may define them, so new ones are not certain.
+
+    Args:
+        old: the names in the old source.
+        new: the names in the new source.
+        is_added: whether only the new version has the source.
+    """
+    for name, span in new.undefined_names.items() if not is_added else ():
+        reason = phrase("the code that uses the name fails")
+        if name in old.bound_names:
+            yield UndefinedUse(phrase("uses '{name}', which it no longer defines or imports", name=name), span, reason)
+        elif old.bound_names and not old.undefined_names:
+            yield UndefinedUse(phrase("uses '{name}', which nothing defines", name=name), span, reason)
+    for name, span in new.undefined_methods.items():
+        if name in old.attributes:
+            text = phrase("calls its method '{name}', which is no longer defined", name=name)
+            yield UndefinedUse(text, span, phrase("the call fails"))
