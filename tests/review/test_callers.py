@@ -265,3 +265,12 @@ def test_a_generated_module_may_leave_the_repository(repository, compare, head):
     repository.write({"arm/arm/state_pb2.py": None})
     failing = [sentence for sentence in breaking(compare(repository)) if sentence.startswith("imports ")]
     assert bool(failing) == (not head)
+
+
+def test_functions_of_an_added_module_are_told(repository, compare):
+    manifest = PACKAGE_XML.replace("arm_description", "arm")
+    repository.commit({"arm/package.xml": manifest, "arm/arm/__init__.py": ""})
+    text = "def walk(now):\n    pass\n\n\nclass Plan:\n    def run(self):\n        pass\n"
+    repository.write({"arm/arm/plans.py": text})
+    lines = sentences(subject(compare(repository), "arm/arm/plans.py"))
+    assert lines == ["classes added: 'Plan'", "functions added: 'walk' (now)"]

@@ -184,7 +184,7 @@ def test_a_constant_of_the_source_with_another_name_is_not_a_value(review_lines)
     text = "STEP = 1\n\ndef f():\n    return STEP\n"
     assert review_lines("rover/step.py", text, "STEP", "STEP_SIZE") == [
         "constants renamed: STEP -> STEP_SIZE",
-        "code changed in 'f()'",
+        "in 'f()': `return STEP` -> `return STEP_SIZE`",
     ]
 
 

@@ -87,8 +87,8 @@ def review_lines(repository, compare):
         ("goal.succeed()", "goal.abort()", "code changed in 'Driver.reach()' (callback of action 'reach')"),
         ("            return response\n", "        return response\n",
          "code changed in 'Driver.on_home()' (callback of service 'home')"),
-        ("max(value", "min(value", "code changed in 'clamp()'"),
-        ("(value, low)", "(value, low, high)", "code changed in 'clamp()'"),
+        ("max(value", "min(value", "in 'clamp()': `return max(value, low)` -> `return min(value, low)`"),
+        ("(value, low)", "(value, low, high)", "in 'clamp()': arguments (value, low) -> (value, low, high)"),
         ("def clamp", "def _floor", "code renamed: 'clamp()' -> '_floor()'"),
         ("def clamp", "def half(x):\n    return x / 2\n\n\ndef clamp", "code added: 'half()'"),
         ("\n    def reach(self, goal):\n        goal.succeed()\n", "", "code removed: 'Driver.reach()'"),
@@ -162,7 +162,7 @@ def test_nothing_is_told_of_cpp_whose_braces_do_not_match(review_lines):
     ],
 )
 def test_a_function_that_other_lines_tell_of_is_not_named_again(review_lines, old, new, expected):
-    line = expected or "code changed in 'Driver.on_mode()' (callback of subscription 'mode')"
+    line = expected or "in 'Driver.on_mode()' (callback of subscription 'mode'): `self.level = 4` added"
     assert review_lines("arm/scripts/driver.py", PYTHON, PYTHON.replace(old, new, 1)) == [line]
 
 

@@ -33,9 +33,10 @@ LIST = """  std::vector<std::string> names = {"mass", "load"};
             "parameters added: 'mass'",
             FAILS.format("mass"),
         ),
-        (CHECK.replace("return false", "mass_ = 1.0"), "parameters added: 'mass'", ""),
+        (CHECK.replace("return false", "mass_ = 1.0"), "parameters added: 'mass' (1.0)", ""),
         (CHECK.replace("if (", "if (is_heavy && "), "parameters added: 'mass'", ""),
         (CHECK.replace("if (!", "if ("), "parameters added: 'mass'", ""),
+        ("  if (is_heavy_) {\n" + CHECK + "  }\n", "parameters added: 'mass'", ""),
         (TABLE, "parameters added: 'mass', 'load'", FAILS.format("mass, load")),
         (LIST, "parameters added: 'mass' (1.0), 'load' (1.0)", ""),
         ('  node->declare_parameter<double>("mass");\n', "parameters added: 'mass'", FAILS.format("mass")),
@@ -57,3 +58,19 @@ def test_a_parameter_may_become_required(repository, compare):
     repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": SOURCE.format(old)})
     repository.write({"arm/src/arm.cpp": SOURCE.format(CHECK)})
     assert breaking(compare(repository)) == ["parameter 'mass': required no -> yes"]
+
+
+def test_the_value_that_a_variable_gets_without_its_parameter_is_the_default(repository, compare):
+    code = '  if (!nh.getParam("mass", mass_)) {\n    mass_ = 1.5;\n    log();\n  }\n'
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": SOURCE.format(code)})
+    repository.write({"arm/src/arm.cpp": SOURCE.format(code.replace("1.5", "2.5"))})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == "parameter 'mass': default 1.5 -> 2.5"
+
+
+def test_a_variable_that_a_call_does_not_set_keeps_its_value(repository, compare):
+    code = '  bool is_heavy = false;\n  nh.getParam("is_heavy", is_heavy);\n'
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": SOURCE.format("")})
+    repository.write({"arm/src/arm.cpp": SOURCE.format(code)})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == "parameters added: 'is_heavy' (false)"

@@ -132,3 +132,31 @@ def test_names_of_parameters_of_a_plugin_are_known(repository, compare):
     (found,) = compare(repository).subjects
     assert sentences(found)[0] == "publisher 'odom' (Odometry) comes from parameter 'topic' now ('odom' by default)"
     assert not any("frames of messages" in line for line in sentences(found))
+
+
+EMPTY = """import rclpy
+from rclpy.node import Node
+
+
+class Arm(Node):
+    def __init__(self):
+        super().__init__("arm")
+        self.declare_parameter(name="camera", value={})
+        self.camera = self.get_parameter("camera").value
+        self.out = self.create_publisher(Image, "done", 1)
+
+    def send(self, image):
+        image.header.frame_id = self.camera
+        if not self.camera:
+            image.header.frame_id = {}
+        self.out.publish(image)
+"""
+
+
+@pytest.mark.parametrize(("fallback", "is_lost"), [("image.source", True), ('"lens"', False)])
+def test_frame_that_a_parameter_no_longer_gives_by_default(repository, compare, fallback, is_lost):
+    repository.commit({**MANIFEST, "arm/arm/arm.py": EMPTY.format('"lens"', "None")})
+    repository.write({"arm/arm/arm.py": EMPTY.format('""', fallback)})
+    (found,) = compare(repository).subjects
+    assert "parameter 'camera': default 'lens' -> ''" in sentences(found)
+    assert any("'lens'" in str(change.reason) for change in found.changes) is is_lost

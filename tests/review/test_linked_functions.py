@@ -95,3 +95,27 @@ def test_a_topic_that_moves_into_the_namespace_of_its_node_is_lost_only_in_a_nam
     repository.write({"arm/src/n.cpp": text.replace("/done", "done")})
     ((_, change),) = compare(repository).breaking_changes
     assert str(change.reason) == "if the node has a namespace, programs that use the name '/done' do not find it"
+
+
+def test_a_member_whose_type_has_another_meaning_shows_both_types(repository, compare):
+    alias = HEADER.replace("bool stop();\n", "bool stop();\n  using Strand = asio::first;\n")
+    text = alias.replace("#if NEW >= 1\n", "  Strand next_;\n#if NEW >= 1\n")
+    repository.commit({**MANIFEST, "arm/CMakeLists.txt": CATKIN, "arm/include/arm/base.hpp": text})
+    repository.write({"arm/include/arm/base.hpp": text.replace("asio::first", "asio::second")})
+    lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
+    assert "protected member 'Base::next_': type asio::first -> asio::second" in lines
+
+
+@pytest.mark.parametrize(
+    ("declaration", "is_told"), [("class Phase;\n", True), ("namespace arm { class Phase; }\n", False), ("", False)]
+)
+def test_a_class_outside_of_namespaces_is_another_type_than_a_message(repository, compare, declaration, is_told):
+    text = HEADER.replace("bool reset();", "bool reset(const Phase & phase);").replace(
+        "class Base", f"{declaration}class Base"
+    )
+    new = text.replace(declaration, "").replace("const Phase &", "const walk::msg::Phase &") if declaration else None
+    new = new or text.replace("const Phase &", "const walk::msg::Phase &")
+    repository.commit({**MANIFEST, "arm/CMakeLists.txt": CATKIN, "arm/include/arm/base.hpp": text})
+    repository.write({"arm/include/arm/base.hpp": new})
+    lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
+    assert ("function 'Base::reset': (const Phase&) -> (const walk::msg::Phase&)" in lines) is is_told

@@ -142,3 +142,11 @@ def test_new_name_of_a_node_whose_old_name_is_in_another_source(review_node, oth
     found, broken = review_node(files, {"arm/src/drive.cpp": NODE.replace('Node("drive")', 'Node("wheels")')})
     assert [line for line in found if line.startswith("node ")] == lines
     assert len(broken) == len(lines)
+
+
+def test_the_only_node_of_a_source_is_renamed_although_another_node_has_the_old_name(repository, compare):
+    text = 'int main() {{ rclcpp::Node::make_shared("{}"); spin(); }}\n'
+    files = {f"arm/src/{name}.cpp": text.format("serial") for name in ("can", "serial")}
+    repository.commit({"arm/package.xml": PACKAGE_XML, **files})
+    repository.write({"arm/src/can.cpp": text.format("can")})
+    assert breaking(compare(repository)) == ["node 'serial' renamed to 'can'"]

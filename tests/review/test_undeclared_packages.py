@@ -40,6 +40,26 @@ def test_an_undeclared_package_is_breaking(repository, compare, path, old, new, 
     assert result.new_findings == []
 
 
+@pytest.mark.parametrize(
+    ("dependencies", "own", "is_breaking"),
+    [
+        ([], "light_driver", True),
+        (["rospy", "light_msgs", "python3-serial"], "light_driver", True),
+        (["light_driver"], "light_driver", False),
+        (["light_suite"], "light_driver", False),
+        ([], "other_driver", False),
+    ],
+)
+def test_an_imported_package_that_another_manifest_names(repository, compare, dependencies, own, is_breaking):
+    depend = "".join(f"<depend>{name}</depend>" for name in ("catkin", *dependencies))
+    other = MANIFEST.replace("lamp", "torch").format(f"<depend>{own}</depend>")
+    repository.commit({"lamp/package.xml": MANIFEST.format(depend), "lamp/a.py": "", "torch/package.xml": other})
+    repository.write({"lamp/a.py": "from light_driver.node import LightNode\n"})
+    result = compare(repository)
+    reasons = [str(change.reason) for _, change in result.breaking_changes]
+    assert reasons == ([IMPORT_REASON.format("light_driver")] if is_breaking else [])
+
+
 def test_an_undeclared_package_of_a_new_package_is_a_finding(repository, compare):
     repository.commit({"README.md": "lamps\n"})
     repository.write({"lamp/package.xml": MANIFEST.format(""), "lamp/a.py": "from light_msgs.msg import Level\n"})

@@ -74,7 +74,7 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
 def list_commands(version: Version, path: str) -> Phrase | None:
     """Return the first commands of an added or removed shell script or unit of systemd, or None for other files."""
     is_unit = path.endswith(UNIT_SUFFIX)
-    if not is_unit and not _is_shell_script(version, path):
+    if not is_unit and not is_shell_script(version, path):
         return None
     lines = list_started_programs(version, path) if is_unit else [*_split_content_lines(version.text(path))]
     return joined_first([f"`{shorten(line, _MAX_COMMAND_LENGTH)}`" for line in lines], _MAX_LINES) if lines else None
@@ -111,10 +111,10 @@ def _format_lines(added: Phrase | str, removed: Phrase | str) -> Phrase:
 def _has_lines(version: Version, path: str) -> bool:
     name = PurePosixPath(path).name.lower()
     is_known = PurePosixPath(name).suffix in _SUFFIXES or _FILE_NAME.fullmatch(name) is not None
-    return is_known or _is_shell_script(version, path)
+    return is_known or is_shell_script(version, path)
 
 
-def _is_shell_script(version: Version, path: str) -> bool:
+def is_shell_script(version: Version, path: str) -> bool:
     """Return whether a file is a shell script by its suffix or its first line."""
     if PurePosixPath(path).suffix in _SHELL_SUFFIXES:
         return True

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Diagnostic, Phrase, joined, phrase
-from linkwright.lint.dependencies import is_covered
+from linkwright.lint.dependencies import is_always_installed, is_covered, is_in_every_workspace
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
@@ -39,6 +39,8 @@ _PYTHON_PROJECTS = {
 _LISTS = ("requirements", "dockerfile", "containerfile", "environment", "setup.", "pyproject", "pipfile", "install")
 """The beginnings of the names of other files that tell what to install."""
 _SCRIPT_SUFFIX = ".sh"
+_TOOLS = ("ament_", "catkin", "python", "rosidl_", "launch")
+"""The beginnings of the names of dependencies that bring no other packages of nodes."""
 
 
 def mark_undeclared(
@@ -108,7 +110,9 @@ class _Marker:
             if is_python_source(self._path):
                 word = _PYTHON_PROJECTS.get(name)
                 is_used = re.search(rf"^(?:import|from)[ \t]+{re.escape(name)}\b", text, re.MULTILINE) is not None
-                if word is not None and is_used and not self._is_listed(word, manifest):
+                if not is_used:
+                    continue
+                if self._is_undeclared_package(name, manifest) if word is None else not self._is_listed(word, manifest):
                     yield name
             elif _INTERFACE_PACKAGE.fullmatch(name) and _OPTIONAL_INCLUDE not in text:
                 header = re.compile(_INTERFACE_HEADER.replace("{name}", name), re.MULTILINE)
@@ -120,9 +124,36 @@ class _Marker:
         names = [dependency.name.lower() for dependency in manifest.dependencies]
         return any(word in name for name in names) or word.lower() in _read_lists(self._version)
 
+    def _is_undeclared_package(self, name: str, manifest: Manifest) -> bool:
+        """Return whether another manifest of the repository depends on a package that this one certainly lacks.
+
+        It does not if a dependency that is not in the repository may bring the package.
+        """
+        own = self._version.shares
+        others = [other for other in _read_manifests(self._version) if other.name != manifest.name]
+        is_named = name in own or any(dependency.name == name for other in others for dependency in other.dependencies)
+        folder = self._version.file(self._version.package_of(self._path) or "")
+        if not is_named or is_covered(name, manifest, self._version.finder(folder)):
+            return False
+        names = {dependency.name for dependency in manifest.dependencies} - own.keys()
+        return all(
+            _INTERFACE_PACKAGE.fullmatch(other)
+            or other.startswith(_TOOLS)
+            or is_always_installed(other)
+            or is_in_every_workspace(other, is_ros1=manifest.is_ros1)
+            for other in names
+        )
+
     @property
     def _path(self) -> str:
         return self._subject.new_path or self._subject.path
+
+
+def _read_manifests(version: Version) -> Iterator[Manifest]:
+    """Yield the manifests of all packages of a repository."""
+    for path in version.paths((MANIFEST,)):
+        if PurePosixPath(path).name == MANIFEST:
+            yield Manifest(read_document(str(version.file(path))))
 
 
 def _read_lists(version: Version) -> str:

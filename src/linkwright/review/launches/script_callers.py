@@ -10,6 +10,7 @@ from pathlib import Path, PurePosixPath
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.command_files import list_command_files
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.default_names import find_script
@@ -19,7 +20,6 @@ from linkwright.review.list_changes import list_items
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.versions import Version, Versions
 
-_SHELL_SUFFIXES = (".sh", ".bash", ".zsh")
 _POSITIONAL_READING = re.compile(r"\bsys\.argv\s*\[\s*[1-9:]")
 _ANY_READING = re.compile(
     r"\b(?:argv|sys\.orig_argv|myargv|ArgumentParser|OptionParser|getopt|docopt|fire|click|typer|absl)\b"
@@ -34,7 +34,7 @@ _REMAPPING = re.compile(r"[^\s=]*:=\S*")
 def find_lost_arguments(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the callers that pass unknown arguments to a changed program.
 
-    Each shell script or launch file comes with a change.
+    Each file with commands or launch file comes with a change.
 
     A program took positional arguments if its old version reads ``sys.argv`` by an index. Options of argparse are
     compared for shell scripts; see `find_refused_options` for launch files.
@@ -45,7 +45,7 @@ def find_lost_arguments(versions: Versions, changed_files: Sequence[ChangedFile]
     stems = {PurePosixPath(path).stem for path in changed_programs}
     if not changed_programs:
         return
-    for path in versions.new.paths(_SHELL_SUFFIXES):
+    for path in list_command_files(versions.new):
         text = versions.new.text(path)
         if any(stem in text for stem in stems) or "run " in text:
             yield from _compare_shell_script(versions, path, text, changed_programs, ignoring_programs)

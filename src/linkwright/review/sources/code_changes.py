@@ -28,6 +28,7 @@ _PLAIN_CODE = re.compile(r"[\W\d]*\w+ = [^(]*|[\W\d]*(?:if|try|with|else)\b.*", 
 """Assignments of literals, and the heads of statements other than loops."""
 _VALUES = "values in {name}: {values}"
 _MODULE_VALUES = "values: {values}"
+_STATEMENTS = "in {function}: {changes}"
 _MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
 _MIN_STATEMENTS = 2
@@ -72,7 +73,7 @@ def find_code_change(
         names: the names in the new version.
         renamed_classes: the new names of the renamed classes, by their old names.
     """
-    lines = _ReportedLines(reported)
+    lines = ReportedLines(reported)
     removed = [name for name in old.functions if name not in new.functions and not has_moved(name, old)]
     added = [name for name in new.functions if name not in old.functions and not has_moved(name, new)]
     pairs = [(name, name) for name in new.functions if name in old.functions]
@@ -84,7 +85,10 @@ def find_code_change(
         pairs += [(old_name, new_name)] if is_same_name else []
         renamed += [] if is_same_name else [(old_name, new_name)]
     changed = [
-        pair for pair in pairs if lines.has_unreported_change(old.functions[pair[0]], new.functions[pair[1]], pair[1])
+        pair
+        for pair in pairs
+        if str(format_function(pair[1], names)) not in lines.shown_functions
+        and lines.has_unreported_change(old.functions[pair[0]], new.functions[pair[1]], pair[1])
     ]
     removed, added = ([name for name in items if not lines.mentions(name)] for items in (removed, added))
     classes = {name: other for name, other in renamed_classes.items() if not lines.renames(name, other)}
@@ -119,7 +123,7 @@ def find_added_code(
         has_moved: whether a different source had a function with the same name and code.
         names: the names in the program.
     """
-    lines = _ReportedLines(reported)
+    lines = ReportedLines(reported)
     added = [name for name in new.functions if not lines.mentions(name) and not has_moved(name, new)]
     texts = _format_functions([], added, [], [], names)
     own_names = {_get_short_name(name) for name in (*new.functions, *new.outside)}
@@ -149,10 +153,10 @@ def _format_functions(
     texts = []
     if changed:
         texts.append(
-            phrase("code changed in {names}", names=_join_names(_format_function(name, names) for _, name in changed))
+            phrase("code changed in {names}", names=_join_names(format_function(name, names) for _, name in changed))
         )
     if added:
-        texts.append(phrase("code added: {names}", names=_join_names(_format_function(name, names) for name in added)))
+        texts.append(phrase("code added: {names}", names=_join_names(format_function(name, names) for name in added)))
     if removed:
         texts.append(phrase("code removed: {names}", names=_join_names(f"'{name}()'" for name in removed)))
     if renamed:
@@ -165,7 +169,7 @@ def _list_renamed(classes: Mapping[str, str], functions: Sequence[tuple[str, str
     return [*classes.items(), *((f"{old}()", f"{new}()") for old, new in functions)]
 
 
-def _format_other_code(old: Code, new: Code, lines: _ReportedLines) -> list[Phrase]:
+def _format_other_code(old: Code, new: Code, lines: ReportedLines) -> list[Phrase]:
     """Return a text for the code outside of functions, if it changes in more than other lines report."""
     names = old.functions.keys() | new.functions.keys()
     changed = {
@@ -271,7 +275,7 @@ def _get_short_name(name: str) -> str:
 
 
 def _find_renamed(
-    old: Code, new: Code, removed: Sequence[str], added: Sequence[str], lines: _ReportedLines
+    old: Code, new: Code, removed: Sequence[str], added: Sequence[str], lines: ReportedLines
 ) -> list[tuple[str, str]]:
     """Return the old and new names of renamed functions.
 
@@ -302,7 +306,7 @@ def _find_renamed(
     return pairs
 
 
-def _format_function(name: str, names: SourceNames) -> str:
+def format_function(name: str, names: SourceNames) -> str:
     """Return the name of a function with the topic, service or action that calls it."""
     callback = names.find_callback(name)
     if callback is None:
@@ -313,13 +317,14 @@ def _format_function(name: str, names: SourceNames) -> str:
     return phrase("'{name}()' (callback of {kind} '{topic}')", name=name, kind=kind.title, topic=topic)
 
 
-class _ReportedLines:
+class ReportedLines:
     """The other lines that are reported about a source.
 
     Args:
         changes: the changes that the lines report.
 
     Attributes:
+        shown_functions: the functions whose changed statements a line shows.
         has_module_values: whether a line reports values in the code outside of functions.
     """
 
@@ -334,6 +339,9 @@ class _ReportedLines:
         }
         self._functions = {
             str(change.sentence.arguments["name"]) for change in changes if change.sentence.template == _VALUES
+        }
+        self.shown_functions = {
+            str(change.sentence.arguments["function"]) for change in changes if change.sentence.template == _STATEMENTS
         }
         self.has_module_values = any(change.sentence.template == _MODULE_VALUES for change in changes)
         self._lines: Mapping[bool, Collection[int]] = {

@@ -62,6 +62,8 @@ from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.whole_sources import WholeSourcePair
 from linkwright.review.versions import Versions
 
+_MAIN = "main"
+"""The function of a program that its build file or its last statement names."""
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds that matter to others only if they can import or include the source."""
 
@@ -141,6 +143,10 @@ class _SourcePair(WholeSourcePair):
         lacks = self.old.lacks
         if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
             lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it
+        is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1
+        if is_sole_node and only_new and self.old.lacks(next(iter(only_new.values())), old_path):
+            removed = list(only_old.values())  # even if another node of the package has the old name
+        is_sole_node = is_sole_node and bool(removed)
         added = [
             item
             for item in only_new.values()
@@ -303,7 +309,10 @@ class _SourcePair(WholeSourcePair):
     ) -> Iterator[Change]:
         if not is_used_by_others(kind, self.file.path, old_names):
             return
-        if added and (kind not in (NameKind.FUNCTION, NameKind.MEMBER) or self.file.old_path is not None):
+        if kind in (NameKind.FUNCTION, NameKind.MEMBER) and self.file.old_path is None:
+            is_module = self.file.path.endswith(PYTHON_SUFFIX)
+            added = [item for item in added if is_module and "." not in item.name and item.name != _MAIN]
+        if added:
             text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
             reason = find_required_reason(added) if self.file.old_path is not None else None
             yield self.make_change(text, added[0].span, self.new, reason)
@@ -359,7 +368,8 @@ class _SourcePair(WholeSourcePair):
         server = self.new.find_user(old_item, path)
         if server is not None:
             return make_user_reason(old_item.kind, server, old_item.name)
-        return phrase("servers that offer '{name}' get no requests", name=old_item.name)
+        reason = phrase("servers that offer '{name}' get no requests", name=old_item.name)
+        return reason if new_item.name else None
 
     # --- expressions ------------------------------------------------------------------------------------------------
 

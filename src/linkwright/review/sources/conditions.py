@@ -26,7 +26,7 @@ _MAX_DEPTH = 30
 _MAX_TOKENS = 100
 """The maximum number of brackets in a statement without a block."""
 _MAX_SOURCE_CHARACTERS = 400
-_MAX_CHARACTERS = 80
+_MAX_CHARACTERS = 160
 """The maximum number of characters of a shown condition."""
 
 

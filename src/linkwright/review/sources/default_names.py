@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.sources.names import DefaultName, SourceNames
+from linkwright.review.sources.names import DefaultName, NameKind, SourceNames
 from linkwright.review.versions import Version
 
 _SETTING_SUFFIXES = (".yaml", ".yml", ".launch", ".launch.py", ".xml")
@@ -31,10 +31,17 @@ def find_default_reason(
             for other in new.default_names
             if (other.parameter, other.kind) == (item.parameter, item.kind)
         }
-        reason = find_removal_reason(item) if used and item.name.lstrip("/") not in used else None
+        is_given = bool(used) or _is_empty_by_default(item, new)
+        reason = find_removal_reason(item) if is_given and item.name.lstrip("/") not in used else None
         if reason is not None:
             return phrase("by default, {reason}", reason=reason)
     return None
+
+
+def _is_empty_by_default(item: DefaultName, new: SourceNames) -> bool:
+    """Return whether a parameter is an empty text by default, and the source has its old default nowhere else."""
+    defaults = [known.type for known in new.of_kind(NameKind.PARAMETER) if known.name.lstrip("~/") == item.parameter]
+    return defaults in (["''"], ['""']) and all(known.name != item.name for known in new.of_kind(item.kind))
 
 
 def is_set_in_package(version: Version, package: str | None, parameter: str) -> bool:

@@ -224,6 +224,9 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
         return (
             None if is_accepted else phrase("programs that call '{name}' with the old arguments fail", name=name.name)
         )
+    if detail is Detail.SHORT_FORM:
+        lost = sorted(set(old.split(", ")) - {*new.split(", "), ""})
+        return phrase("callers that pass '{name}' get an error", name=", ".join(lost)) if lost else None
     if detail is Detail.LATCH and before:
         return phrase("subscribers that start later do not get the last message")
     return None

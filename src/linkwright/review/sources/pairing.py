@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 
@@ -113,7 +114,9 @@ def has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, new
     """Return whether a function or member only has other names for the same types."""
     is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
     types = old_names.resolve_aliases(old.type), new_names.resolve_aliases(new.type)
-    return is_member and has_same_parameters(*types)
+    own = old_names.forward_classes ^ new_names.forward_classes
+    has_other_class = any(re.search(rf"(?<!::)\b{name}\b", text) for name in own for text in types)
+    return is_member and not has_other_class and has_same_parameters(*types)
 
 
 def is_same_frame(old: SourceName, new: SourceName) -> bool:

@@ -78,7 +78,7 @@ def find_parameter_default(python: PythonFile, node: ast.expr) -> ParameterDefau
     for _ in range(_MAX_DEPTH):
         value = python.resolved(node)
         if isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in _READERS:
-            name = python.text(value.args[0]) if value.args else None
+            name = python.text(get_name_argument(value))
             default = _find_default(python, value)
             return ParameterDefault((name or "").lstrip("~/"), default) if default else None
         if isinstance(value, ast.Attribute) and isinstance(value.value, ast.Name):
@@ -102,12 +102,8 @@ def _find_default(python: PythonFile, call: ast.Call) -> str:
         given = argument_of(call, "value")
     if given is not None:
         return python.text(given) or ""
-    name = python.text(call.args[0]) if call.args else None
-    declarations = [
-        declared
-        for declared in python.calls("declare_parameter")
-        if name is not None and declared.args and python.text(declared.args[0]) == name and declared is not call
-    ]
+    name = python.text(get_name_argument(call))
+    declarations = find_declarations(python, call, name)
     if len(declarations) == 1:
         return _find_default(python, declarations[0])
     listed = [
@@ -117,6 +113,21 @@ def _find_default(python: PythonFile, call: ast.Call) -> str:
         if isinstance(item, ast.Tuple) and len(item.elts) > 1 and python.text(item.elts[0]) == name
     ]
     return (python.text(listed[0]) or "") if len(listed) == 1 and name is not None else ""
+
+
+def get_name_argument(call: ast.Call) -> ast.expr | None:
+    """Return the name of a parameter in a call that reads or declares it."""
+    return call.args[0] if call.args else argument_of(call, "name")
+
+
+def find_declarations(python: PythonFile, call: ast.Call, name: str | None) -> list[ast.Call]:
+    """Return the other calls that declare the parameter of a call."""
+    declarations = python.calls("declare_parameter") if name is not None else ()
+    return [
+        declared
+        for declared in declarations
+        if declared is not call and python.text(get_name_argument(declared)) == name
+    ]
 
 
 def _find_assigned_value(python: PythonFile, attribute: ast.Attribute) -> ast.expr | None:

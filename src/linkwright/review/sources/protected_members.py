@@ -27,7 +27,12 @@ def compare_protected(old: SourceNames, new: SourceNames) -> Iterator[HeaderChan
     before = _join_types(old.protected)
     for item in _join_types(new.protected).values():
         other = before.get((item.kind, item.name))
-        if other is not None and old.resolve_aliases(other.type) != new.resolve_aliases(item.type):
+        if other is None:
+            continue
+        resolved = old.resolve_aliases(other.type), new.resolve_aliases(item.type)
+        if resolved[0] != resolved[1]:
+            if other.type == item.type:  # the header gives the name to another type
+                other, item = replace(other, type=resolved[0]), replace(item, type=resolved[1])
             yield _compare_types(other, item)
 
 

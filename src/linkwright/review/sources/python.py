@@ -36,6 +36,7 @@ from linkwright.review.sources.undefined_names import find_bound_names, find_und
 
 _RCLPY_METHODS = {
     "create_publisher": (NameKind.PUBLISHER, "msg_type", "topic", 2),
+    "create_lifecycle_publisher": (NameKind.PUBLISHER, "msg_type", "topic", 2),
     "create_subscription": (NameKind.SUBSCRIPTION, "msg_type", "topic", 3),
     "create_service": (NameKind.SERVICE, "srv_type", "srv_name", -1),
     "create_client": (NameKind.CLIENT, "srv_type", "srv_name", -1),
@@ -74,6 +75,8 @@ _PARAMETER_CALLS = ("declare_parameter", "get_param", "get_param_cached", "get_p
 _PARAMETER_NAME_CALLS = (*_PARAMETER_CALLS, "search_param", "has_param")
 _DICTIONARY_METHODS = ("items", "iteritems", "keys", "iterkeys")
 _FRAME_FIELDS = {"frame_id": NameKind.MESSAGE_FRAME, "child_frame_id": NameKind.FRAME}
+_CLICK_OPTION = "click.option"
+_SHORT_OPTION = re.compile(r"-\w")
 _QOS = re.compile(r"\d+|[\w.]*(QoS|qos_profile|QOS)\w*(\(.*\))?", re.DOTALL)
 
 
@@ -380,7 +383,7 @@ class _Reader:
         elif function == "Server" and len(call.args) > 1 and ast.unparse(call.args[0]).endswith("Config"):
             name = ast.unparse(call.args[0]).rpartition(".")[2]
             self._names.add(SourceName(NameKind.RECONFIGURATION, name, "", self._python.span(call)))
-        elif function in ("add_argument", "add_option"):
+        elif function in ("add_argument", "add_option") or self._types.resolve(call.func) == _CLICK_OPTION:
             self._read_option(call)
         elif function in ("getopt", "gnu_getopt"):
             self._read_getopt(call)
@@ -413,9 +416,11 @@ class _Reader:
         texts = [text for text in map(self._python.text, call.args) if text]
         if not texts:
             return
-        name = max(texts, key=len)
+        name = max([text for text in texts if text.startswith("-")] or texts, key=len)
         default = argument_of(call, "default")
         details = [(Detail.REQUIRED, YES)] if _is_required(call, name) else []
+        short = [text for text in texts if _SHORT_OPTION.fullmatch(text) and text != name]
+        details += [(Detail.SHORT_FORM, ", ".join(sorted(short)))] if short else []
         for detail, keyword in ((Detail.VALUE_TYPE, "type"), (Detail.CHOICES, "choices")):
             node = argument_of(call, keyword)
             if node is not None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+from linkwright.review.sources.parameter_defaults import find_declarations, get_name_argument
 from linkwright.review.sources.python import parse_source
 from linkwright.review.sources.reading import try_read_source
 
@@ -34,7 +35,7 @@ def find_replaced_literals(old_path: Path, new_path: Path) -> Iterator[tuple[Phr
         call = _find_read(values[0]) if len(values) == 1 else None
         if literal is None or call is None or not _is_literal(literal):
             continue
-        name, default = new.text(call.args[0]) if call.args else None, _find_default(new, call)
+        name, default = new.text(get_name_argument(call)), _find_default(new, call)
         if name is not None and default is not None and ast.literal_eval(literal) != ast.literal_eval(default):
             yield (
                 phrase(
@@ -92,12 +93,7 @@ def _find_default(python: PythonFile, call: ast.Call) -> ast.expr | None:
     if given is not None:
         default = python.resolved(given)
         return default if _is_literal(default) else None
-    name = python.text(call.args[0]) if call.args else None
-    declarations = [
-        declared
-        for declared in python.calls("declare_parameter")
-        if declared is not call and declared.args and name is not None and python.text(declared.args[0]) == name
-    ]
+    declarations = find_declarations(python, call, python.text(get_name_argument(call)))
     has_own = len(declarations) == 1 and len(declarations[0].args) + len(declarations[0].keywords) > 1
     return _find_default(python, declarations[0]) if has_own else None
 

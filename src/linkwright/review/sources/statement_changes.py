@@ -11,11 +11,12 @@ from linkwright.review.sources.changed_sources import ChangedSources
 from linkwright.review.sources.changed_texts import find_text_changes
 from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
-from linkwright.review.sources.code_changes import find_added_code, find_code_change
+from linkwright.review.sources.code_changes import ReportedLines, find_added_code, find_code_change
 from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 from linkwright.review.sources.replaced_literals import find_replaced_literals
+from linkwright.review.sources.small_changes import find_small_changes
 
 
 def compare_statements(
@@ -32,6 +33,7 @@ def compare_statements(
     changes = [*reported, *_compare_constants(old, new, file, reported)]
     if file.old_path is not None and file.new_path is not None:
         changes += _compare_values(old, new, file, changes)
+        changes += _find_small_changes(old, new, file, changes)
         changes += _compare_code(old, new, file.old_path, file.new_path, changes)
         changes += _compare_keys(old, new, file, changes)
         changes += _find_deprecations(old, new, file)
@@ -54,6 +56,18 @@ def _compare_values(
     for change in find_text_changes(*paths):
         path = file.old_path if change.is_old else file.new_path
         yield Change(change.sentence, location=Location(path, change.line, 1, change.is_old))
+
+
+def _find_small_changes(
+    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
+) -> Iterator[Change]:
+    """Yield the functions in Python in which few statements differ, with these statements."""
+    before, after = old.codes.get(file.old_path or ""), new.codes.get(file.new_path or "")
+    if before is None or after is None or file.path.endswith(CPP_SUFFIXES):
+        return
+    for change in find_small_changes(before, after, ReportedLines(reported), new.get_names(file.new_path)):
+        path = (file.old_path if change.is_old else file.new_path) or file.path
+        yield Change(change.text, location=Location(path, change.line, 1, change.is_old))
 
 
 def _find_deprecations(old: ChangedSources, new: ChangedSources, file: ChangedFile) -> Iterator[Change]:

@@ -1,0 +1,78 @@
+"""Commands that start a removed program, and removed programs of ROS 1 that no build file installs."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking
+
+SCRIPT = "#!/usr/bin/env python3\nprint('arm')\n"
+MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+PATH = "arm/scripts/check.py"
+
+
+def find_breaking(repository, compare, files: dict[str, str], new: dict[str, str | None]) -> list[str]:
+    repository.commit({**MANIFEST, PATH: SCRIPT, **files})
+    repository.commit(new)
+    return breaking(compare(repository, "HEAD~..HEAD"))
+
+
+@pytest.mark.parametrize(
+    ("caller", "line", "name"),
+    [
+        ("Makefile", "\tpython3 arm/scripts/check.py --fast", "arm/scripts/check.py"),
+        (".github/workflows/ci.yml", "      - run: ./arm/scripts/check.py", "./arm/scripts/check.py"),
+        (".gitlab-ci.yml", "    - python3 arm/scripts/check.py -v", "arm/scripts/check.py"),
+        ("Dockerfile", "COPY arm/scripts/check.py /usr/bin/", "arm/scripts/check.py"),
+        ("arm/run.sh", "scripts/check.py &", "scripts/check.py"),
+    ],
+)
+@pytest.mark.parametrize("new", [{PATH: None}, {PATH: None, "arm/scripts/test.py": SCRIPT}])
+def test_command_that_names_a_removed_script_is_breaking(repository, compare, caller, line, name, new):
+    expected = f"names '{name}', which no longer exists"
+    assert find_breaking(repository, compare, {caller: f"a: b\n{line}\n"}, new) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("caller", "line"),
+    [
+        ("Makefile", "\t# python3 arm/scripts/check.py"),
+        ("Makefile", "\techo arm/scripts/check.py"),
+        ("Makefile", "\trm -f arm/scripts/check.py"),
+        (".github/workflows/ci.yml", "      - arm/scripts/check.py"),
+        ("run.sh", "[ -x arm/scripts/check.py ] && arm/scripts/check.py"),
+        ("run.sh", "other/arm/scripts/check.py"),
+        ("run.sh", "$HOME/arm/scripts/check.py"),
+        ("notes.md", "arm/scripts/check.py"),
+    ],
+)
+def test_line_that_starts_no_removed_script_is_not_breaking(repository, compare, caller, line):
+    assert find_breaking(repository, compare, {caller: f"a: b\n{line}\n"}, {PATH: None}) == []
+
+
+@pytest.mark.parametrize("command", ["rosrun arm check.py", "ros2 run arm check.py"])
+def test_command_that_runs_a_removed_executable_is_breaking(repository, compare, command):
+    build = "cmake_minimum_required(VERSION 3.8)\nproject(arm)\n"
+    install = "install(PROGRAMS scripts/check.py DESTINATION lib/${PROJECT_NAME})\n"
+    files = {"run.sh": f"{command} --fast\n", "arm/CMakeLists.txt": build + install}
+    found = find_breaking(repository, compare, files, {PATH: None, "arm/CMakeLists.txt": build})
+    assert "starts 'check.py' of 'arm', which no longer exists" in found
+
+
+@pytest.mark.parametrize(
+    ("is_executable", "new", "expected"),
+    [
+        (True, {PATH: None, "arm/scripts/test.py": SCRIPT}, ["program 'check.py' renamed to 'test.py'"]),
+        (True, {PATH: None}, ["program 'check.py' removed"]),
+        (True, {PATH: None, "arm/nodes/check.py": SCRIPT}, []),
+        (False, {PATH: None}, []),
+    ],
+)
+def test_lost_program_of_ros1_is_breaking(repository, compare, is_executable, new, expected):
+    depend = "<buildtool_depend>catkin</buildtool_depend><exec_depend>"
+    manifest = MANIFEST["arm/package.xml"].replace("<exec_depend>", depend)
+    build = {"arm/CMakeLists.txt": "project(arm)\nfind_package(catkin REQUIRED)\ncatkin_package()\n"}
+    repository.commit({PATH: SCRIPT})
+    repository.root.joinpath(PATH).chmod(0o755 if is_executable else 0o644)
+    assert find_breaking(repository, compare, {"arm/package.xml": manifest, **build}, new) == expected

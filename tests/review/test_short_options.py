@@ -1,0 +1,39 @@
+"""The short forms of command-line options, and the options of click."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import sentences, subject
+
+PATH = "arm/scripts/plan.py"
+ARGPARSE = "import argparse\nparser = argparse.ArgumentParser()\nparser.add_argument({})\n"
+CLICK = "import click\n\n\n@click.command()\n@click.option({})\ndef main(rate):\n    pass\n"
+OTHER = "import menu\n\n\n@menu.option({})\ndef main(rate):\n    pass\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "expected", "reason"),
+    [
+        (ARGPARSE, "'-r', '--rate'", "'--rate'", "command-line option '--rate': short form -r -> -",
+         "callers that pass '-r' get an error"),
+        (ARGPARSE, "'--rate'", "'-r', '--rate'", "command-line option '--rate': short form - -> -r", "None"),
+        (CLICK, "'--rate', '-r', 'rate_hz'", "'--rate', 'rate_hz'", "command-line option '--rate': short form -r -> -",
+         "callers that pass '-r' get an error"),
+        (CLICK, "'--rate'", "'--hertz'", "command-line option '--rate' renamed to '--hertz'",
+         "callers that pass '--rate' get an error"),
+        (CLICK, "'--rate'", "'--rate', required=True", "command-line option '--rate': required no -> yes",
+         "callers that do not pass '--rate' get an error"),
+    ],
+)  # fmt: skip
+def test_changed_option_of_a_script(repository, compare, text, old, new, expected, reason):
+    repository.commit({PATH: text.format(old)})
+    repository.write({PATH: text.format(new)})
+    changes = subject(compare(repository), PATH).changes
+    assert (expected, reason) in [(str(change.sentence), str(change.reason)) for change in changes]
+
+
+def test_option_of_another_library_is_not_one_of_the_command_line(repository, compare):
+    repository.commit({PATH: OTHER.format("'--rate'")})
+    repository.write({PATH: OTHER.format("'--hertz'")})
+    assert not any("option" in line for line in sentences(subject(compare(repository), PATH)))
