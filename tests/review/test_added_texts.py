@@ -203,3 +203,12 @@ def test_constants_of_classes_are_told(repository, compare, old, new, expected):
     assert old in text
     repository.write({"a/src/battery.hpp": text.replace(old, new)})
     assert sentences(compare(repository).subjects[0]) == expected
+
+
+def test_a_constant_of_a_function_is_no_constant_of_the_source(repository, compare):
+    text = "class Clock {\n  static constexpr int kStart = 3;\n  int next() {\n    return kStart;\n  }\n};\n"
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/clock.cpp": text})
+    new = text.replace("return kStart;", "constexpr int kStep = 1000;\n    return kStart * kStep;")
+    repository.write({"arm/src/clock.cpp": new.replace("kStart = 3;", "kStart = 3;\n  static constexpr int kEnd = 9;")})
+    (found,) = compare(repository).subjects
+    assert [line for line in sentences(found) if "constants" in line] == ["constants added: kEnd = 9"]

@@ -131,3 +131,52 @@ def test_a_parameter_whose_name_an_expression_cannot_give_is_lost(repository, co
     result = compare(repository)
     assert any("has a computed name now" in line for line in sentences(result.subjects[0]))
     assert bool(breaking(result)) is is_breaking
+
+
+def test_parameters_that_get_a_namespace_are_lost(repository, compare):
+    declare = 'declare_parameter<double>({}"{}", {});'
+    values = (("min_x", 1.0), ("max_x", 2.0))
+    old = " ".join(declare.format("", name, value) for name, value in values)
+    new = " ".join(declare.format("name + ", f".{name}", value) for name, value in values)
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": f"void f() {{ {old} }}\n"})
+    repository.write({"arm/src/arm.cpp": f'void f() {{ {new} declare_parameter<int>(name + ".count", 1); }}\n'})
+    assert breaking(compare(repository)) == [
+        (
+            "parameters that have computed names now: "
+            "'min_x' (1.0) -> name + \".min_x\", 'max_x' (2.0) -> name + \".max_x\""
+        )
+    ]
+
+
+def test_a_static_member_is_a_constant(repository, compare):
+    text = """const std::string Arm::kRate{"rate"};
+void Arm::load() {
+#ifdef ROS1
+  if (!nh.param<int>(kRate, rate_, 1)) {
+#else
+  if (!this->get_parameter(kRate, rate_)) {
+#endif
+    warn();
+  }
+}
+void Arm::setup() { p_ = create_publisher<Bool>("state", 1); }
+"""
+    removed = text[text.index("#ifdef") : text.index("}\nvoid Arm::setup")]
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": text})
+    repository.write({"arm/src/arm.cpp": text.replace(removed, "  more();\n")})
+    result = compare(repository)
+    assert breaking(result) == ["parameters removed: 'rate' (1)"]
+    assert not any("no longer only if" in line for subject in result.subjects for line in sentences(subject))
+
+
+@pytest.mark.parametrize(("served", "is_lost"), [("state", True), ("status", False)])
+def test_a_client_with_another_name_needs_a_server(repository, compare, served, is_lost):
+    text = 'void f() { c_ = create_client<Trigger>("state"); }\n'
+    server = 'void g() { s_ = create_service<Trigger>("state", h); }\n'
+    repository.commit(
+        {"arm/package.xml": PACKAGE_XML, "arm/a.cpp": text, "base/package.xml": PACKAGE_XML, "base/b.cpp": server}
+    )
+    repository.write({"arm/a.cpp": text.replace("state", "status"), "base/b.cpp": server.replace("state", served)})
+    assert (
+        "service client 'state' (Trigger) renamed to 'status' (Trigger)" in breaking(compare(repository))
+    ) is is_lost

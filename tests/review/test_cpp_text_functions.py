@@ -37,6 +37,7 @@ class Node {
         ("(state_topic(), 10)", '("arm/state", 10)', []),
         ("(state_topic(), 10)", "(own_topic(), 10)", ["publisher 'arm/state' (String) renamed to 'own' (String)"]),
         ("(load_topic(), 10)", "(big_topic(), 10)", []),
+        ("(state_topic(), 10)", '(ros::names::resolve("arm") + "/state", 10)', []),
     ],
 )
 def test_a_function_that_only_returns_a_text_gives_the_name(repository, compare, old, new, expected):

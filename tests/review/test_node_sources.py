@@ -58,7 +58,7 @@ FILES = {
         ("arm/arm/driver.py", '"rate", 10', '"rate", 20', ["parameter 'rate': default 10 -> 20"], False),
         ("arm/arm/driver.py", '("mass", 2.0)', "", ["parameters removed: 'arm.mass' (2.0)"], True),
         ("arm/arm/driver.py", '"home"', '"go_home"',
-         ["service client 'home' (Trigger) renamed to 'go_home' (Trigger)"], False),
+         ["service client 'home' (Trigger) renamed to 'go_home' (Trigger)"], True),
         ("arm/arm/driver.py", '"driver"', '"arm_driver"', ["node 'driver' renamed to 'arm_driver'"], True),
         ("arm/arm/driver.py", '"enable"', 'self.name',
          ["subscription 'enable' (Bool) has a computed name now: self.name"], False),

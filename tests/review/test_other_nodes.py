@@ -97,3 +97,11 @@ def test_name_in_a_source_of_the_same_node_is_not_lost(review_node, other):
     )
     assert not broken
     assert not any(line.startswith("parameters") for line in lines)
+
+
+def test_the_only_node_of_a_source_is_renamed_although_another_node_has_the_old_name(repository, compare):
+    text = 'int main() {{ rclcpp::Node::make_shared("{}"); spin(); }}\n'
+    files = {f"arm/src/{name}.cpp": text.format("serial") for name in ("can", "serial")}
+    repository.commit({"arm/package.xml": PACKAGE_XML, **files})
+    repository.write({"arm/src/can.cpp": text.format("can")})
+    assert breaking(compare(repository)) == ["node 'serial' renamed to 'can'"]

@@ -266,12 +266,20 @@ def test_namespaces_of_an_installed_header(repository, compare, old, new, expect
     assert found == ([expected] if expected else [])
 
 
-def test_a_namespace_that_another_header_of_the_package_opens_is_not_lost(repository, compare):
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (NAMESPACES, []),
+        (NAMESPACES.replace("namespace detail {\n", "").replace("}\n}", "}"),
+         ["'count' moved from namespace 'arm' to 'tool'"]),
+    ],
+)  # fmt: skip
+def test_a_namespace_that_another_header_of_the_package_opens_is_not_lost(repository, compare, text, expected):
     path = "arm/include/arm/arm.hpp"
     other = {"arm/include/arm/tool.hpp": "#pragma once\nnamespace arm {\nint size();\n}\n"}
-    repository.commit({**HEADER_PACKAGE, path: NAMESPACES, **other})
-    repository.write({path: NAMESPACES.replace("namespace arm", "namespace tool")})
-    assert not [sentence for sentence in breaking(compare(repository)) if "namespace" in sentence]
+    repository.commit({**HEADER_PACKAGE, path: text, **other})
+    repository.write({path: text.replace("namespace arm", "namespace tool")})
+    assert [sentence for sentence in breaking(compare(repository)) if "namespace" in sentence] == expected
 
 
 ALIASES = """#pragma once

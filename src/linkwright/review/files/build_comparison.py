@@ -234,7 +234,7 @@ def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fac
 def _find_renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
     """Return the new names of renamed targets by old name.
 
-    A renamed target keeps its first source.
+    A renamed target keeps its first source, and a renamed executable runs the same component.
     """
     sources = {
         next(iter(parts.sources)): name
@@ -246,7 +246,8 @@ def _find_renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> d
         source = next((find_new_source(pair, old, new, item) for item in parts.sources), None)
         if source in sources and not new.targets.get(name, TargetParts()).sources:
             renamed[name] = sources[source]
-    return renamed
+    programs = {name: new.component_programs.get(component) for component, name in old.component_programs.items()}
+    return renamed | {name: other for name, other in programs.items() if other is not None and other != name}
 
 
 def _format_facts(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:

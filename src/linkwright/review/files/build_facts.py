@@ -167,6 +167,9 @@ class BuildFacts:
         targets: the parts of targets, by target.
         header_paths: the headers and folders of headers relative to the package that other packages find although
             `files` does not contain them.
+        component_programs: the executables that run a component alone, by the class of the component.
+        has_unknown_sources: whether targets may have other sources than `targets` contains.
+        has_library: whether others may call code outside of headers, because the package does not only build programs.
         include_folders: the folders relative to the prefix below which other packages find headers.
     """
 
@@ -180,6 +183,9 @@ class BuildFacts:
     targets: dict[str, TargetParts] = field(default_factory=dict)
     header_paths: frozenset[str] = frozenset()
     include_folders: frozenset[str] = frozenset()
+    component_programs: dict[str, str] = field(default_factory=dict)
+    has_library: bool = True
+    has_unknown_sources: bool = False
 
     @property
     def is_complete(self) -> bool:

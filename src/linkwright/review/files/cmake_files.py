@@ -24,7 +24,7 @@ from linkwright.review.files.build_facts import (
 )
 from linkwright.review.files.cmake_branches import find_conditions, iterate_conditional_commands
 from linkwright.review.files.cmake_headers import find_header_paths, find_include_folders
-from linkwright.review.files.cmake_targets import builds_test, compare_targets, read_targets
+from linkwright.review.files.cmake_targets import builds_test, compare_targets, has_unknown_sources, read_targets
 from linkwright.review.versions import Version
 
 CMAKE_FILE = "CMakeLists.txt"
@@ -49,6 +49,7 @@ _ROS1_INTERFACE_COMMANDS = {
     "genaction": ("action", ".action"),
 }
 """The commands of ROS 1 that build interfaces: the default folder, and the suffix."""
+_COMPONENT_KEYWORDS = {"PLUGIN": FactKind.COMPONENT, "EXECUTABLE": FactKind.EXECUTABLE}
 _VERSION = re.compile(r"\d+(\.\d+)*")
 _INSTALL_KEYWORDS = frozenset(
     {"EXPORT", "ARCHIVE", "LIBRARY", "RUNTIME", "OBJECTS", "INCLUDES", "DESTINATION", "COMPONENT", "OPTIONAL"}
@@ -120,6 +121,9 @@ def read_cmake_facts(version: Version, path: str, options: Iterable[str] = ()) -
     facts.targets = read_targets(commands)
     exported_folders = [fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER]
     facts.header_paths = frozenset(find_header_paths(commands, exported_folders))
+    facts.component_programs = dict(_read_component_programs(commands))
+    facts.has_unknown_sources = has_unknown_sources(commands) or bool(program.unknown)
+    facts.has_library = not _builds_only_programs(commands) or bool(program.unknown)
     facts.include_folders = frozenset(find_include_folders(commands))
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     facts.environment = EnvironmentVariables(
@@ -234,6 +238,20 @@ def _read_installed_targets(commands: Sequence[Command]) -> Iterator[Fact]:
             yield from _read_argument_after(command, "PLUGIN", FactKind.COMPONENT)
         if command.name == "rclcpp_components_register_nodes":
             yield from (_make_fact(FactKind.COMPONENT, argument) for argument in arguments[1:])
+
+
+def _builds_only_programs(commands: Sequence[Command]) -> bool:
+    """Return whether a package builds programs and no library."""
+    names = {command.name for command in commands}
+    return not names.isdisjoint(_EXECUTABLE_COMMANDS) and not any(name.endswith("add_library") for name in names)
+
+
+def _read_component_programs(commands: Sequence[Command]) -> Iterator[tuple[str, str]]:
+    """Yield the class of each component that has an executable of its own, with the executable."""
+    for command in commands:
+        if command.name == "rclcpp_components_register_node":
+            found = [_read_argument_after(command, keyword, kind) for keyword, kind in _COMPONENT_KEYWORDS.items()]
+            yield from ((plugin.name, program.name) for plugin, program in zip(*found, strict=False))
 
 
 class _BuiltTargetNames:

@@ -53,6 +53,16 @@ def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
     return targets
 
 
+def has_unknown_sources(commands: Iterable[Command]) -> bool:
+    """Return whether a target may have sources that are not known, such as those of an unknown variable."""
+    return any(
+        is_open(argument.text)
+        for command in commands
+        if command.name in _SOURCE_COMMANDS or builds_test(command.name)
+        for argument in command.arguments
+    )
+
+
 def builds_test(command: str) -> bool:
     """Return whether a command builds the program of a test."""
     return _TEST_PROGRAM_COMMAND.fullmatch(command) is not None

@@ -61,6 +61,13 @@ def compare_plugin_files(versions: Versions, changed_files: Sequence[ChangedFile
         yield Subject(SubjectKind.PLUGINS, path, file.old_path, file.new_path, changes[path])
 
 
+def list_lost_classes(versions: Versions, changed_files: Sequence[ChangedFile]) -> set[str]:
+    """Return the names of plugin classes that changed plugin descriptions no longer declare."""
+    old = _read_declared_classes(versions.old, [file.old_path for file in changed_files])
+    new = _read_declared_classes(versions.new, [file.new_path for file in changed_files])
+    return {name for name, plugin in old.items() if name not in new and _is_exported(versions.old, plugin.path)}
+
+
 def _read_declared_classes(version: Version, paths: Sequence[str | None]) -> Mapping[str, _PluginClass]:
     """Return the classes that plugin descriptions declare, by the name that programs load."""
     classes: dict[str, _PluginClass] = {}

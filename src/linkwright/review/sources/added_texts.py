@@ -212,11 +212,15 @@ def _is_key(tokens: Sequence[Token], literal: Literal) -> bool:
 def _find_constants(scopes: Mapping[str, Sequence[Statement]]) -> Iterator[OneSidedText]:
     """Yield the statements that assign a literal to a name, which keeps it.
 
-    They are outside of functions and classes, or say that the name is constant.
+    They are outside of functions and classes, or in a class and say that the name is constant.
     """
     counts = Counter(name for statements in scopes.values() for item in statements for name in _list_assigned(item))
-    found = ((scope, statement) for scope, statements in scopes.items() for statement in statements)
-    constant = (statement for scope, statement in found if not scope or _is_constant(statement))
+    constant = (
+        statement
+        for scope, statements in scopes.items()
+        for statement in statements
+        if not scope or (_is_class(statements) and _is_constant(statement))
+    )
     for statement in constant:
         tokens = [token for token in statement.tokens if token.text != ";"]
         sign = next((index for index, token in enumerate(tokens) if token.text == "="), 0)
@@ -243,6 +247,12 @@ def _has_constant_value(tokens: Sequence[Token], first: int) -> bool:
         token.kind in (TokenKind.TEXT, TokenKind.NUMBER) or _CONSTANT_NAME.fullmatch(token.text) for token in operands
     )
     return is_sum and is_named and is_known and len(operands) > 1
+
+
+def _is_class(statements: Sequence[Statement]) -> bool:
+    """Return whether statements are those of a class in C++, which begin with its head."""
+    words = {token.text for token in statements[0].tokens} if statements else set()
+    return not words.isdisjoint({"class", "struct"}) and "(" not in words
 
 
 def _is_constant(statement: Statement) -> bool:

@@ -156,7 +156,8 @@ class ChangedSources:
         if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
             return False
         others = self._get_unchanged(package)
-        return not (others.has_name(item) if item.kind in COMMUNICATION_KINDS else others.has_text(item.name))
+        is_read = item.kind in (*COMMUNICATION_KINDS, NameKind.NODE)
+        return not (others.has_name(item) if is_read else others.has_text(item.name))
 
     def _has_in_imported(self, item: SourceName, path: str) -> bool:
         """Return whether a changed source that a source imports or includes has a name."""
@@ -221,6 +222,12 @@ class ChangedSources:
         if package is not None:
             yield from ((other, names) for other, names in self._names.items() if self.find_package(other) == package)
             yield from self._get_unchanged(package).list_sources(text)
+
+    def has_counterpart(self, item: SourceName) -> bool:
+        """Return whether a changed source of any package has the other end of a topic, service or action."""
+        kind = get_counterpart(item.kind)
+        found = (known for names in self._names.values() for known in (names.of_kind(kind) if kind else ()))
+        return any(is_same_topic(item, known) for known in found)
 
     def find_package(self, path: str) -> str | None:
         """Return the folder of the package of a file, or None for a file outside of packages."""

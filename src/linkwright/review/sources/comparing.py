@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Location, Subject, SubjectKind
+from linkwright.review.changes import MAX_NAMES, Change, Location, Subject, SubjectKind
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
@@ -24,7 +24,7 @@ from linkwright.review.sources.details import (
 )
 from linkwright.review.sources.function_changes import NameChange, find_ignored_reason, merge_function_changes
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
-from linkwright.review.sources.name_patterns import can_make, extract_pattern
+from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
 from linkwright.review.sources.names import (
     PYTHON_SUFFIX,
     DefaultName,
@@ -90,7 +90,7 @@ class _SourcePair(WholeSourcePair):
     def find_changes(self) -> Iterator[Change]:
         """Yield the differences."""
         old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
-        changes = list(self.find_added_header())
+        changes = [*self.find_added_header(), *self.find_unbuilt()]
         changes += [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
         changes += self.compare_rates(old_names, new_names)
         for change in compare_conditions(old_names, new_names):
@@ -135,7 +135,10 @@ class _SourcePair(WholeSourcePair):
         lacks = self.old.lacks
         if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
             lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it
-        is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1 and bool(removed)
+        is_sole_node = kind is NameKind.NODE and len(before) == len(after) == 1
+        if is_sole_node and only_new and self.old.lacks(next(iter(only_new.values())), old_path):
+            removed = list(only_old.values())  # even if another node of the package has the old name
+        is_sole_node = is_sole_node and bool(removed)
         added = [
             item
             for item in only_new.values()
@@ -273,6 +276,7 @@ class _SourcePair(WholeSourcePair):
             if detail is Detail.ARGUMENTS and reason is None:
                 reason = find_ignored_reason(item, old_names, self.new.get_names(self.file.new_path))
             is_breaking = is_called or kind is not NameKind.CLASS
+            is_breaking = is_breaking and (kind is not NameKind.FUNCTION or self.can_be_linked(item.name))
             if kind is NameKind.PARAMETER and reason is None:
                 reason = self._find_parameter_reason(item, old_names)
             yield self.make_change(text, item.span, self.new, reason if is_breaking else None)
@@ -325,9 +329,11 @@ class _SourcePair(WholeSourcePair):
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self.is_interface(path):
             return None
+        if items[0].kind is NameKind.FUNCTION:
+            items = [item for item in items if self.can_be_linked(item.name)]
         lost = [item for item in items if not self._is_left_to_others(item)]
         if not lost:
-            return find_other_node_reason(items)
+            return find_other_node_reason(items) if items else None
         reason = find_removal_reason(lost, names, self.new.get_names(self.file.new_path), path)
         users = ((item, self.new.find_user(item, path)) for item in (lost if reason is not None else ()))
         return next((make_user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
@@ -335,16 +341,25 @@ class _SourcePair(WholeSourcePair):
     def _find_rename_reason(self, old_item: SourceName, new_item: SourceName, names: SourceNames) -> Phrase | None:
         """Return the reason why a new name is breaking, or None.
 
-        A new name of a client is breaking if the package serves only the old one.
+        A new name of a client is breaking, unless a source of the new version serves it.
         """
         if old_item.kind is NameKind.MESSAGE_FRAME:
             return find_message_frame_reason(old_item, names)
         reason = self._find_removal_reason([old_item], names)
+        is_scoped = old_item.name.startswith("/") != new_item.name.startswith("/")
+        if reason is not None and is_scoped and old_item.name.strip("/") == new_item.name.strip("/"):
+            return phrase(
+                "if the node has a namespace, programs that use the name '{name}' do not find it", name=old_item.name
+            )
         if reason is not None or old_item.kind not in (NameKind.CLIENT, NameKind.ACTION_CLIENT):
             return reason
         path = self.file.path
-        server = None if self.new.find_user(new_item, path) is not None else self.new.find_user(old_item, path)
-        return None if server is None else make_user_reason(old_item.kind, server, old_item.name)
+        if self.new.find_user(new_item, path) is not None or self.new.has_counterpart(new_item):
+            return None
+        server = self.new.find_user(old_item, path)
+        if server is not None:
+            return make_user_reason(old_item.kind, server, old_item.name)
+        return phrase("servers that offer '{name}' get no requests", name=old_item.name)
 
     # --- expressions ------------------------------------------------------------------------------------------------
 
@@ -360,6 +375,7 @@ class _SourcePair(WholeSourcePair):
         removed_expressions = [item for item in sides[0] if all(item.name != other.name for other in sides[1])]
         added_expressions = [item for item in sides[1] if all(item.name != other.name for other in sides[0])]
         yield from self._compare_expression_types(*sides)
+        yield from self._compare_prefixed(kind, removed, added_expressions)
         for item in list(removed_expressions):  # a different expression for the same name
             matching = [expression for expression in added_expressions if expression.type == item.type]
             if matching:
@@ -390,6 +406,9 @@ class _SourcePair(WholeSourcePair):
             )
             reason = self._find_default_reason(other, old_names.defaults.get(other.name, ""), item.name, old_names)
             yield self.make_change(text, item.span, self.new, reason)
+        added_expressions, removed_expressions = (
+            list({item.name: item for item in items}.values()) for items in (added_expressions, removed_expressions)
+        )
         added_expressions = [
             item for item in added_expressions if self.new.count_expressions(item) > self.old.count_expressions(item)
         ]
@@ -411,6 +430,34 @@ class _SourcePair(WholeSourcePair):
             reason = find_lost_pattern_reason(removed_expressions, self.old, self.new, self.file.path)
             yield self.make_change(text, removed_expressions[0].span, self.old, reason)
             drop_replaceable(added, removed_expressions)
+
+    def _compare_prefixed(self, kind: NameKind, removed: list[SourceName], added: list[SourceName]) -> Iterator[Change]:
+        """Yield a line about the names that are computed now, because another text stands before them.
+
+        These names are removed from the lists.
+        """
+        pairs: list[tuple[SourceName, SourceName]] = []
+        for item in list(removed):
+            matching = [expression for expression in added if ends_with_name(expression.name, item.name)]
+            if len(matching) == 1:
+                pairs.append((item, matching[0]))
+                removed.remove(item)
+                added.remove(matching[0])
+        if not pairs:
+            return
+        if len(pairs) == 1:
+            text = phrase(
+                "{kind} {name} has a computed name now: {new}",
+                kind=kind.title,
+                name=format_name(pairs[0][0]),
+                new=pairs[0][1].name,
+            )
+        else:
+            names = joined_first([f"{format_name(old)} -> {new.name}" for old, new in pairs], MAX_NAMES)
+            text = phrase("{kind} that have computed names now: {names}", kind=kind.plural, names=names)
+        lost = [old for old, new in pairs if not can_make(new.name, old.name)]
+        reason = self._find_removal_reason(lost, self.old.get_names(self.file.old_path)) if lost else None
+        yield self.make_change(text, pairs[0][1].span, self.new, reason)
 
     def _find_default_reason(self, item: SourceName, old: str, new: str, names: SourceNames) -> Phrase | None:
         """Return the reason why another name by default is breaking; None if it is unknown or equal."""

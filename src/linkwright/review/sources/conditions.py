@@ -10,6 +10,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.review.sources.cpp_conditions import blank_repeated_braces
 from linkwright.review.sources.names import ConditionalLines, NameKind, SourceNames
 
 _KINDS = (NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.ACTION, NameKind.PARAMETER)
@@ -62,6 +63,7 @@ def find_cpp_conditions(text: str) -> Iterator[ConditionalLines]:
         text: the text of the source without comments.
     """
     code = _TEXT.sub(lambda match: '"' + " " * (len(match[0]) - 2) + '"', text)
+    code = blank_repeated_braces(code)
     brackets = _match_brackets(code)
     breaks = [match.start() for match in re.finditer("\n", code)]
     for match in islice(_IF.finditer(code), _MAX_STATEMENTS):

@@ -33,6 +33,7 @@ from linkwright.review.sources.cpp_helpers import Helper, find_helper_uses, find
 from linkwright.review.sources.cpp_lifecycle import LifecycleCallbacks
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.cpp_options import find_options
+from linkwright.review.sources.cpp_parameter_calls import ParameterDefaults, find_table_names, is_required_parameter
 from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
 from linkwright.review.sources.cpp_text_functions import TextFunctions
@@ -58,7 +59,6 @@ _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds of names that a header declares, perhaps several times under different conditions."""
 _SERVICE_QOS_INDEX = {"create_service": 1, "create_client": 0}
 """The index of the QoS behind the name of a service."""
-_DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2}
 _PARAM_ARGUMENTS = 3
 """The number of arguments of ``param`` of ROS 1, which also has the variable for the value."""
 _MEMBER_CALLBACK = re.compile(r",\s*&\s*\w+::\w+\s*,\s*this\b")
@@ -92,6 +92,7 @@ _CLASS = re.compile(
     r"(?P<name>[A-Za-z_]\w*)\s*(?:final\s*)?(?::(?!:)(?P<bases>[^;{]*))?\{",
     re.MULTILINE,
 )
+_FORWARD_CLASS = re.compile(r"^[ \t]*(?:class|struct)\s+(\w+)\s*;", re.MULTILINE)
 _QOS = re.compile(r"\d+|[\w:]*QoS\w*\s*[({].*|rmw_qos_profile_\w+|(?:rclcpp::)?(?:\w+::)?\w*QoS\w*", re.DOTALL)
 
 
@@ -189,6 +190,9 @@ class _Reader:
         for match in _ALIAS.finditer(self._text):
             type_name = re.sub(r"\s*([*&<>,:()])\s*", r"\1", " ".join((match["type"] or match["used"]).split()))
             self._names.aliases[match["name"] or match["using"]] = type_name
+        for match in _FORWARD_CLASS.finditer(self._text):
+            if self._text.count("{", 0, match.start()) == self._text.count("}", 0, match.start()):
+                self._names.forward_classes.add(match[1])
         for match in _NAMESPACE.finditer(self._text):
             self._names.namespaces.setdefault(match["name"], self._make_span(match.start("name"), match.end("name")))
         for enumeration, enumerators in read_enumerations(self._text).items():
@@ -203,6 +207,8 @@ class _Reader:
             else:
                 overloads.setdefault(function.name, []).append(function)
         for name, functions in overloads.items():
+            if not any(function.is_defined or function.is_pure for function in functions):
+                self._names.declared_only.add(name)
             types = _join_overloads(functions)
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
             if len(functions) == 1 and functions[0].result:
@@ -249,11 +255,17 @@ class _Reader:
         if call.start in self._inner_calls:
             return  # the callers give the names
         name, type_name = " ".join(text[begin:end].split()), call.type
+        listed = list(find_table_names(text, name, call.start)) if kind is NameKind.PARAMETER else []
+        if listed:
+            texts = [text[slice(*argument)].strip() for argument in call.arguments[1:]]
+            for item in listed:
+                self._add_named_call(call, item.name, (item.start, item.end), texts)
+            return
         is_ros = self._add_default(kind, name) or call.function not in ROS1_CALLS
         texts = [text[slice(*argument)].strip() for argument in call.arguments[1:]]
         details: tuple[tuple[Detail, str], ...] = ()
         if call.function == "param" and type_name and len(call.arguments) == _PARAM_ARGUMENTS:
-            is_ros, type_name = True, self._find_literal_default(call, texts)
+            is_ros, type_name = True, self._parameter_defaults.find(call, texts)
         elif kind is not NameKind.PARAMETER:
             end_of_call = call.arguments[-1][1]
             is_ros = is_ros or bool(type_name) or _MEMBER_CALLBACK.search(text, end, end_of_call) is not None
@@ -307,8 +319,14 @@ class _Reader:
             if type_name:
                 detail = Detail.VALUE_TYPE if call.function in _ROS2_PARAMETER_CALLS else Detail.READ_AS
                 details.append((detail, type_name))
+            if is_required_parameter(self._text, call):
+                details.append((Detail.REQUIRED, YES))
             is_output = call.function in _OUTPUT_CALLS or is_known_to_be_set(self._text, name, call.start)
-            type_name = "" if is_output else self._find_literal_default(call, texts)
+            type_name = (
+                self._parameter_defaults.find_kept(call, texts)
+                if is_output
+                else self._parameter_defaults.find(call, texts)
+            )
         else:
             details += self._find_qos(call, texts)
         callback = self._lifecycle.find(offsets[0])
@@ -410,27 +428,9 @@ class _Reader:
         """The node handles and sub-nodes. A header may declare the handles of a class."""
         return Handles(self._text, self._headers if "::" in self._text else [])
 
-    def _find_literal_default(self, call: Call, texts: Sequence[str]) -> str:
-        """Return the literal default of a parameter, or the initial value of a member; empty if there is none.
-
-        Functions that return the value have the default as their second argument.
-
-        Args:
-            call: the call that reads or declares the parameter.
-            texts: the arguments behind the name.
-        """
-        index = _DEFAULT_INDEX.get(call.function, 1) - 1
-        index = index if index < len(texts) else 0
-        if index >= len(texts):
-            return ""
-        value = parse_literal(texts[index])
-        if value is not None:
-            return value
-        variable = VARIABLE.fullmatch(texts[index])
-        constant = self._constants.get(variable["name"]) if variable else None
-        if constant is not None:
-            return f'"{constant}"'
-        return self._initial_values.find_default(texts[index], call.start) or ""
+    @cached_property
+    def _parameter_defaults(self) -> ParameterDefaults:
+        return ParameterDefaults(self._text, self._constants, self._initial_values)
 
     def _read_members(self) -> None:
         """Add the topics and actions with which members and variables are constructed."""

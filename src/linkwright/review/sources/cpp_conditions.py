@@ -86,6 +86,10 @@ class Conditions:
         return ((section.start, section.end) for section in self._sections if section.condition is None)
 
 
+_DIRECTIVE_NAME = re.compile(r"[ \t]*#[ \t]*(if|ifdef|ifndef|else|elif|endif)\b")
+_NO_BRACES = str.maketrans("{}", "  ")
+
+
 def blank_disabled(text: str) -> str:
     """Return a C++ source with spaces for the code whose condition never holds, such as under ``#if 0``."""
     if "#" not in text or not re.search(r"#[ \t]*if", text):
@@ -160,3 +164,33 @@ def _negate(condition: str) -> str:
     if condition.startswith("!") and _SIMPLE.fullmatch(condition[1:].strip()):
         return condition[1:].strip()
     return f"!{condition}" if _SIMPLE.fullmatch(condition) else f"!({condition})"
+
+
+def blank_repeated_braces(text: str) -> str:
+    """Return a C++ source in which each block has one opening brace.
+
+    A branch of the preprocessor may repeat the beginning of a block that its other branch opens, too.
+
+    Args:
+        text: the source without comments.
+    """
+    if "#else" not in text and "#elif" not in text:
+        return text
+    depths: list[tuple[int, bool]] = []  # of each group: the braces that its first branch leaves open; whether it ended
+    lines = []
+    for line in text.split("\n"):
+        directive = _DIRECTIVE_NAME.match(line)
+        if directive is None:
+            if any(depth and is_over for depth, is_over in depths):
+                line = line.translate(_NO_BRACES)
+            else:
+                change = line.count("{") - line.count("}")
+                depths = [(depth + (not is_over) * change, is_over) for depth, is_over in depths]
+        elif directive[1].startswith("if"):
+            depths.append((0, False))
+        elif depths and directive[1].startswith("el"):
+            depths[-1] = depths[-1][0], True
+        elif depths and directive[1] == "endif":
+            depths.pop()
+        lines.append(line)
+    return "\n".join(lines)

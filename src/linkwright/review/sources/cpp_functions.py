@@ -55,6 +55,7 @@ class DeclaredFunction(NamedTuple):
         is_const: whether it can be called on constant objects.
         result: the type that it returns; empty if it is unknown, as of constructors.
         start: the offset of the declaration.
+        is_defined: whether the header has its code.
     """
 
     name: str
@@ -64,6 +65,7 @@ class DeclaredFunction(NamedTuple):
     is_const: bool
     result: str
     start: int
+    is_defined: bool
 
 
 class _Scope(NamedTuple):
@@ -93,9 +95,14 @@ def read_declared_functions(text: str, access: Collection[str] = PUBLIC) -> Iter
         text: the text of the header without comments.
         access: the levels of access of the functions to yield.
     """
-    for chunk, classes, start, _ in _read_chunks(text, access):
+    for chunk, classes, start, end in _read_chunks(text, access):
         if "(" in chunk and not chunk.startswith(("using", "typedef", "friend")):
-            yield from _read_function(chunk, classes, start)
+            for function in _read_function(chunk, classes, start):
+                definition = re.compile(
+                    rf"\b\w+\s*(?:<[^;{{}}()]*>\s*)?::\s*{re.escape(function.name.rpartition('::')[2])}\s*\("
+                )
+                is_defined = text[end] == "{" or definition.search(text, end) is not None
+                yield function._replace(is_defined=is_defined)
 
 
 def read_declared_members(text: str, access: Collection[str] = PUBLIC) -> Iterator[DeclaredMember]:
@@ -204,7 +211,7 @@ def _read_function(chunk: str, classes: list[str], start: int) -> Iterator[Decla
         is_pure = re.search(r"=\s*0\s*$", suffix) is not None
         is_const = re.match(r"\s*const\b", suffix) is not None
         result = _read_result(declaration[: match.start()], suffix)
-        yield DeclaredFunction(name, parameters, is_pure, is_override, is_const, result, start)
+        yield DeclaredFunction(name, parameters, is_pure, is_override, is_const, result, start, is_defined=False)
         return
 
 

@@ -13,6 +13,8 @@ _PART = re.compile(
     r"\s*(?:(?:std\s*::\s*)?string\s*\(\s*)?\"(?P<text>[^\"\\]*)\"\s*\)?\s*|"
     r"\s*(?:this\s*->\s*)?(?:\w+\s*::\s*)*(?P<name>[A-Za-z_]\w*)\s*(?P<call>\(\s*\))?\s*"
 )
+_RESOLVE = re.compile(r"\b(?:ros\s*::\s*)?names\s*::\s*resolve\s*\(\s*(?P<text>\"[^\"\\]*\")\s*\)")
+"""A call of ROS 1 that returns a name with the remappings of the node, which is the same by default."""
 _MAX_DEPTH = 5
 
 
@@ -39,9 +41,11 @@ class TextFunctions:
         Args:
             expression: the expression, such as ``prefix() + "/state"``.
         """
-        if not self._returned or "(" not in expression:
+        resolved = _RESOLVE.sub(lambda match: match["text"], expression)
+        is_resolved = resolved != expression
+        if "(" not in expression or not (self._returned or is_resolved):
             return None
-        return self._evaluate(expression, 0)
+        return self._evaluate(resolved, 0)
 
     def _evaluate(self, expression: str, depth: int) -> str | None:
         if depth > _MAX_DEPTH:

@@ -10,7 +10,7 @@ VARIABLE = re.compile(r"\s*(?:\w+::)*(?P<name>\w+)\s*(?:\.c_str\(\))?\s*")
 _LITERAL = re.compile(r'\s*(-?[\d.]+(?:e-?\d+)?f?|true|false|"[^"\\]*"|(?:std::)?string\((?P<text>"[^"\\]*")\))\s*')
 _WRAPPED = re.compile(r"\s*(?:rclcpp::)?ParameterValue\s*\((?P<value>.*)\)\s*", re.DOTALL)
 _CONSTANT = re.compile(
-    r"(?:\b(?:string|char|auto|string_view)\b[\s*&const]*\b(?P<name>\w+)\s*(?:\[\s*\])?\s*(?:=|(?P<open>[({]))"
+    r"(?:\b(?:string|char|auto|string_view)\b[\s*&const]*\b(?:\w+::)*(?P<name>\w+)\s*(?:\[\s*\])?\s*(?:=|(?P<open>[({]))"
     r'\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;)'
     r'|#\s*define\s+(?P<macro>\w+)[ \t]+\(?"(?P<value>[^"\\]*)"'
 )
@@ -38,7 +38,9 @@ def find_constants(text: str) -> Mapping[str, str]:
     for match in _CONSTANT.finditer(text):
         name = match["name"] or match["macro"]
         assignment_count = len(re.findall(rf"\b{name}\b\s*(?:\[\s*\])?\s*=(?!=)", text))
-        is_read = match["macro"] is None and _is_output(text, name)
+        declaration = text[max(text.rfind(mark, 0, match.start()) for mark in ";{}\n") + 1 : match.end()]
+        is_constant = re.match(r"\s*(?:\w+\s+)*?const(?:expr)?\b", declaration) is not None and "*" not in declaration
+        is_read = match["macro"] is None and not is_constant and _is_output(text, name)
         if assignment_count <= 1 and not is_read and name not in constants:
             constants[name] = match["text"] if match["macro"] is None else match["value"]
     return constants

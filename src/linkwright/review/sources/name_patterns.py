@@ -30,14 +30,6 @@ def extract_pattern(expression: str) -> str | None:
     return pattern if re.search(r"\w", pattern.replace(_UNKNOWN_PART, "")) else None
 
 
-def ends_with_name(expression: str, name: str) -> bool:
-    """Return whether the last text in an expression is a name, apart from separators before it."""
-    pattern = extract_pattern(expression)
-    if pattern is None or not set(_CALLED.findall(expression)) <= _JOINING_CALLS:
-        return False
-    return pattern.rpartition(_UNKNOWN_PART)[2].lstrip("~./_") == name.lstrip("~/")
-
-
 def make_expression_pattern(expression: str) -> str | None:
     """Return a regular expression for the names that an expression gives; None if its end is not a known word.
 
@@ -67,6 +59,17 @@ def can_make(expression: str, name: str) -> bool:
             return False
         start = position + len(text)
     return True
+
+
+def ends_with_name(expression: str, name: str) -> bool:
+    """Return whether an expression puts a namespace or another text before a name, as ``prefix + ".name"`` does.
+
+    Args:
+        expression: the expression that gives a name, in Python or C++.
+        name: the name.
+    """
+    pattern = extract_pattern(expression)
+    return pattern is not None and pattern.rpartition(_UNKNOWN_PART)[2].lstrip("./_") == name.lstrip("~/")
 
 
 def find_format(text: str, variable: str) -> str | None:

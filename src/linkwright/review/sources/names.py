@@ -197,6 +197,8 @@ class SourceNames:
             another function has it.
         rates: the texts of rates and periods, each with its location.
         timers: the timers, in the order of the source.
+        forward_classes: the classes outside of namespaces that a C++ header only declares.
+        declared_only: the names of functions whose code is in no header, so that callers need a library.
         overrides: the names of functions that override a function of a base class, qualified by their classes.
         bases: the names of the base classes of each public class of a C++ source.
         is_program: whether the source is a program and not a library.
@@ -233,6 +235,8 @@ class SourceNames:
     unknown_scopes: set[str] = field(default_factory=set)
     rates: list[tuple[str, Span]] = field(default_factory=list)
     timers: list[Timer] = field(default_factory=list)
+    forward_classes: set[str] = field(default_factory=set)
+    declared_only: set[str] = field(default_factory=set)
     overrides: set[str] = field(default_factory=set)
     bases: dict[str, list[str]] = field(default_factory=dict)
     is_program: bool = False

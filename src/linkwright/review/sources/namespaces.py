@@ -6,8 +6,10 @@ import re
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
-from linkwright.review.sources.names import HEADER_SUFFIXES, SourceNames
+from linkwright.diagnostics import Phrase, Span, joined_first, phrase, quoted_names
+from linkwright.review.changes import MAX_NAMES
+from linkwright.review.files.build_facts import list_names
+from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind, SourceNames
 from linkwright.review.versions import Version
 
 
@@ -32,6 +34,8 @@ def compare_namespaces(
 ) -> Iterator[HeaderChange]:
     """Yield the namespaces that a header no longer has. A namespace that replaces the only lost one is a new name.
 
+    If other headers still have the lost one, only the functions and classes of this header are in another namespace.
+
     Args:
         old: the names in the old version.
         new: the names in the new version.
@@ -40,7 +44,10 @@ def compare_namespaces(
     lost, added = ([name for name in side if name not in other] for side, other in (
         (old.namespaces, new.namespaces), (new.namespaces, old.namespaces),
     ))  # fmt: skip
-    lost = [name for name in lost if not is_left(name)]
+    left = [name for name in lost if is_left(name)]
+    if len(lost) == len(added) == len(left) == len(old.namespaces) == len(new.namespaces) == 1:
+        yield from _find_moved_names(old, new, lost[0], added[0])
+    lost = [name for name in lost if name not in left]
     if not lost:
         return
     names = quoted_names(lost)
@@ -51,6 +58,20 @@ def compare_namespaces(
     else:
         yield HeaderChange(
             phrase("namespaces removed: {names}", names=names), old.namespaces[lost[0]], reason, is_old=True
+        )
+
+
+def _find_moved_names(old_names: SourceNames, new_names: SourceNames, old: str, new: str) -> Iterator[HeaderChange]:
+    """Yield a line about the functions and classes that are in another namespace now."""
+    kinds = (NameKind.CLASS, NameKind.FUNCTION)
+    before = {(item.kind, item.name) for item in old_names.names if item.kind in kinds}
+    moved = [item for item in new_names.names if (item.kind, item.name) in before and "::" not in item.name]
+    if moved:
+        names = [item.name for item in moved]
+        text = phrase("{names} moved from namespace '{old}' to '{new}'", names=list_names(names), old=old, new=new)
+        used = joined_first([f"{old}::{name}" for name in names], MAX_NAMES)
+        yield HeaderChange(
+            text, moved[0].span, phrase("code of other packages that uses '{name}' does not build", name=used)
         )
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 
 from linkwright.review.sources.details import has_same_parameters
-from linkwright.review.sources.name_patterns import can_make, ends_with_name
+from linkwright.review.sources.name_patterns import can_make
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 
 _MIN_SIMILARITY = 0.6
@@ -69,14 +70,8 @@ def pair_similar(
 def take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> Iterator[tuple[SourceName, SourceName]]:
     """Yield the pairs of a name and an expression that probably mean the same.
 
-    They are removed from both lists. First come the expressions whose text is the name, such as ``name + ".rate"``.
+    They are removed from both lists.
     """
-    for item in list(literals):
-        other = next((expression for expression in expressions if ends_with_name(expression.name, item.name)), None)
-        if other is not None:
-            literals.remove(item)
-            expressions.remove(other)
-            yield item, other
     for item in list(literals):
         is_only_pair = len(literals) == len(expressions) == 1
         other = next((expression for expression in expressions if is_only_pair or expression.type == item.type), None)
@@ -113,7 +108,9 @@ def has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, new
     """Return whether a function or member only has other names for the same types."""
     is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
     types = old_names.resolve_aliases(old.type), new_names.resolve_aliases(new.type)
-    return is_member and has_same_parameters(*types)
+    own = old_names.forward_classes ^ new_names.forward_classes
+    has_other_class = any(re.search(rf"(?<!::)\b{name}\b", text) for name in own for text in types)
+    return is_member and not has_other_class and has_same_parameters(*types)
 
 
 def is_same_frame(old: SourceName, new: SourceName) -> bool:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from linkwright.diagnostics import phrase
 from linkwright.review.sources.details import accepts_all, format_names, format_overload_change
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 from linkwright.review.sources.namespaces import HeaderChange
 
+_OR = " or "
 _KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 
 
@@ -22,11 +24,26 @@ def compare_protected(old: SourceNames, new: SourceNames) -> Iterator[HeaderChan
         text = phrase("protected members removed: {names}", names=format_names(lost))
         reason = phrase("classes that derive from the class and use the members do not build")
         yield HeaderChange(text, lost[0].span, reason, is_old=True)
-    before = {(item.kind, item.name): item for item in old.protected}
-    for item in new.protected:
+    before = _join_types(old.protected)
+    for item in _join_types(new.protected).values():
         other = before.get((item.kind, item.name))
-        if other is not None and old.resolve_aliases(other.type) != new.resolve_aliases(item.type):
+        if other is None:
+            continue
+        resolved = old.resolve_aliases(other.type), new.resolve_aliases(item.type)
+        if resolved[0] != resolved[1]:
+            if other.type == item.type:  # the header gives the name to another type
+                other, item = replace(other, type=resolved[0]), replace(item, type=resolved[1])
             yield _compare_types(other, item)
+
+
+def _join_types(items: Sequence[SourceName]) -> dict[tuple[NameKind, str], SourceName]:
+    """Return the members by kind and name. One that branches of the preprocessor declare has the types of all."""
+    joined: dict[tuple[NameKind, str], SourceName] = {}
+    for item in items:
+        key = item.kind, item.name
+        types = {*joined[key].type.split(_OR), item.type} if key in joined else {item.type}
+        joined[key] = replace(joined.get(key, item), type=_OR.join(sorted(types)))
+    return joined
 
 
 def _find_lost(old: SourceNames, new: SourceNames) -> list[SourceName]:

@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location, Problem
-from linkwright.review.installed_paths import find_include_text, is_exported_header
+from linkwright.review.installed_paths import find_include_text, is_exported_header, read_package_facts
 from linkwright.review.sources.changed_sources import ChangedSources
 from linkwright.review.sources.enumerators import compare_enumerations
 from linkwright.review.sources.names import HEADER_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceNames
@@ -23,6 +23,7 @@ from linkwright.review.sources.package_imports import (
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.rates import compare_rates, compare_timers
 from linkwright.review.sources.transform_senders import find_lost_sender
+from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.undefined_uses import find_undefined_uses
 from linkwright.review.sources.used_packages import compare_usage
 
@@ -81,6 +82,18 @@ class WholeSourcePair:
             return is_module and not is_certainly_uninstalled(side.version, package or "", path)
         return package is not None and is_exported_header(side.version, package, path)
 
+    def can_be_linked(self, function: str) -> bool:
+        """Return whether other packages can call a function of the old source.
+
+        The code of one that its header only declares is in no library if the package builds none.
+        """
+        path = self.file.old_path or self.file.path
+        if path.endswith(PYTHON_SUFFIX) or function not in self.old.get_names(path).declared_only:
+            return True
+        package = self.old.find_package(path)
+        facts = None if package is None else read_package_facts(self.old.version, package)
+        return facts is None or facts.has_library
+
     def compare_rates(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changed rates and periods, and the removed and added timers."""
         is_added, is_removed = self.file.old_path is None, self.file.new_path is None
@@ -122,6 +135,16 @@ class WholeSourcePair:
             include = find_include_text(self.new.version, package, self.file.path)
             text = phrase("header added: other packages can include '{path}'", path=include)
             yield Change(text, location=Location(self.file.path, 1, 1))
+
+    def find_unbuilt(self) -> Iterator[Change]:
+        """Yield a line if no target builds an added source."""
+        path = self.file.new_path
+        package = None if path is None or self.file.old_path is not None else self.new.find_package(path)
+        if path is not None and package is not None and is_unbuilt(self.new.version, package, path):
+            name = find_exported_class(self.new.version, package, path)
+            reason = None if name is None else phrase("programs that use '{name}' do not link", name=name)
+            effect = Effect.CHANGED if reason is None else Effect.BREAKING
+            yield Change(phrase("no target builds the source"), effect, reason, Location(path, 1, 1))
 
     def find_lost_transforms(self, reported: Sequence[Change]) -> Iterator[Change]:
         """Yield a line if the source no longer publishes transforms, unless a line names the lost frames."""

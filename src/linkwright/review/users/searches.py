@@ -18,6 +18,7 @@ from linkwright.review.sources.lost_methods import find_lost_methods
 from linkwright.review.sources.lost_types import find_lost_types
 from linkwright.review.users.lost_controllers import find_lost_controllers
 from linkwright.review.users.lost_data import find_lost_data
+from linkwright.review.users.lost_display_classes import find_lost_display_classes
 from linkwright.review.users.lost_displays import find_lost_displays
 from linkwright.review.users.lost_installs import find_lost_installs
 from linkwright.review.users.lost_interfaces import find_lost_interfaces
@@ -38,7 +39,14 @@ Search = Callable[[Versions, Sequence[ChangedFile]], Iterable[tuple[str, Change]
 
 SEARCHES: tuple[Search, ...] = (
     *(find_broken_callers, find_lost_arguments, find_lost_types, find_lost_methods, find_chosen_robots),
-    *(find_lost_displays, find_lost_lifecycles, find_lost_controllers, find_lost_data, find_lost_installs),
+    *(
+        find_lost_displays,
+        find_lost_display_classes,
+        find_lost_lifecycles,
+        find_lost_controllers,
+        find_lost_data,
+        find_lost_installs,
+    ),
     *(find_lost_libraries, find_lost_programs, find_lost_registrations, find_lost_sources, find_missing_programs),
     *(find_passed_arguments, find_left_nodes, find_left_parameters, find_lost_interfaces, find_left_types),
     *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),

@@ -1,0 +1,76 @@
+"""The lines of a review about parameters that a C++ source requires, and about those whose names are in a table."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences
+
+SOURCE = "bool Arm::init(ros::NodeHandle & nh) {{\n  start();\n{}  return true;\n}}\n"
+FAILS = "the program fails where '{}' is not set"
+CHECK = '  if (!nh.getParam("mass", mass_)) {\n    ROS_ERROR("no mass");\n    return false;\n  }\n'
+TABLE = """  const std::pair<const char *, double *> table[] = {
+    {"mass", &mass_}, {"load", &load_},
+  };
+  for (const auto & entry : table)
+    if (!nh.getParam(entry.first, *entry.second))
+      return false;
+"""
+LIST = """  std::vector<std::string> names = {"mass", "load"};
+  for (const std::string & name : names) {
+    node->declare_parameter<double>(name, 1.0);
+  }
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "expected", "reason"),
+    [
+        (CHECK, "parameters added: 'mass'", FAILS.format("mass")),
+        (
+            CHECK.replace("return false", 'throw std::runtime_error("no mass")'),
+            "parameters added: 'mass'",
+            FAILS.format("mass"),
+        ),
+        (CHECK.replace("return false", "mass_ = 1.0"), "parameters added: 'mass' (1.0)", ""),
+        (CHECK.replace("if (", "if (is_heavy && "), "parameters added: 'mass'", ""),
+        (CHECK.replace("if (!", "if ("), "parameters added: 'mass'", ""),
+        ("  if (is_heavy_) {\n" + CHECK + "  }\n", "parameters added: 'mass'", ""),
+        (TABLE, "parameters added: 'mass', 'load'", FAILS.format("mass, load")),
+        (LIST, "parameters added: 'mass' (1.0), 'load' (1.0)", ""),
+        ('  node->declare_parameter<double>("mass");\n', "parameters added: 'mass'", FAILS.format("mass")),
+        ('  node->declare_parameter<double>("mass", 1.0);\n', "parameters added: 'mass' (1.0)", ""),
+        ('  node->declare_parameter("mass", rclcpp::PARAMETER_DOUBLE);\n', "parameters added: 'mass'", ""),
+    ],
+)
+def test_a_new_parameter_may_be_required(repository, compare, code, expected, reason):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": SOURCE.format("")})
+    repository.write({"arm/src/arm.cpp": SOURCE.format(code)})
+    result = compare(repository)
+    lines = [line for subject in result.subjects for line in sentences(subject)]
+    assert expected in lines
+    assert [str(change.reason) for _, change in result.breaking_changes] == ([reason] if reason else [])
+
+
+def test_a_parameter_may_become_required(repository, compare):
+    old = '  nh.getParam("mass", mass_);\n'
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": SOURCE.format(old)})
+    repository.write({"arm/src/arm.cpp": SOURCE.format(CHECK)})
+    assert breaking(compare(repository)) == ["parameter 'mass': required no -> yes"]
+
+
+def test_the_value_that_a_variable_gets_without_its_parameter_is_the_default(repository, compare):
+    code = '  if (!nh.getParam("mass", mass_)) {\n    mass_ = 1.5;\n    log();\n  }\n'
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": SOURCE.format(code)})
+    repository.write({"arm/src/arm.cpp": SOURCE.format(code.replace("1.5", "2.5"))})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == "parameter 'mass': default 1.5 -> 2.5"
+
+
+def test_a_variable_that_a_call_does_not_set_keeps_its_value(repository, compare):
+    code = '  bool is_heavy = false;\n  nh.getParam("is_heavy", is_heavy);\n'
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": SOURCE.format("")})
+    repository.write({"arm/src/arm.cpp": SOURCE.format(code)})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == "parameters added: 'is_heavy' (false)"
