@@ -48,7 +48,8 @@ def test_a_program_that_still_reads_arguments_is_not_reported(repository, compar
 
 
 @pytest.mark.parametrize(("word", "is_breaking"), [("--port=1", True), ("--rate 1", False), ("--other 1", False)])
-def test_a_shell_script_that_passes_a_removed_option_fails(repository, compare, word, is_breaking):
-    repository.commit({**MANIFEST, SCRIPT: PARSING, "start.sh": f"python3 arm/scripts/driver.py {word}\n"})
+@pytest.mark.parametrize("path", ["start.sh", "Makefile", ".github/workflows/ci.yml"])
+def test_a_command_that_passes_a_removed_option_fails(repository, compare, path, word, is_breaking):
+    repository.commit({**MANIFEST, SCRIPT: PARSING, path: f"python3 arm/scripts/driver.py {word}\n"})
     repository.write({SCRIPT: PARSING.replace('p.add_argument("--port")\n', "")})
     assert ("'--port' is passed to 'driver.py'" in breaking(compare(repository))) == is_breaking

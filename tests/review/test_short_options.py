@@ -37,3 +37,13 @@ def test_option_of_another_library_is_not_one_of_the_command_line(repository, co
     repository.commit({PATH: OTHER.format("'--rate'")})
     repository.write({PATH: OTHER.format("'--hertz'")})
     assert not any("option" in line for line in sentences(subject(compare(repository), PATH)))
+
+
+@pytest.mark.parametrize(("statement", "is_lost"), [("import train", False), ("import os", True)])
+def test_option_that_another_program_has_is_lost_unless_it_is_imported(repository, compare, statement, is_lost):
+    program = ARGPARSE.format("'--rate'") + "\n\ndef main():\n    parser.parse_args()\n"
+    repository.commit({PATH: f"{statement}\n{program}", "arm/scripts/train.py": "RATE = 1\n"})
+    repository.write({PATH: f"{statement}\n\n\ndef main():\n    pass\n", "arm/scripts/train.py": program})
+    lines = sentences(subject(compare(repository), PATH)) if is_lost else []
+    assert ("command-line options removed: '--rate'" in lines) is is_lost
+    assert is_lost or not any("options removed" in str(change) for _, change in compare(repository).breaking_changes)

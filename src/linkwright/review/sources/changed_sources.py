@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
+from pathlib import PurePosixPath
 
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
@@ -139,6 +140,8 @@ class ChangedSources:
             item: the name to search for.
             path: the path of a source of the package.
         """
+        if item.kind is NameKind.OPTION:
+            return not self._has_in_imported(item, path)
         if item.kind is NameKind.IMPORT:
             return True
         if (item.kind, get_comparison_name(item)) in self._known_names:
@@ -162,6 +165,15 @@ class ChangedSources:
             return False
         package = self.find_package(path)
         return package is None or not self._get_unchanged(package).has_name(item)
+
+    def _has_in_imported(self, item: SourceName, path: str) -> bool:
+        """Return whether a changed source that a source imports or includes has a name."""
+        text = self.version.text(path)
+        return any(
+            any(known.name == item.name for known in names.of_kind(item.kind))
+            for other, names in self._names.items()
+            if other != path and imports(text, PurePosixPath(other).stem)
+        )
 
     def list_owners(self, item: SourceName, path: str) -> dict[str, SourceNames]:
         """Return the other sources of the package of a file that have a name, by path.
@@ -247,6 +259,11 @@ class ChangedSources:
         """
         files = self.version.file(path).parent.glob("*.y*ml")
         return any(f"{name.rpartition('.')[2]}:" in file.read_text("utf-8", errors="replace") for file in files)
+
+
+def imports(text: str, stem: str) -> bool:
+    """Return whether the text of a source imports or includes a file, by its name without the suffix."""
+    return re.search(rf"^\s*(?:#\s*include|import|from)\b.*\b{re.escape(stem)}\b", text, re.MULTILINE) is not None
 
 
 def get_comparison_name(item: SourceName) -> str:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources
+from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, imports
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
@@ -83,8 +82,5 @@ def _are_connected(sources: ChangedSources, path: str, other: str) -> bool:
     """Return whether one of two files includes or imports the other one or its header."""
     stems = PurePosixPath(path).stem, PurePosixPath(other).stem
     return stems[0] == stems[1] or any(
-        re.search(
-            rf"^\s*(?:#\s*include|import|from)\b.*\b{re.escape(stem)}\b", sources.version.text(file), re.MULTILINE
-        )
-        for stem, file in zip(stems, (other, path), strict=True)
+        imports(sources.version.text(file), stem) for stem, file in zip(stems, (other, path), strict=True)
     )

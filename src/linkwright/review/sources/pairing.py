@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 
 from linkwright.review.sources.details import has_same_parameters
-from linkwright.review.sources.name_patterns import can_make, ends_with_name
+from linkwright.review.sources.name_patterns import can_make
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 
 _MIN_SIMILARITY = 0.6
@@ -70,14 +70,8 @@ def pair_similar(
 def take_pairs(literals: list[SourceName], expressions: list[SourceName]) -> Iterator[tuple[SourceName, SourceName]]:
     """Yield the pairs of a name and an expression that probably mean the same.
 
-    They are removed from both lists. First come the expressions whose text is the name, such as ``name + ".rate"``.
+    They are removed from both lists.
     """
-    for item in list(literals):
-        other = next((expression for expression in expressions if ends_with_name(expression.name, item.name)), None)
-        if other is not None:
-            literals.remove(item)
-            expressions.remove(other)
-            yield item, other
     for item in list(literals):
         is_only_pair = len(literals) == len(expressions) == 1
         other = next((expression for expression in expressions if is_only_pair or expression.type == item.type), None)

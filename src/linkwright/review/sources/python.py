@@ -311,6 +311,10 @@ class _Reader:
             self._add(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 0, type_keyword), qos)
             if kind in _CALLBACK_KEYWORDS:
                 self._add_callback(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 2, "callback"))
+        elif function == "wait_for_message" and len(call.args) > 1:
+            is_ros1 = self._is_ros1(call)
+            name, types = (call.args[0], call.args[1]) if is_ros1 else (_get_argument(call, 2, "topic"), call.args[0])
+            self._add(NameKind.SUBSCRIPTION, name, types)
         elif self._has_node_first(call, function):
             self._add(
                 _NODE_FIRST_CLASSES[function],

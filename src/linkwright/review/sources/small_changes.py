@@ -74,7 +74,7 @@ def find_small_changes(old: Code, new: Code, lines: ReportedLines, names: Source
 def _compare(old: Sequence[Part], new: Sequence[Part]) -> Iterator[tuple[Phrase | None, int, bool]]:
     """Yield the differences of two functions, each with its line; without a text if it is not small."""
     texts = [[_read(part) for part in parts] for parts in (old, new)]
-    matcher = SequenceMatcher(None, *texts, autojunk=False)
+    matcher = SequenceMatcher(None, texts[0], texts[1], autojunk=False)
     for tag, old_start, old_end, new_start, new_end in matcher.get_opcodes():
         if tag != "equal":
             part = new[new_start] if new_end > new_start else old[old_start]

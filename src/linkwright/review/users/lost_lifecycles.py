@@ -1,4 +1,4 @@
-"""Find node classes that are no longer lifecycle nodes."""
+"""Find node classes that are no longer lifecycle nodes, or are such nodes now."""
 
 from __future__ import annotations
 
@@ -19,10 +19,19 @@ _CPP_CLASS = re.compile(
 _PYTHON_CLASS = re.compile(r"^[ \t]*class[ \t]+(?P<name>\w+)[ \t]*\((?P<bases>[^)]*)\)", re.MULTILINE)
 _LIFECYCLE = re.compile(r"\bLifecycleNode\b")
 _NODE = re.compile(r"\bNode\b")
+_CONFIGURING = re.compile(
+    r"trigger_configure|trigger_transition|TRANSITION_CONFIGURE|TRANSITION_ACTIVATE|lifecycle_manager|ChangeState\b|"
+    r"\blifecycle\s+set\b|->\s*configure\(\)"
+)
+"""A call or launch action that may configure a lifecycle node."""
+_CONFIGURING_SUFFIXES = (*CPP_SUFFIXES, PYTHON_SUFFIX, ".xml", ".yaml", ".yml", ".launch", ".sh")
 
 
 def find_lost_lifecycles(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the changed sources with a class that was a lifecycle node and is a plain node, each with a change."""
+    """Yield the changed sources with a class that was a lifecycle node and is a plain node, or the other way round.
+
+    Each comes with a change.
+    """
     for file in changed_files:
         is_source = file.path.endswith((*CPP_SUFFIXES, PYTHON_SUFFIX))
         if not (file.old_path and file.new_path and is_source) or file.is_submodule:
@@ -36,6 +45,18 @@ def find_lost_lifecycles(versions: Versions, changed_files: Sequence[ChangedFile
                 text = phrase("class '{name}' is no longer a lifecycle node", name=name)
                 reason = phrase("programs that configure and activate the node do not find its services")
                 yield file.new_path, Change(text, Effect.BREAKING, reason, Location(file.new_path, line, 1))
+            was_plain = name in old and _NODE.search(old[name][0]) and not _LIFECYCLE.search(old[name][0])
+            if was_plain and _LIFECYCLE.search(bases):
+                yield file.new_path, _make_lifecycle_change(versions.new, name, Location(file.new_path, line, 1))
+
+
+def _make_lifecycle_change(version: Version, name: str, location: Location) -> Change:
+    """Return the change of a plain node to a lifecycle node, which is breaking unless a file may configure it."""
+    text = phrase("class '{name}' is a lifecycle node now", name=name)
+    if any(_CONFIGURING.search(version.text(path)) for path in version.paths(_CONFIGURING_SUFFIXES)):
+        return Change(text, location=location)
+    reason = phrase("the node does nothing until a program configures and activates it")
+    return Change(text, Effect.BREAKING, reason, location)
 
 
 def _read_bases(version: Version, path: str) -> dict[str, tuple[str, int]]:

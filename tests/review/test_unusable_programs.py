@@ -1,0 +1,44 @@
+"""Added scripts that ROS does not find, although it finds the other scripts of their folder."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import sentences
+
+SCRIPT = "#!/usr/bin/env python3\nprint('arm')\n"
+BUILD = "cmake_minimum_required(VERSION 3.8)\nproject(arm)\ninstall(PROGRAMS {} DESTINATION lib/${{PROJECT_NAME}})\n"
+MANIFEST = PACKAGE_XML.replace("arm_description", "arm")
+CATKIN = MANIFEST.replace("<exec_depend>", "<buildtool_depend>catkin</buildtool_depend><exec_depend>")
+NOT_INSTALLED = "no build file installs the program, so that ros2 run does not find it"
+NOT_EXECUTABLE = "the program is not executable, so that rosrun does not find it"
+
+
+def list_lines(repository, compare, files: dict[str, str]) -> list[str]:
+    repository.write(files)
+    return [line for found in compare(repository).subjects for line in sentences(found)]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_told"),
+    [
+        ("scripts/a.py", "scripts/a.py", True),
+        ("scripts/a.py", "scripts/a.py scripts/bend.py", False),
+        ("nodes/c.py", "nodes/c.py", False),
+    ],
+)
+def test_script_that_no_build_file_installs(repository, compare, old, new, is_told):
+    files = {"arm/scripts/a.py": SCRIPT, "arm/nodes/c.py": SCRIPT, "arm/CMakeLists.txt": BUILD.format(old)}
+    repository.commit({"arm/package.xml": MANIFEST, **files})
+    lines = list_lines(repository, compare, {"arm/scripts/bend.py": SCRIPT, "arm/CMakeLists.txt": BUILD.format(new)})
+    assert (NOT_INSTALLED in lines) is is_told
+
+
+@pytest.mark.parametrize(("is_executable", "is_told"), [(True, True), (False, False)])
+def test_script_of_ros1_that_is_not_executable(repository, compare, is_executable, is_told):
+    build = "project(arm)\nfind_package(catkin REQUIRED)\ncatkin_package()\n"
+    repository.write({"arm/package.xml": CATKIN, "arm/scripts/a.py": SCRIPT, "arm/CMakeLists.txt": build})
+    repository.root.joinpath("arm/scripts/a.py").chmod(0o755 if is_executable else 0o644)
+    repository.commit({})
+    assert (NOT_EXECUTABLE in list_lines(repository, compare, {"arm/scripts/bend.py": SCRIPT})) is is_told
