@@ -13,6 +13,7 @@ from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import find_added_code, find_code_change
 from linkwright.review.sources.deprecations import find_deprecations
+from linkwright.review.sources.frame_changes import find_frame_changes
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 from linkwright.review.sources.replaced_literals import find_replaced_literals
@@ -31,6 +32,7 @@ def compare_statements(
     """
     changes = [*reported, *_compare_constants(old, new, file, reported)]
     if file.old_path is not None and file.new_path is not None:
+        changes += _compare_frames(old, new, file.old_path, file.new_path)
         changes += _compare_values(old, new, file, changes)
         changes += _compare_code(old, new, file.old_path, file.new_path, changes)
         changes += _compare_keys(old, new, file, changes)
@@ -54,6 +56,13 @@ def _compare_values(
     for change in find_text_changes(*paths):
         path = file.old_path if change.is_old else file.new_path
         yield Change(change.sentence, location=Location(path, change.line, 1, change.is_old))
+
+
+def _compare_frames(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the messages whose frames come from another message or variable."""
+    before, after = old.codes.get(old_path), new.codes.get(new_path)
+    for change in find_frame_changes(before, after) if before and after else ():
+        yield Change(change.sentence, location=Location(new_path, change.line, 1))
 
 
 def _find_deprecations(old: ChangedSources, new: ChangedSources, file: ChangedFile) -> Iterator[Change]:
