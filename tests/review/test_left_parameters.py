@@ -37,6 +37,7 @@ add_executable(lamp_node src/main.cpp)
 target_link_libraries(lamp_node lamp_core)
 install(TARGETS lamp_node lamp_core DESTINATION lib/lamp)
 """
+CHOSEN = '<rosparam file="$(find lamp)/config/$(arg name).yaml" command="load"/>'
 LOADED = '<rosparam file="$(find lamp)/config/lamp.yaml" command="load"/>'
 
 
@@ -56,6 +57,10 @@ def find_users(repository, compare, files, path, text):
         ("lamp.py", "lamp", LOADED, "level: 3\n", True),
         ("lamp.py", "lamp", LOADED, "rate: 3\n", False),
         ("lamp.py", "lamp", LOADED.replace("/>", ' ns="inner"/>'), "level: 3\n", False),
+        ("lamp.py", "lamp", CHOSEN, "level: 3\n", True),
+        ("lamp.py", "lamp", CHOSEN.replace("find lamp", "find light"), "level: 3\n", False),
+        ("lamp.py", "lamp", CHOSEN.replace("/config/", "/params/"), "level: 3\n", False),
+        ("other.py", "lamp", CHOSEN, "level: 3\n", False),
         ("lamp.py", "lamp", "", "level: 3\n", False),
     ],
 )
@@ -120,3 +125,17 @@ def test_a_parameter_file_of_a_node_with_the_name_of_another_one(repository, com
         "lamp/config/lamp.yaml": "lamp:\n  ros__parameters:\n    level: 2\n",
     }
     assert find_users(repository, compare, files, "lamp/src/lamp.cpp", RCLCPP) == []
+
+
+def test_an_executable_with_another_name_than_its_target(repository, compare):
+    properties = "set_target_properties(lamp_node PROPERTIES OUTPUT_NAME {})\n"
+    for name, count in (("lamp", 1), ("light", 0)):
+        files = {
+            f"{name}.txt": name,
+            "lamp/CMakeLists.txt": CMAKE.replace("lamp_core src/lamp.cpp", "lamp src/other.cpp").replace(
+                "src/main.cpp", "src/lamp.cpp"
+            )
+            + properties.format(name),
+            "lamp/launch/lamp.launch.py": ROS2,
+        }
+        assert len(find_users(repository, compare, files, "lamp/src/lamp.cpp", RCLCPP)) == count

@@ -168,6 +168,7 @@ class BuildFacts:
         header_paths: the headers and folders of headers relative to the package that other packages find although
             `files` does not contain them.
         include_folders: the folders relative to the prefix below which other packages find headers.
+        output_names: the names of the files of targets that have another name, by target.
     """
 
     facts: list[Fact] = field(default_factory=list)
@@ -180,6 +181,7 @@ class BuildFacts:
     targets: dict[str, TargetParts] = field(default_factory=dict)
     header_paths: frozenset[str] = frozenset()
     include_folders: frozenset[str] = frozenset()
+    output_names: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def is_complete(self) -> bool:

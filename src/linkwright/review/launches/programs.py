@@ -48,10 +48,12 @@ class SourcePrograms:
             return re.search(rf"\b{class_name}::{class_name}\s*\(", self._version.text(self._path)) is not None
         return self._path in self._list_sources(name)
 
-    def _list_sources(self, target: str) -> Iterator[str]:
+    def _list_sources(self, program: str) -> Iterator[str]:
         """Yield the paths of the sources of an executable, and of the libraries of the package that it links to."""
         facts = None if self._folder is None else read_package_facts(self._version, self._folder)
-        pending, seen = [target], {target}
+        names = {} if facts is None else facts.output_names
+        pending = [target for target, name in names.items() if name == program] or [program]
+        seen = set(pending)
         while facts is not None and pending:
             parts = facts.targets.get(pending.pop())
             for source in () if parts is None else parts.sources:
