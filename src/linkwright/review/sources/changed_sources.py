@@ -155,13 +155,6 @@ class ChangedSources:
         others = self._get_unchanged(package)
         return not (others.has_name(item) if item.kind in COMMUNICATION_KINDS else others.has_text(item.name))
 
-    def lacks_node(self, item: SourceName, path: str) -> bool:
-        """Return whether no source of the package makes a node with a name. Other texts with the name do not count."""
-        if (item.kind, get_comparison_name(item)) in self._known_names:
-            return False
-        package = self.find_package(path)
-        return package is None or not self._get_unchanged(package).has_name(item)
-
     def list_owners(self, item: SourceName, path: str) -> dict[str, SourceNames]:
         """Return the other sources of the package of a file that have a name, by path.
 
