@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Location
+from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.added_texts import TextsChange, find_constant_changes, find_key_changes
 from linkwright.review.sources.changed_sources import ChangedSources
 from linkwright.review.sources.changed_texts import find_text_changes
@@ -15,6 +15,7 @@ from linkwright.review.sources.code_changes import find_added_code, find_code_ch
 from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.frame_changes import find_frame_changes
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
+from linkwright.review.sources.new_failures import FailureSide, find_new_failures
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 from linkwright.review.sources.replaced_literals import find_replaced_literals
 
@@ -33,6 +34,7 @@ def compare_statements(
     changes = [*reported, *_compare_constants(old, new, file, reported)]
     if file.old_path is not None and file.new_path is not None:
         changes += _compare_frames(old, new, file.old_path, file.new_path)
+        changes += _find_failures(old, new, file.old_path, file.new_path)
         changes += _compare_values(old, new, file, changes)
         changes += _compare_code(old, new, file.old_path, file.new_path, changes)
         changes += _compare_keys(old, new, file, changes)
@@ -63,6 +65,20 @@ def _compare_frames(old: ChangedSources, new: ChangedSources, old_path: str, new
     before, after = old.codes.get(old_path), new.codes.get(new_path)
     for change in find_frame_changes(before, after) if before and after else ():
         yield Change(change.sentence, location=Location(new_path, change.line, 1))
+
+
+def _find_failures(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the conditions under which functions newly throw an error or exit."""
+    sides = []
+    for sources, path in ((old, old_path), (new, new_path)):
+        code = sources.codes.get(path)
+        text = sources.version.text(path)
+        if code is None:
+            return
+        sides.append(FailureSide(code, sources.get_names(path), text, is_cpp=path.endswith(CPP_SUFFIXES)))
+    for change in find_new_failures(*sides):
+        effect = Effect.CHANGED if change.reason is None else Effect.BREAKING
+        yield Change(change.sentence, effect, change.reason, Location(new_path, change.line, 1))
 
 
 def _find_deprecations(old: ChangedSources, new: ChangedSources, file: ChangedFile) -> Iterator[Change]:
