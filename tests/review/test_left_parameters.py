@@ -37,6 +37,7 @@ add_executable(lamp_node src/main.cpp)
 target_link_libraries(lamp_node lamp_core)
 install(TARGETS lamp_node lamp_core DESTINATION lib/lamp)
 """
+CHOSEN = '<rosparam file="$(find lamp)/config/$(arg name).yaml" command="load"/>'
 LOADED = '<rosparam file="$(find lamp)/config/lamp.yaml" command="load"/>'
 
 
@@ -56,6 +57,10 @@ def find_users(repository, compare, files, path, text):
         ("lamp.py", "lamp", LOADED, "level: 3\n", True),
         ("lamp.py", "lamp", LOADED, "rate: 3\n", False),
         ("lamp.py", "lamp", LOADED.replace("/>", ' ns="inner"/>'), "level: 3\n", False),
+        ("lamp.py", "lamp", CHOSEN, "level: 3\n", True),
+        ("lamp.py", "lamp", CHOSEN.replace("find lamp", "find light"), "level: 3\n", False),
+        ("lamp.py", "lamp", CHOSEN.replace("/config/", "/params/"), "level: 3\n", False),
+        ("other.py", "lamp", CHOSEN, "level: 3\n", False),
         ("lamp.py", "lamp", "", "level: 3\n", False),
     ],
 )

@@ -130,20 +130,6 @@ def test_parameter_that_one_of_two_plugins_gets(review_node, other, kept, is_tol
     assert not broken
 
 
-@pytest.mark.parametrize(
-    ("other", "lines"),
-    [
-        ('auto logger = rclcpp::get_logger("drive");\n', ["node 'drive' renamed to 'wheels'"]),
-        ('class Other : public rclcpp::Node { Other() : Node("drive") {} };\n', []),
-    ],
-)
-def test_new_name_of_a_node_whose_old_name_is_in_another_source(review_node, other, lines):
-    files = {"arm/src/drive.cpp": NODE, "arm/src/other.cpp": other}
-    found, broken = review_node(files, {"arm/src/drive.cpp": NODE.replace('Node("drive")', 'Node("wheels")')})
-    assert [line for line in found if line.startswith("node ")] == lines
-    assert len(broken) == len(lines)
-
-
 def test_the_only_node_of_a_source_is_renamed_although_another_node_has_the_old_name(repository, compare):
     text = 'int main() {{ rclcpp::Node::make_shared("{}"); spin(); }}\n'
     files = {f"arm/src/{name}.cpp": text.format("serial") for name in ("can", "serial")}

@@ -59,3 +59,40 @@ def test_the_period_behind_the_node_and_its_clock_is_told(repository, compare, c
     repository.write({"arm/a.cpp": text.format(call.format(new))})
     expected = [f"rate or period: create_timer({old}) -> create_timer({new})"]
     assert sentences(compare(repository).subjects[0]) == expected
+
+
+CLOCK = "  step_ = {}, std::bind(&Arm::step, this));\n"
+NODE_CLOCK = "rclcpp::create_timer(this, this->get_clock(), period_"
+ALSO_SIMULATED = ", also if use_sim_time is set"
+SIMULATED = ", which is simulated time if use_sim_time is set"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("create_wall_timer(period_", NODE_CLOCK, [f"timer of 'step': wall time -> ROS time{SIMULATED}"]),
+        ("create_wall_timer(period_", "create_timer(period_", [f"timer of 'step': wall time -> ROS time{SIMULATED}"]),
+        (
+            NODE_CLOCK,
+            "create_wall_timer(period_",
+            ["timer of 'step': ROS time -> wall time, also if use_sim_time is set"],
+        ),
+        ("create_wall_timer(period_", "rclcpp::create_timer(this, clock_, period_", []),  # of an unknown kind
+        ("create_timer(period_", NODE_CLOCK, []),
+        (
+            "create_wall_timer(100ms",
+            "create_timer(50ms",
+            [
+                "rate or period: create_wall_timer(100ms) -> create_timer(50ms)",
+                f"timer of 'step': wall time -> ROS time{SIMULATED}",
+            ],
+        ),
+    ],
+)
+def test_another_clock_of_a_timer(repository, compare, old, new, expected):
+    texts = [CPP.format(CLOCK.format(call)) for call in (old, new)]
+    repository.commit({**MANIFEST, "arm/arm.cpp": texts[0]})
+    repository.write({"arm/arm.cpp": texts[1]})
+    lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
+    assert [line for line in lines if "timer" in line] == expected
+    assert not expected or lines == expected

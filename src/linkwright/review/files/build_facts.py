@@ -171,6 +171,7 @@ class BuildFacts:
         has_unknown_sources: whether targets may have other sources than `targets` contains.
         has_library: whether others may call code outside of headers, because the package does not only build programs.
         include_folders: the folders relative to the prefix below which other packages find headers.
+        output_names: the names of the files of targets that have another name, by target.
     """
 
     facts: list[Fact] = field(default_factory=list)
@@ -186,6 +187,7 @@ class BuildFacts:
     component_programs: dict[str, str] = field(default_factory=dict)
     has_library: bool = True
     has_unknown_sources: bool = False
+    output_names: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def is_complete(self) -> bool:

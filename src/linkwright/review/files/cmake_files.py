@@ -130,6 +130,7 @@ def read_cmake_facts(version: Version, path: str, options: Iterable[str] = ()) -
         (match[1], source.span(match.start(), match.end())) for match in _ENVIRONMENT.finditer(text)
     )
     cmake = read_cmake(source, file.parent, options)
+    facts.output_names = cmake.output_names
     _read_files(facts, cmake, file.parent)
     facts.other_commands = [
         (_get_compared_name(command), _normalize_arguments(command, facts.project))

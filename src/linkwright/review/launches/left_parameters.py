@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
-from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.parameter_names import find_node_name
@@ -34,6 +34,11 @@ _ANY_READING = re.compile(
 _COMMENT = re.compile(r"(^|\s)(#|//)[^\n]*")
 _PARAMETERS = ".ros__parameters."
 _DOT = re.escape(".")
+_VARIABLE = re.compile(r"\$\((?:arg|var) \w+\)")
+_CHOSEN_FILE = re.compile(
+    rf"\$\(find(?:-pkg-share)? (?P<package>[\w-]+)\)/(?P<path>(?:[\w./-]|{_VARIABLE.pattern})*\.ya?ml)(?![\w.])"
+)
+"""The path of a parameter file of a package, which may contain arguments."""
 _MAX_FILES = 100
 
 
@@ -123,14 +128,19 @@ class _Lost:
         return names
 
     def _is_loaded_only_by_nodes(self, path: str) -> bool:
-        """Return whether only nodes that run the source load a file, and all of its keys are theirs."""
-        name = PurePosixPath(path).name
+        """Return whether only nodes that run the source load a file, and all of its keys are theirs.
+
+        Arguments of a launch file may choose the file in its folder.
+        """
+        name, folder = PurePosixPath(path).name, self.version.package_of(path)
+        package = None if folder is None else package_name(self.version.file(folder))
+        inner = PurePosixPath(path).relative_to(folder or "").as_posix()
         users = [
             (outline, entry)
-            for _, outline in read_launch_files(self.version, name, PurePosixPath(path).stem)
+            for _, outline in read_launch_files(self.version, name, PurePosixPath(path).stem, package or name)
             for entry in outline.entries
-            if any(name in outline.resolve(text) for text in (entry.name, *entry.settings.values()))
-            and not entry.has_value
+            for texts in [[outline.resolve(text) for text in (entry.name, *entry.settings.values())]]
+            if any(name in text or _may_choose(text, package, inner) for text in texts) and not entry.has_value
         ]
         return bool(users) and all(
             entry.kind in PROGRAM_KINDS
@@ -179,6 +189,14 @@ def _find_lost(versions: Versions, old_path: str, new_path: str) -> _Lost | None
     names = {name for name in names if not any(name == other or name.startswith(f"{other}.") for other in known)}
     names -= _find_named(versions.new, package, new_path, names) if names else set()
     return _Lost(versions.new, new_path, frozenset(names), new) if names else None
+
+
+def _may_choose(text: str, package: str | None, path: str) -> bool:
+    """Return whether arguments in a path may choose a file of a package: ``$(find arm)/config/$(arg robot).yaml``."""
+    return any(
+        match["package"] == package and re.fullmatch(".+".join(map(re.escape, _VARIABLE.split(match["path"]))), path)
+        for match in _CHOSEN_FILE.finditer(text)
+    )
 
 
 def _to_path(name: str) -> str:

@@ -9,7 +9,6 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import LinkwrightError
 from linkwright.packages.manifest import package_name
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.launches.default_names import find_script
 from linkwright.review.launches.outlines import PROGRAM_KINDS, Entry, LaunchOutline
@@ -17,13 +16,6 @@ from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.script_options import LAUNCH_SUFFIXES
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.versions import TEST_FOLDERS, Version
-
-_OUTPUT_NAME = re.compile(
-    r"^\s*set_target_properties\s*\(\s*(?P<target>\S+)\s+PROPERTIES\s[^()]*?\bOUTPUT_NAME\s+\"?(?P<name>[^\s\")]+)",
-    re.MULTILINE | re.IGNORECASE,
-)
-"""The command with which a target gets an executable or library with another name."""
-_PROJECT_NAME = "${PROJECT_NAME}"
 
 
 class SourcePrograms:
@@ -56,10 +48,11 @@ class SourcePrograms:
             return re.search(rf"\b{class_name}::{class_name}\s*\(", self._version.text(self._path)) is not None
         return self._path in self._list_sources(name)
 
-    def _list_sources(self, target: str) -> Iterator[str]:
+    def _list_sources(self, program: str) -> Iterator[str]:
         """Yield the paths of the sources of an executable, and of the libraries of the package that it links to."""
         facts = None if self._folder is None else read_package_facts(self._version, self._folder)
-        pending = self._find_targets(target)
+        names = {} if facts is None else facts.output_names
+        pending = [target for target, name in names.items() if name == program] or [program]
         seen = set(pending)
         while facts is not None and pending:
             parts = facts.targets.get(pending.pop())
@@ -68,16 +61,6 @@ class SourcePrograms:
             libraries = () if parts is None else tuple(parts.libraries)
             pending += [library for library in libraries if library not in seen]
             seen.update(libraries)
-
-    def _find_targets(self, program: str) -> list[str]:
-        """Return the targets of CMake whose executables have a name."""
-        build_file = (PurePosixPath(self._folder or "") / CMAKE_FILE).as_posix()
-        targets = [
-            match["target"].replace(_PROJECT_NAME, self.package or "")
-            for match in _OUTPUT_NAME.finditer(self._version.text(build_file))
-            if match["name"].replace(_PROJECT_NAME, self.package or "") == program
-        ]
-        return targets or [program]
 
 
 def read_launch_files(version: Version, *words: str) -> Iterator[tuple[str, LaunchOutline]]:

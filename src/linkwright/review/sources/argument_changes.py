@@ -133,6 +133,8 @@ def _format_value(arguments: Sequence[Sequence[Token]]) -> str:
 def _format_call(tokens: Sequence[Token], call: _Call, closing: int) -> str:
     """Return a call with the keyword of the argument that it is."""
     text = join_tokens(tokens[call.first : closing + 1])
-    if call.first > 2 and tokens[call.first - 1].text == "=" and tokens[call.first - 3].text in ("(", ","):
+    before = [token.text for token in tokens[: call.first]]
+    is_in_call = before.count("(") > before.count(")")
+    if is_in_call and call.first > 2 and before[-1] == "=" and before[-3] in ("(", ","):
         return f"{tokens[call.first - 2].text}={text}"
     return text

@@ -159,13 +159,6 @@ class ChangedSources:
         is_read = item.kind in (*COMMUNICATION_KINDS, NameKind.NODE)
         return not (others.has_name(item) if is_read else others.has_text(item.name))
 
-    def lacks_node(self, item: SourceName, path: str) -> bool:
-        """Return whether no source of the package makes a node with a name. Other texts with the name do not count."""
-        if (item.kind, get_comparison_name(item)) in self._known_names:
-            return False
-        package = self.find_package(path)
-        return package is None or not self._get_unchanged(package).has_name(item)
-
     def _has_in_imported(self, item: SourceName, path: str) -> bool:
         """Return whether a changed source that a source imports or includes has a name."""
         text = self.version.text(path)

@@ -231,7 +231,7 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
     old, new = (text.strip("\"'") for text in (item.old, item.new))
     for line in reported:
         before, arrow, after = line.partition(" -> ")
-        if arrow and all(not text or _has_word(side, text) for side, text in ((before, old), (after, new))):
+        if arrow and all(not text or _has_value(side, text) for side, text in ((before, old), (after, new))):
             return True
         if all(text and re.search(rf"= {re.escape(text)}(?![\w.])", line) for text in (item.old, item.new)):
             return True  # a removed and an added constant
@@ -250,6 +250,11 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
 
 def _is_text(value: str) -> bool:
     return value.endswith(("'", '"'))
+
+
+def _has_value(line: str, text: str) -> bool:
+    """Return whether a line has a text, or the same number, such as ``0.5`` for ``.5``."""
+    return _has_word(line, text) or (text.startswith(".") and text[1:].isdigit() and _has_word(line, f"0{text}"))
 
 
 def _has_word(line: str, word: str, joiner: str = ".") -> bool:

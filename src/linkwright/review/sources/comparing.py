@@ -131,14 +131,10 @@ class _SourcePair(WholeSourcePair):
         path, old_path = self.file.path, self.file.old_path or self.file.path
         only_old = {name: item for name, item in before.items() if name not in after}
         only_new = {name: item for name, item in after.items() if name not in before}
-        has_sole_nodes = kind is NameKind.NODE and len(before) == len(after) == 1
-        lost = [
-            item
-            for item in only_old.values()
-            if has_only_in_other_nodes(item, self.new, self.old, (path, old_path))
-            or (has_sole_nodes and self.new.lacks_node(item, path))
+        left = [
+            item for item in only_old.values() if has_only_in_other_nodes(item, self.new, self.old, (path, old_path))
         ]
-        removed = [item for item in only_old.values() if item in lost or self.new.lacks(item, path)]
+        removed = [item for item in only_old.values() if item in left or self.new.lacks(item, path)]
         is_new_node = self.file.old_path is None and new_names.makes_node
         lacks = self.old.lacks
         if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
@@ -150,7 +146,7 @@ class _SourcePair(WholeSourcePair):
         added = [
             item
             for item in only_new.values()
-            if (has_sole_nodes and removed)
+            if is_sole_node
             or lacks(item, old_path)
             or has_only_in_other_nodes(item, self.old, self.new, (old_path, path))
             or is_new_in_plugin(item, self.old, self.new, (old_path, path))

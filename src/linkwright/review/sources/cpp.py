@@ -37,6 +37,7 @@ from linkwright.review.sources.cpp_parameter_calls import ParameterDefaults, fin
 from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
 from linkwright.review.sources.cpp_text_functions import TextFunctions
+from linkwright.review.sources.cpp_timers import FoundRate, find_rates
 from linkwright.review.sources.cpp_values import TEXT, VARIABLE, InitialValues, find_constants, parse_literal
 from linkwright.review.sources.cpp_variable_types import VariableTypes
 from linkwright.review.sources.details import read_service_qos
@@ -80,10 +81,6 @@ _FRAME = re.compile(r"\b(?P<child>child_)?frame_id_?\s*=(?!=)\s*(?P<value>[^;\n]
 _RECONFIGURATION = re.compile(r"\bdynamic_reconfigure\s*::\s*Server\s*<\s*(?:\w+\s*::\s*)*(?P<name>\w+)\s*>")
 _POINTER = re.compile(r"&\s*(?:\w+::)*?((?:\w+::)\w+)(?!::|\w)")
 _STAMPED = re.compile(r"\bStampedTransform\s*(?:\w+\s*)?\(")
-_RATE = re.compile(
-    r"\b(?P<name>(?:ros::|rclcpp::)(?:Rate|WallRate)(?:\s+\w+)?|create_(?:wall_)?timer|createTimer)\s*\("
-)
-_PERIOD = re.compile(r"\d|\bDuration\b|seconds\b")
 _NAMESPACE = re.compile(r"^[ \t]*(?:inline\s+)?namespace\s+(?P<name>[A-Za-z_]\w*(?:\s*::\s*\w+)*)\s*\{", re.MULTILINE)
 _ALIAS = re.compile(
     r"\btypedef\s+(?P<type>[^;{}]+[\s>*&])(?P<name>\w+)\s*;|\busing\s+(?P<using>\w+)\s*=\s*(?P<used>[^;{}]+);"
@@ -148,8 +145,8 @@ class _Reader:
             self._add(interface.kind, interface.name, interface.start, interface.end)
         for option in find_options(text, find_arguments):
             self._add(NameKind.OPTION, option.name, option.start, option.end, option.default, option.details)
-        for match in _RATE.finditer(text):
-            self._read_rate(match)
+        for rate in find_rates(text):
+            self._read_rate(rate)
         for match in _RECONFIGURATION.finditer(text):
             self._add(NameKind.RECONFIGURATION, match["name"], match.start("name"), match.end("name"))
         registrations = list(find_registrations(text))
@@ -464,22 +461,14 @@ class _Reader:
                     self._names.unknown_scopes.add(literal["text"])  # the function has the node handle
                     break
 
-    def _read_rate(self, match: re.Match[str]) -> None:
-        arguments = list(find_arguments(self._text, match.end() - 1))
-        is_timer = match["name"] == "create_timer"
-        texts = [" ".join(self._text[slice(*argument)].split()) for argument in arguments]
-        index = 1 if is_timer and len(texts) > 1 and not re.search(r"\d", texts[0]) else 0
-        if is_timer:  # behind the node and its clock in the functions of rclcpp
-            index = next((place for place, text in enumerate(texts[:3]) if _PERIOD.search(text)), index)
-        if index < len(texts):
-            name = match["name"].split()[0]
-            rate = f"{name}({texts[index]})", self._make_span(*arguments[index])
-            self._names.rates.append(rate)
-            if "imer" in name:
-                functions = _find_pointers(texts)
-                name = functions.pop().rpartition("::")[2] if len(functions) == 1 else ""
-                self._names.timers.append(Timer(name, *rate))
-                self._add_callback(None, "", texts)
+    def _read_rate(self, rate: FoundRate) -> None:
+        text, span = rate.text, self._make_span(rate.begin, rate.end)
+        self._names.rates.append((text, span))
+        if rate.is_timer:
+            functions = _find_pointers(rate.arguments)
+            callback = functions.pop().rpartition("::")[2] if len(functions) == 1 else ""
+            self._names.timers.append(Timer(callback, text, span, rate.clock))
+            self._add_callback(None, "", rate.arguments)
 
     def _get_literal(self, begin: int, end: int) -> str | None:
         """Return the text of a literal or constant, or None for other expressions."""

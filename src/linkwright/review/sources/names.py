@@ -166,6 +166,13 @@ class ConditionalLines(NamedTuple):
     line: int
 
 
+class TimerClock(Enum):
+    """The clock by which a timer runs, with its name for reports."""
+
+    WALL = phrase("wall time")
+    ROS = phrase("ROS time")
+
+
 @dataclass(frozen=True)
 class Timer:
     """A timer of a source.
@@ -174,11 +181,13 @@ class Timer:
         callback: the name of the function that it calls; empty if it is another expression.
         text: the call with the period.
         span: the location of the period.
+        clock: the clock by which it runs; None if it is unknown.
     """
 
     callback: str
     text: str
     span: Span
+    clock: TimerClock | None = None
 
 
 @dataclass

@@ -7,13 +7,14 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.sources.names import SourceNames, Timer
+from linkwright.review.sources.names import SourceNames, Timer, TimerClock
 from linkwright.review.sources.namespaces import HeaderChange
 
 _UNIT_NAMES = re.compile(
     r"\b(?:ros|rospy|rclcpp|rclpy|std|chrono|(?:nano|micro|milli)?seconds|duration|Duration|from_sec|to_sec|n?secs|"
-    r"[num]?s|Hz|from_seconds|float|int)\b"
+    r"[num]?s|Hz|from_seconds|float|int|WallDuration|SteadyDuration)\b"
 )
+_TIMERS = frozenset({"create_wall_timer", "create_timer"})
 
 
 def compare_rates(old: SourceNames, new: SourceNames, *, is_added: bool) -> Iterator[HeaderChange]:
@@ -38,8 +39,9 @@ def compare_rates(old: SourceNames, new: SourceNames, *, is_added: bool) -> Iter
             if timer.callback in timers
         ]
     for (old_text, _), (new_text, span) in pairs:
-        is_same_call = old_text.partition("(")[0] == new_text.partition("(")[0]
-        if is_same_call and old_text != new_text and (_is_number(old_text) or _is_number(new_text)):
+        old_call, new_call = old_text.split("(", 1), new_text.split("(", 1)
+        is_same_call = old_call[0] == new_call[0] or {old_call[0], new_call[0]} <= _TIMERS
+        if is_same_call and old_call[1:] != new_call[1:] and (_is_number(old_text) or _is_number(new_text)):
             yield HeaderChange(phrase("rate or period: {old} -> {new}", old=old_text, new=new_text), span)
 
 
@@ -61,6 +63,30 @@ def compare_timers(old: SourceNames, new: SourceNames, other: Sequence[Timer]) -
         if timer.callback:
             text = phrase("timer of '{name}' added: {timer}", name=timer.callback, timer=timer.text)
         yield HeaderChange(text, timer.span)
+    yield from _compare_clocks(old.timers, new.timers)
+
+
+def _compare_clocks(old: Sequence[Timer], new: Sequence[Timer]) -> Iterator[HeaderChange]:
+    """Yield the callbacks of timers that run by another clock. Callbacks with timers of several clocks are left out."""
+    old_clocks, new_clocks = (_find_clocks(timers) for timers in (old, new))
+    for timer in new:
+        old_clock, clock = old_clocks.get(timer.callback), new_clocks.get(timer.callback)
+        if old_clock is None or clock is None or clock is old_clock:
+            continue
+        values = {"name": timer.callback, "old": old_clock.value, "new": clock.value}
+        text = phrase("timer of '{name}': {old} -> {new}, which is simulated time if use_sim_time is set", **values)
+        if clock is TimerClock.WALL:
+            text = phrase("timer of '{name}': {old} -> {new}, also if use_sim_time is set", **values)
+        yield HeaderChange(text, timer.span)
+
+
+def _find_clocks(timers: Sequence[Timer]) -> dict[str, TimerClock | None]:
+    """Return the clock of the timers of each callback; None if it is unknown or not the same for all."""
+    clocks: dict[str, set[TimerClock | None]] = {}
+    for timer in timers:
+        if timer.callback:
+            clocks.setdefault(timer.callback, set()).add(timer.clock)
+    return {callback: next(iter(found)) if len(found) == 1 else None for callback, found in clocks.items()}
 
 
 def _find_lost(own: Sequence[Timer], others: Sequence[Timer], moved: Sequence[Timer]) -> list[Timer]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import Change, Location
+from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.added_texts import TextsChange, find_constant_changes, find_key_changes
 from linkwright.review.sources.changed_sources import ChangedSources
 from linkwright.review.sources.changed_texts import find_text_changes
@@ -13,9 +14,13 @@ from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import ReportedLines, find_added_code, find_code_change
 from linkwright.review.sources.deprecations import find_deprecations
+from linkwright.review.sources.frame_changes import find_frame_changes
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
+from linkwright.review.sources.new_failures import FailureSide, find_new_failures
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
+from linkwright.review.sources.renamed_variables import find_renamed_variables
 from linkwright.review.sources.replaced_literals import find_replaced_literals
+from linkwright.review.sources.returned_codes import find_returned_codes
 from linkwright.review.sources.small_changes import find_small_changes
 
 
@@ -32,8 +37,12 @@ def compare_statements(
     """
     changes = [*reported, *_compare_constants(old, new, file, reported)]
     if file.old_path is not None and file.new_path is not None:
+        changes += _compare_frames(old, new, file.old_path, file.new_path)
+        changes += _find_failures(old, new, file.old_path, file.new_path)
+        changes += _find_returned_codes(old, new, file.old_path, file.new_path)
         changes += _compare_values(old, new, file, changes)
         changes += _find_small_changes(old, new, file, changes)
+        changes += _find_renamed_variables(old, new, file, changes)
         changes += _compare_code(old, new, file.old_path, file.new_path, changes)
         changes += _compare_keys(old, new, file, changes)
         changes += _find_deprecations(old, new, file)
@@ -68,6 +77,46 @@ def _find_small_changes(
     for change in find_small_changes(before, after, ReportedLines(reported), new.get_names(file.new_path)):
         path = (file.old_path if change.is_old else file.new_path) or file.path
         yield Change(change.text, location=Location(path, change.line, 1, change.is_old))
+
+
+def _find_renamed_variables(
+    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
+) -> Iterator[Change]:
+    """Yield the variables of functions that have another name and another initial value, unless other lines do."""
+    before, after = old.codes.get(file.old_path or ""), new.codes.get(file.new_path or "")
+    told = {change.location.line for change in reported if change.location and not change.location.is_old}
+    for item in find_renamed_variables(before, after) if before and after else ():
+        if item.line not in told:
+            text = phrase("values in {name}: {values}", name=item.function, values=item.text)
+            yield Change(text, location=Location(file.new_path or "", item.line, 1))
+
+
+def _find_returned_codes(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the constants that functions newly return."""
+    before, after = old.codes.get(old_path), new.codes.get(new_path)
+    for item in find_returned_codes(before, after) if before and after else ():
+        yield Change(item.sentence, location=Location(new_path, item.line, 1))
+
+
+def _compare_frames(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the messages whose frames come from another message or variable."""
+    before, after = old.codes.get(old_path), new.codes.get(new_path)
+    for change in find_frame_changes(before, after) if before and after else ():
+        yield Change(change.sentence, location=Location(new_path, change.line, 1))
+
+
+def _find_failures(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the conditions under which functions newly throw an error or exit."""
+    sides = []
+    for sources, path in ((old, old_path), (new, new_path)):
+        code = sources.codes.get(path)
+        text = sources.version.text(path)
+        if code is None:
+            return
+        sides.append(FailureSide(code, sources.get_names(path), text, is_cpp=path.endswith(CPP_SUFFIXES)))
+    for change in find_new_failures(*sides):
+        effect = Effect.CHANGED if change.reason is None else Effect.BREAKING
+        yield Change(change.sentence, effect, change.reason, Location(new_path, change.line, 1))
 
 
 def _find_deprecations(old: ChangedSources, new: ChangedSources, file: ChangedFile) -> Iterator[Change]:

@@ -1,0 +1,82 @@
+"""Find messages whose frame comes from another message or variable."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.review.sources.code import Code, Part
+
+_JOINER = re.compile(r"\s*(\.|->|::)\s*|\s+(?=[(\[\])])|(?<=[(\[])\s+")
+_OBJECT = r"[A-Za-z_][\w.]*(?:->[\w.]+)*"
+_ASSIGNMENT = re.compile(
+    rf"(?<![\w.>])(?P<target>{_OBJECT}?)(?:\.|->)header(?:\.|->)frame_id = (?P<value>{_OBJECT})\s*;?\s*\Z"
+)
+_BRANCH = re.compile(r"\A[\s\d]+")
+"""The mark of the branch of a statement in Python."""
+_HEADER = re.compile(r"(?:\.|->)header(?:\.|->)frame_id\Z")
+_SEPARATOR = " | "
+
+
+class FrameChange(NamedTuple):
+    """The changed expressions for the frames of messages.
+
+    Attributes:
+        sentence: the messages and the expressions.
+        line: the line of the first changed assignment in the new version.
+    """
+
+    sentence: Phrase
+    line: int
+
+
+class _Assigned(NamedTuple):
+    expressions: tuple[str, ...]
+    line: int
+
+
+def find_frame_changes(old: Code, new: Code) -> Iterator[FrameChange]:
+    """Yield the messages of each function that get the frame of another message or variable now.
+
+    One of both expressions is the frame of a message that the function has in both versions, so that neither is only
+    another name of the other.
+    """
+    for name, parts in new.functions.items():
+        if name not in old.functions:
+            continue
+        before, after = _read_assignments(old.functions[name]), _read_assignments(parts)
+        texts = [" ".join(part.text for part in items) for items in (old.functions[name], parts)]
+        groups: dict[tuple[tuple[str, ...], tuple[str, ...]], list[str]] = {}
+        for target in before.keys() & after.keys():
+            pair = before[target].expressions, after[target].expressions
+            if pair[0] != pair[1] and (_is_left(pair[0], texts[1]) or _is_left(pair[1], texts[0])):
+                groups.setdefault(pair, []).append(target)
+        for (old_values, new_values), targets in sorted(groups.items()):
+            sentence = phrase(
+                "frame_id of {names}: {old} -> {new}",
+                names=quoted_names(sorted(targets)),
+                old=_SEPARATOR.join(old_values),
+                new=_SEPARATOR.join(new_values),
+            )
+            yield FrameChange(sentence, min(after[target].line for target in targets))
+
+
+def _read_assignments(parts: Sequence[Part]) -> dict[str, _Assigned]:
+    """Return the expressions that a function assigns to the frames of messages, by message."""
+    found: dict[str, _Assigned] = {}
+    for part in parts:
+        match = _ASSIGNMENT.search(_JOINER.sub(r"\1", _BRANCH.sub("", part.text)))
+        if match is not None:
+            known = found.get(match["target"], _Assigned((), part.first_line))
+            expressions = tuple(sorted({*known.expressions, match["value"]}))
+            found[match["target"]] = known._replace(expressions=expressions)
+    return found
+
+
+def _is_left(expressions: Sequence[str], text: str) -> bool:
+    """Return whether all expressions are frames of messages that a function still has in another version."""
+    roots = [re.split(r"\.|->", _HEADER.sub("", item)) for item in expressions if _HEADER.search(item)]
+    words = set(re.findall(r"\w+", text))
+    return len(roots) == len(expressions) and all(words.issuperset(root) for root in roots)
