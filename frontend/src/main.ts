@@ -50,7 +50,9 @@ import { TimePanel } from "./panels/timeline/time-panel";
 import { TimelineBar } from "./panels/timeline/timeline-bar";
 import { SelectionPanel } from "./panels/views-and-tools/selection-panel";
 import { ToolPropertiesPanel } from "./panels/views-and-tools/tool-properties-panel";
+import { HelpPanel } from "./panels/views-and-tools/help-panel";
 import { TransformationPanel } from "./panels/views-and-tools/transformation-panel";
+import { VisualToolsPanel } from "./panels/monitor/visual-tools-panel";
 import { ViewsPanel } from "./panels/views-and-tools/views-panel";
 import { bindTalkKey } from "./panels/voice/talk-button";
 import { VoicePanel } from "./panels/voice/voice-panel";
@@ -136,6 +138,8 @@ function start(app: HTMLElement): void {
     new SelectionPanel(session, (item) => stage?.picker.describe(item) ?? null),
     new TimePanel(session.time, () => dock.close("time")),
     new TransformationPanel(),
+    new HelpPanel(session.tools),
+    new VisualToolsPanel(connection),
     new JointsPanel(session),
     new LinksPanel(session),
     diagramPanel,

@@ -186,10 +186,10 @@ class OverlayMenuDisplay(OverlayDisplay):
         lines = [message.title, *message.menus]
         width = max(map(len, lines)) * _LETTER_WIDTH * _MENU_SIZE + 2 * _MENU_PADDING_X
         height = (_MENU_LINE + _MENU_GAP) * len(lines) + 2 * _MENU_PADDING_Y
-        number, sides = self.properties.number, ("left", "top")
-        figure = Figure(*map(number, sides), width, height)
         if self.properties.flag(_CENTERED):
             figure = Figure(0, 0, width, height, "center", "center")
+        else:
+            figure = Figure(self.properties.number("left"), self.properties.number("top"), width, height)
         figure.background = choose_color(self.properties, message.bg_color, _BACKGROUND, "Background")
         color = choose_color(self.properties, message.fg_color, _FOREGROUND, "Foreground")
         figure.add_text(message.title, _MENU_PADDING_X, _MENU_GAP, _MENU_SIZE, color)
