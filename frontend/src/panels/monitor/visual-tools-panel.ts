@@ -6,7 +6,7 @@ import type { Panel } from "../panel";
 
 const COMMANDS = ["next", "continue", "break", "stop"] as const;
 
-/** The panel of rviz_visual_tools: lets a program go on that waits between its steps. */
+/** The panel of rviz_visual_tools: lets a program continue that waits between its steps. */
 export class VisualToolsPanel implements Panel {
   readonly id = "visual-tools";
   readonly icon = "step";

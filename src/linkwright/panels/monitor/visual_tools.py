@@ -1,4 +1,4 @@
-"""The panel of rviz_visual_tools, whose buttons let a program go on that waits between its steps.
+"""The panel of rviz_visual_tools, whose buttons let a program continue that waits between its steps.
 
 The program receives sensor_msgs/msg/Joy, as from a gamepad.
 """
