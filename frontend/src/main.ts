@@ -73,7 +73,7 @@ import { TokenScreen } from "./shell/token-screen";
 import { FileCommands } from "./shell/file-commands";
 import { bindFileKeys } from "./shell/file-keys";
 import { bindFullScreenKey } from "./shell/full-screen";
-import { KeySheet } from "./shell/key-sheet";
+import { createKeySections, KeySheet } from "./shell/key-sheet";
 import { createNoWebglNotice } from "./shell/no-webgl";
 import { hasOwnDisplays, ensureOwnKey } from "./shell/own-displays";
 import { RecordingDrop } from "./shell/recording-drop";
@@ -138,7 +138,7 @@ function start(app: HTMLElement): void {
     new SelectionPanel(session, (item) => stage?.picker.describe(item) ?? null),
     new TimePanel(session.time, () => dock.close("time")),
     new TransformationPanel(),
-    new HelpPanel(session.tools),
+    new HelpPanel(session.tools, () => createKeySections(session.tools)),
     new VisualToolsPanel(connection),
     new JointsPanel(session),
     new LinksPanel(session),

@@ -1,5 +1,4 @@
 import { h } from "../../dom";
-import { createKeySections } from "../../shell/key-sheet";
 import type { ToolsState } from "../../state/tools";
 import { strings } from "../../strings";
 import type { Panel } from "../panel";
@@ -10,7 +9,11 @@ export class HelpPanel implements Panel {
   readonly icon = "info";
   readonly element = h("div", { class: "panel help-panel" });
 
-  constructor(private readonly tools: ToolsState) {
+  /** `createKeys` returns the keys of the page, one element for each group. */
+  constructor(
+    tools: ToolsState,
+    private readonly createKeys: () => readonly HTMLElement[],
+  ) {
     tools.listChanged.on(() => this.show());
     this.show();
   }
@@ -22,7 +25,7 @@ export class HelpPanel implements Panel {
         "div",
         { class: "scroll key-columns" },
         h("section", {}, h("h2", {}, strings.help.mouseTitle), h("dl", {}, ...rows)),
-        ...createKeySections(this.tools),
+        ...this.createKeys(),
       ),
     );
   }
