@@ -50,7 +50,9 @@ import { TimePanel } from "./panels/timeline/time-panel";
 import { TimelineBar } from "./panels/timeline/timeline-bar";
 import { SelectionPanel } from "./panels/views-and-tools/selection-panel";
 import { ToolPropertiesPanel } from "./panels/views-and-tools/tool-properties-panel";
+import { HelpPanel } from "./panels/views-and-tools/help-panel";
 import { TransformationPanel } from "./panels/views-and-tools/transformation-panel";
+import { VisualToolsPanel } from "./panels/monitor/visual-tools-panel";
 import { ViewsPanel } from "./panels/views-and-tools/views-panel";
 import { bindTalkKey } from "./panels/voice/talk-button";
 import { VoicePanel } from "./panels/voice/voice-panel";
@@ -71,7 +73,7 @@ import { TokenScreen } from "./shell/token-screen";
 import { FileCommands } from "./shell/file-commands";
 import { bindFileKeys } from "./shell/file-keys";
 import { bindFullScreenKey } from "./shell/full-screen";
-import { KeySheet } from "./shell/key-sheet";
+import { createKeySections, KeySheet } from "./shell/key-sheet";
 import { createNoWebglNotice } from "./shell/no-webgl";
 import { hasOwnDisplays, ensureOwnKey } from "./shell/own-displays";
 import { RecordingDrop } from "./shell/recording-drop";
@@ -136,6 +138,8 @@ function start(app: HTMLElement): void {
     new SelectionPanel(session, (item) => stage?.picker.describe(item) ?? null),
     new TimePanel(session.time, () => dock.close("time")),
     new TransformationPanel(),
+    new HelpPanel(session.tools, () => createKeySections(session.tools)),
+    new VisualToolsPanel(connection),
     new JointsPanel(session),
     new LinksPanel(session),
     diagramPanel,

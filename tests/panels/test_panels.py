@@ -59,6 +59,18 @@ def test_rviz1_panel_names_are_recognized_and_unnamed_entries_skipped():
     assert "Transformation" not in config.text(), "RViz 1 has no panel Transformation"
 
 
+@pytest.mark.parametrize("cls", ["rviz/Help", "rviz_common/Help"])
+def test_help_and_visual_tools_are_panels_of_the_page(cls):
+    entries = f"  - {{Class: {cls}, Name: Help}}\n  - {{Class: rviz_visual_tools/RvizVisualToolsGui, Name: Steps}}\n"
+    config = parse_panels(panels=f"Panels:\n{entries}")
+    assert config.panels.shown == ["help", "visual-tools"]
+    assert not config.warnings
+    config.panels.show([])
+    config.panels.show(["visual-tools"])
+    assert config.panels.shown == ["visual-tools"]
+    assert "rviz_visual_tools/RvizVisualToolsGui" in config.text()
+
+
 def test_unknown_panels_are_reported_once_and_kept():
     config = parse_panels()
     assert [(warning.code, warning.span.line) for warning in config.warnings] == [("RVIZ204", 16)]

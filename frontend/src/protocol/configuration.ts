@@ -280,7 +280,9 @@ export type PanelName =
   | "views"
   | "time"
   | "transformation"
-  | "navigation";
+  | "help"
+  | "navigation"
+  | "visual-tools";
 
 /** The open panels of a configuration. */
 export interface Panels {

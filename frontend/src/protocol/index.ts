@@ -113,6 +113,7 @@ import type { InteractiveMarkerMoved, InteractiveMarkerShape, MarkerFeedback, Ma
 import type { DisplayForgotten, FrameTable, Hello, ProgramIsLate, Received } from "./message";
 import type {
   AimTeleop,
+  CommandVisualTools,
   Drive,
   DumpParameters,
   LogLines,
@@ -431,6 +432,7 @@ export type PageMessage =
   | CloseTerminal
   | CommandMotion
   | CommandNavigation
+  | CommandVisualTools
   | ControlSimulation
   | CopyEntities
   | CreateSourceFile

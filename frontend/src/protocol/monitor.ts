@@ -244,6 +244,12 @@ export interface TeleopState {
   type: "teleop_state";
 }
 
+/** A button of the panel of rviz_visual_tools; ``open`` gets ready for the buttons that follow. */
+export interface CommandVisualTools {
+  command: "open" | "next" | "continue" | "break" | "stop";
+  type: "command_visual_tools";
+}
+
 /** The topic and type of the page's teleop pad, or None when the pad is closed. */
 export interface AimTeleop {
   target: TeleopTarget | null;

@@ -28,7 +28,7 @@ export class KeySheet {
     const closeButton = createButton(texts.close, () => dialog.close(), "tool bare", createIcon("close"));
     dialog.append(
       h("header", {}, h("strong", {}, texts.title), h("span", { class: "spacer" }), closeButton),
-      h("div", { class: "key-columns" }, ...this.createSections().map(([title, rows, note]) => createSection(title, rows, note))),
+      h("div", { class: "key-columns" }, ...createKeySections(this.tools)),
     );
     dialog.addEventListener("close", () => {
       this.dialog = null;
@@ -42,85 +42,91 @@ export class KeySheet {
     dialog.showModal();
   }
 
-  private createSections(): (readonly [title: string, rows: readonly KeyRow[], note?: string])[] {
-    const texts = strings.keys;
-    const { shell, displays, modeling, terminal } = strings;
-    const tools = this.tools.tools.flatMap((tool): KeyRow[] => {
-      const entry = TOOLS.get(tool.cls);
-      return entry ? [[entry.key.toUpperCase(), translateToolName(tool)]] : [];
-    });
-    return [
-      [texts.toolsTitle, tools, texts.toolsNote],
+}
+
+/** Returns the keys of the page, one element for each group. */
+export function createKeySections(tools: ToolsState): HTMLElement[] {
+  return listSections(tools).map(([title, rows, note]) => createSection(title, rows, note));
+}
+
+function listSections(state: ToolsState): (readonly [title: string, rows: readonly KeyRow[], note?: string])[] {
+  const texts = strings.keys;
+  const { shell, displays, modeling, terminal } = strings;
+  const tools = state.tools.flatMap((tool): KeyRow[] => {
+    const entry = TOOLS.get(tool.cls);
+    return entry ? [[entry.key.toUpperCase(), translateToolName(tool)]] : [];
+  });
+  return [
+    [texts.toolsTitle, tools, texts.toolsNote],
+    [
+      texts.viewTitle,
       [
-        texts.viewTitle,
-        [
-          ["F", texts.focus],
-          [FIT_KEY, strings.tools.fitHint],
-          ["Z", texts.zero],
-          ["Shift Z", texts.resetView],
-          [texts.arrows, texts.turn],
-          [`Shift ${texts.arrows}`, texts.move],
-          ["+ -", texts.zoom],
-          [`${texts.space} ← →`, strings.timeline.keys],
-          ["[ ]", strings.recording.key],
-          [strings.simulation.dragKeys, strings.simulation.dragModel],
-          [strings.simulation.pushKeys, strings.simulation.pushModel],
-        ],
+        ["F", texts.focus],
+        [FIT_KEY, strings.tools.fitHint],
+        ["Z", texts.zero],
+        ["Shift Z", texts.resetView],
+        [texts.arrows, texts.turn],
+        [`Shift ${texts.arrows}`, texts.move],
+        ["+ -", texts.zoom],
+        [`${texts.space} ← →`, strings.timeline.keys],
+        ["[ ]", strings.recording.key],
+        [strings.simulation.dragKeys, strings.simulation.dragModel],
+        [strings.simulation.pushKeys, strings.simulation.pushModel],
       ],
+    ],
+    [
+      texts.treeTitle,
       [
-        texts.treeTitle,
-        [
-          ["↑ ↓", texts.rows],
-          ["← →", texts.open],
-          ["Enter", texts.edit],
-          [texts.space, texts.toggle],
-          [formatShortcut(SHORTCUTS.add), displays.addHint],
-          [formatShortcut(SHORTCUTS.duplicate), displays.duplicate],
-          [formatShortcut(SHORTCUTS.rename), displays.rename],
-          [formatShortcut(SHORTCUTS.remove), displays.remove],
-          [`${formatShortcut(SHORTCUTS.moveUp)} ${formatShortcut(SHORTCUTS.moveDown)}`, `${displays.moveUp}, ${displays.moveDown}`],
-        ],
+        ["↑ ↓", texts.rows],
+        ["← →", texts.open],
+        ["Enter", texts.edit],
+        [texts.space, texts.toggle],
+        [formatShortcut(SHORTCUTS.add), displays.addHint],
+        [formatShortcut(SHORTCUTS.duplicate), displays.duplicate],
+        [formatShortcut(SHORTCUTS.rename), displays.rename],
+        [formatShortcut(SHORTCUTS.remove), displays.remove],
+        [`${formatShortcut(SHORTCUTS.moveUp)} ${formatShortcut(SHORTCUTS.moveDown)}`, `${displays.moveUp}, ${displays.moveDown}`],
       ],
+    ],
+    [
+      modeling.label,
       [
-        modeling.label,
-        [
-          ["T R S", Object.values(modeling.modes).join(", ")],
-          [`${formatShortcut(WORLD_KEYS.copy)} ${formatShortcut(WORLD_KEYS.paste)}`, modeling.copyPaste],
-          [formatShortcut(WORLD_KEYS.duplicate), modeling.duplicate],
-          [formatShortcut(WORLD_KEYS.remove), modeling.remove],
-          [formatShortcut(WORLD_KEYS.group), modeling.group],
-          [formatShortcut(WORLD_KEYS.ungroup), modeling.ungroup],
-          ["Esc", modeling.deselect],
-        ],
+        ["T R S", Object.values(modeling.modes).join(", ")],
+        [`${formatShortcut(WORLD_KEYS.copy)} ${formatShortcut(WORLD_KEYS.paste)}`, modeling.copyPaste],
+        [formatShortcut(WORLD_KEYS.duplicate), modeling.duplicate],
+        [formatShortcut(WORLD_KEYS.remove), modeling.remove],
+        [formatShortcut(WORLD_KEYS.group), modeling.group],
+        [formatShortcut(WORLD_KEYS.ungroup), modeling.ungroup],
+        ["Esc", modeling.deselect],
       ],
+    ],
+    [
+      terminal.panel,
       [
-        terminal.panel,
-        [
-          [formatTerminalKey(TERMINAL_KEYS.copy), terminal.copy],
-          [formatTerminalKey(TERMINAL_KEYS.paste), terminal.paste],
-          [formatTerminalKey(TERMINAL_KEYS.leave), terminal.leave],
-          ["← →", terminal.tabKeys],
-        ],
+        [formatTerminalKey(TERMINAL_KEYS.copy), terminal.copy],
+        [formatTerminalKey(TERMINAL_KEYS.paste), terminal.paste],
+        [formatTerminalKey(TERMINAL_KEYS.leave), terminal.leave],
+        ["← →", terminal.tabKeys],
       ],
+    ],
+    [
+      texts.generalTitle,
       [
-        texts.generalTitle,
-        [
-          ["Esc", texts.escape],
-          [formatShortcut(SHORTCUTS.open), shell.open],
-          [formatShortcut(SHORTCUTS.save), shell.save],
-          [formatShortcut(SHORTCUTS.saveAs), shell.saveAs],
-          [formatShortcut(SHORTCUTS.undo), shell.undo],
-          [formatShortcut(SHORTCUTS.redo), shell.redo],
-          ["R", texts.resetTime],
-          [TALK_KEY.toUpperCase(), strings.voice.talkKey],
-          [`${formatShortcut(SHORTCUTS.previousStep)} ${formatShortcut(SHORTCUTS.nextStep)}`, strings.learning.stepKeys],
-          [formatShortcut(SHORTCUTS.checkStep), strings.learning.checkHint],
-          ["F11", texts.fullscreen],
-          ["?", texts.sheet],
-        ],
+        ["Esc", texts.escape],
+        [formatShortcut(SHORTCUTS.open), shell.open],
+        [formatShortcut(SHORTCUTS.save), shell.save],
+        [formatShortcut(SHORTCUTS.saveAs), shell.saveAs],
+        [formatShortcut(SHORTCUTS.undo), shell.undo],
+        [formatShortcut(SHORTCUTS.redo), shell.redo],
+        ["R", texts.resetTime],
+        [TALK_KEY.toUpperCase(), strings.voice.talkKey],
+        [`${formatShortcut(SHORTCUTS.previousStep)} ${formatShortcut(SHORTCUTS.nextStep)}`, strings.learning.stepKeys],
+        [formatShortcut(SHORTCUTS.checkStep), strings.learning.checkHint],
+        ["F11", texts.fullscreen],
+        ["?", texts.sheet],
       ],
-    ];
-  }
+    ],
+  ];
 }
 
 function createSection(title: string, rows: readonly KeyRow[], note?: string): HTMLElement {

@@ -62,6 +62,9 @@ ON_DEMAND = (
         list_message_paths(_CALLS, "CallService", "ChooseService", "WatchServices"),
     ),
     OnDemand("linkwright.panels.monitor.teleop:TeleopFeature", list_message_paths(_MONITOR, "AimTeleop", "Drive")),
+    OnDemand(
+        "linkwright.panels.monitor.visual_tools:VisualToolsFeature", list_message_paths(_MONITOR, "CommandVisualTools")
+    ),
     OnDemand("linkwright.panels.monitor.topics:TopicsFeature", list_message_paths(_MONITOR, "WatchTopics")),
     OnDemand(
         "linkwright.panels.monitor.trajectories:TrajectoriesFeature",

@@ -135,6 +135,22 @@ async def test_closed_page_leaves_no_subscriptions():
         assert not world.graph._watchers
 
 
+async def test_buttons_of_visual_tools_are_those_of_a_gamepad_while_a_page_has_the_panel():
+    async with open_world() as world:
+        topic, received = "/rviz_visual_tools_gui", []
+        world.graph.create_node("tutorial").create_subscription("sensor_msgs/msg/Joy", topic, received.append, 10)
+        async with open_page(world.viewer) as client:
+            await client.opened()
+            await client.send("command_visual_tools", command="open")
+            await eventually(lambda: world.graph.count_publishers(topic) == 1)
+            assert not received
+            for command in ("next", "continue", "break", "stop"):
+                await client.send("command_visual_tools", command=command)
+            await eventually(lambda: len(received) == 4)
+            assert [list(message.buttons).index(1) for message in received] == [1, 2, 3, 4]
+        await eventually(lambda: world.graph.count_publishers(topic) == 0)
+
+
 async def test_two_pages_share_subscription():
     async with open_client() as (world, first), open_page(world.viewer) as second:
         world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10).publish(FLOAT())

@@ -102,6 +102,22 @@ async def test_text_of_jsk_has_a_place_from_the_corner():
         assert over.figure["shapes"][0]["is_above"]
 
 
+async def test_menu_marks_its_current_entry_and_closes():
+    kind = get_message("jsk_rviz_plugins/msg/OverlayMenu")
+    async with overlay("jsk_rviz_plugin/OverlayMenu", kind) as over:
+        await over.publish(kind(title="Tasks", menus=["wait", "fetch the cup"], current_index=1))
+        assert over.texts == ["Tasks", "wait", "fetch the cup"]
+        assert [over.figure[name] for name in ("horizontal", "vertical")] == ["center", "center"]
+        (mark,) = [shape for shape in over.figure["shapes"] if shape["shape"] == "area"]
+        entry = next(shape for shape in over.figure["shapes"] if shape["text"] == "fetch the cup")
+        assert mark["points"][1] < entry["points"][1] + entry["size"] / 2 < mark["points"][5]
+        over.set("keep centered", False)
+        over.set("left", 7)
+        assert [over.figure[name] for name in ("horizontal", "x", "y")] == ["left", 7, 128]
+        await over.publish(kind(action=kind.ACTION_CLOSE))
+        assert over.figure is None
+
+
 async def test_stamped_text_fades_after_an_empty_one():
     kind = get_message("autoware_internal_debug_msgs/msg/StringStamped")
     cls = "autoware_string_stamped_rviz_plugin/StringStampedOverlayDisplay"

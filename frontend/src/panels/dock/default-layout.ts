@@ -66,6 +66,20 @@ const PLACEMENTS: Readonly<Record<PanelId, Placement>> = {
     ],
     width: 290,
   },
+  help: {
+    neighbors: [
+      ["views", "within"],
+      ["displays", "below"],
+    ],
+    width: 290,
+  },
+  "visual-tools": {
+    neighbors: [
+      ["views", "within"],
+      ["displays", "below"],
+    ],
+    width: 290,
+  },
   links: { neighbors: [["displays", "within"], ["scene", "left"]], width: 320, isInactive: true },
   comparison: { neighbors: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   world: { neighbors: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
@@ -212,7 +226,7 @@ function placeInWide(api: DockviewApi, id: PanelId, isClassroom: boolean): Place
 }
 
 /** The order in which open panels move to their default places. */
-export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "lesson", "program", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "motion-planning", "transformation", ...BOTTOM_PANELS];
+export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "lesson", "program", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "motion-planning", "transformation", "help", "visual-tools", ...BOTTOM_PANELS];
 
 /** Adds panels at their default places, or at those in the classroom. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[], isClassroom = false): void {

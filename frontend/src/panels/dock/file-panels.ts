@@ -11,7 +11,9 @@ export const FILE_PANELS: readonly PanelName[] = [
   "views",
   "time",
   "transformation",
+  "help",
   "navigation",
+  "visual-tools",
 ];
 
 /** The part of the dock that `FilePanels` uses. */

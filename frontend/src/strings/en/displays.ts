@@ -67,6 +67,9 @@ const about: Readonly<Record<DisplayIcon, string>> = {
   PieChart: "A number as a gauge over the scene.",
   Plotter2D: "The last numbers of a topic as a plot over the scene.",
   OverlayText: "A text over the scene.",
+  OverlayMenu: "A menu over the scene.",
+  BoundingBox: "jsk: a box.",
+  BoundingBoxArray: "jsk: boxes, colored by label or value.",
   OverlayImage: "An image over the scene.",
   AccelerationMeter: "Autoware: an acceleration as a meter over the scene.",
 };

@@ -75,6 +75,8 @@ export const en = {
   selected: tools.selected,
   time: tools.time,
   transformation: tools.transformation,
+  help: tools.help,
+  visualTools: tools.visualTools,
   keys: tools.keys,
   description,
   joints: {

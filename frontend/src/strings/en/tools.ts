@@ -5,6 +5,8 @@ export const tools = {
     selection: "Selection",
     time: "Time",
     transformation: "Transformation",
+    help: "Help",
+    "visual-tools": "Visual Tools",
   },
   views: {
     type: "Type",
@@ -86,6 +88,25 @@ export const tools = {
   transformation: {
     hint: "How data is transformed into the Fixed Frame.",
     tf: "TF",
+  },
+  help: {
+    mouseTitle: "Mouse in the 3D view",
+    mouse: [
+      { action: "Left", meaning: "Rotate" },
+      { action: "Middle", meaning: "Move along the screen" },
+      { action: "Right, wheel", meaning: "Zoom" },
+      { action: "Shift Left", meaning: "Move along the ground" },
+    ],
+  },
+  visualTools: {
+    hint: "For programs with rviz_visual_tools that wait for a button between their steps.",
+    commands: { next: "Next", continue: "Continue", break: "Break", stop: "Stop" },
+    hints: {
+      next: "Run the next step",
+      continue: "Run the remaining steps without waiting",
+      break: "Wait again before the next step",
+      stop: "End the program",
+    },
   },
   keys: {
     title: "Keyboard shortcuts",

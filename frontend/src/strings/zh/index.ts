@@ -58,6 +58,8 @@ export const zh: Strings = {
   selected: tools.selected,
   time: tools.time,
   transformation: tools.transformation,
+  help: tools.help,
+  visualTools: tools.visualTools,
   keys: tools.keys,
   description,
   joints: {

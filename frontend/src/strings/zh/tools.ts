@@ -2,7 +2,7 @@ import type { tools as english } from "../en/tools";
 
 /** 视角、工具、选择与时间 */
 export const tools: typeof english = {
-  panels: { "tool-properties": "工具属性", selection: "选择", time: "时间", transformation: "坐标变换" },
+  panels: { "tool-properties": "工具属性", selection: "选择", time: "时间", transformation: "坐标变换", help: "帮助", "visual-tools": "可视化工具" },
   views: {
     type: "类型",
     current: "当前视角",
@@ -78,6 +78,25 @@ export const tools: typeof english = {
     resetHint: "清除显示项保留的消息，并重新计时（R）",
   },
   transformation: { hint: "数据如何变换到固定坐标系。", tf: "TF" },
+  help: {
+    mouseTitle: "三维视图中的鼠标",
+    mouse: [
+      { action: "左键", meaning: "旋转" },
+      { action: "中键", meaning: "沿屏幕平移" },
+      { action: "右键、滚轮", meaning: "缩放" },
+      { action: "Shift 左键", meaning: "沿地面平移" },
+    ],
+  },
+  visualTools: {
+    hint: "用于使用 rviz_visual_tools、在步骤之间等待按钮的程序。",
+    commands: { next: "下一步", continue: "继续", break: "中断", stop: "停止" },
+    hints: {
+      next: "执行下一步",
+      continue: "不再等待，执行剩余的步骤",
+      break: "在下一步之前重新等待",
+      stop: "结束程序",
+    },
+  },
   keys: {
     title: "快捷键",
     close: "关闭（Esc）",

@@ -370,7 +370,9 @@ class RequestConfigurationText(PageMessage):
     """A request for the text of the configuration, to store it on the browser's machine."""
 
 
-PanelName = Literal["displays", "selection", "tool-properties", "views", "time", "transformation", "navigation"]
+PanelName = Literal[
+    "displays", "selection", "tool-properties", "views", "time", "transformation", "help", "navigation", "visual-tools"
+]
 """The panels of RViz and nav2 that the page also has, under their names in the page."""
 
 

@@ -336,6 +336,12 @@ class TeleopState(ServerMessage):
     error: str | None
 
 
+class CommandVisualTools(PageMessage):
+    """A button of the panel of rviz_visual_tools; ``open`` gets ready for the buttons that follow."""
+
+    command: Literal["open", "next", "continue", "break", "stop"]
+
+
 class AimTeleop(PageMessage):
     """The topic and type of the page's teleop pad, or None when the pad is closed."""
 

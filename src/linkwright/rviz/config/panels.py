@@ -40,19 +40,24 @@ _PANEL_TITLES: Mapping[PanelName, str] = MappingProxyType(
         "views": "Views",
         "time": "Time",
         "transformation": "Transformation",
+        "help": "Help",
         "navigation": "Navigation 2",
+        "visual-tools": "RvizVisualToolsGui",
     }
 )
 _RVIZ2_PREFIX, _RVIZ1_PREFIX = "rviz_common/", "rviz/"
-_NAV2_CLASS = "nav2_rviz_plugins/Navigation 2"
+_PACKAGE_CLASSES: Mapping[PanelName, str] = MappingProxyType(
+    {"navigation": "nav2_rviz_plugins/Navigation 2", "visual-tools": "rviz_visual_tools/RvizVisualToolsGui"}
+)
+"""The classes of panels that RViz itself does not have."""
 _PANEL_BY_CLASS: Mapping[str, PanelName] = MappingProxyType(
     {
         prefix + name: panel
         for panel, name in _PANEL_TITLES.items()
         for prefix in (_RVIZ2_PREFIX, _RVIZ1_PREFIX)
-        if panel != "navigation"
+        if panel not in _PACKAGE_CLASSES
     }
-    | {_NAV2_CLASS: "navigation"}
+    | {cls: panel for panel, cls in _PACKAGE_CLASSES.items()}
 )
 _MISSING_IN_RVIZ1 = frozenset({"transformation", "navigation"})
 
@@ -169,11 +174,8 @@ class PanelsConfig:
             if is_rviz1_file and panel in _MISSING_IN_RVIZ1:
                 return None
             panel_section = new_section(self._document.source)
-            class_name = (
-                _NAV2_CLASS
-                if panel == "navigation"
-                else (_RVIZ1_PREFIX if is_rviz1_file else _RVIZ2_PREFIX) + _PANEL_TITLES[panel]
-            )
+            prefix = _RVIZ1_PREFIX if is_rviz1_file else _RVIZ2_PREFIX
+            class_name = _PACKAGE_CLASSES.get(panel, prefix + _PANEL_TITLES[panel])
             panel_section.put(("Class",), class_name, string=True)
             panel_section.put(("Name",), _PANEL_TITLES[panel], string=True)
             self._known_sections.append(panel_section)

@@ -8,6 +8,7 @@ import re
 from typing import Any, ClassVar
 
 from linkwright.page.protocol.overlays import HorizontalSide, VerticalSide
+from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import PropertySpec, Schema, topic_spec
 from linkwright.rviz.displays.base.display import DisplayHost
@@ -90,8 +91,8 @@ class TextOverlayDisplay(OverlayDisplay):
         if message.action == _DELETE:
             return None
         figure, height = self._place(message)
-        figure.background = self._color(message.bg_color, _BACKGROUND, "Background")
-        color = self._color(message.fg_color, _FOREGROUND, "Foreground")
+        figure.background = choose_color(self.properties, message.bg_color, _BACKGROUND, "Background")
+        color = choose_color(self.properties, message.fg_color, _FOREGROUND, "Foreground")
         is_above = self.properties.flag("Align Bottom")
         y = figure.height if is_above else 0
         figure.add_text(remove_tags(message.text), 0, y, height, color, wrap=figure.width, is_above=is_above)
@@ -122,10 +123,12 @@ class TextOverlayDisplay(OverlayDisplay):
             _HEIGHTS.get(message.vertical_alignment, "top"),
         )
 
-    def _color(self, written: Any, switch: str, name: str) -> Rgba:
-        if self.properties.flag(switch):
-            return read_color(self.properties.text(f"{name} Color"), self.properties.number(f"{name} Alpha"))
-        return written.r, written.g, written.b, written.a
+
+def choose_color(properties: PropertyStore, written: Any, switch: str, name: str) -> Rgba:
+    """Return the color of the properties if a switch is on, otherwise that of a message."""
+    if properties.flag(switch):
+        return read_color(properties.text(f"{name} Color"), properties.number(f"{name} Alpha"))
+    return written.r, written.g, written.b, written.a
 
 
 class JskOverlayTextDisplay(TextOverlayDisplay):
@@ -148,6 +151,57 @@ class JskOverlayTextDisplay(TextOverlayDisplay):
     def place_of(self, message: Any) -> Figure:
         """Return an empty figure at the place of a message."""
         return Figure(message.left, message.top, message.width, message.height)
+
+
+_CENTERED = "keep centered"
+_MENU_SIZE = 20 * POINTS_TO_PIXELS
+_MENU_LINE = 1.25 * _MENU_SIZE
+_MENU_PADDING_X, _MENU_PADDING_Y, _MENU_GAP = 100, 30, 5
+_LETTER_WIDTH = 0.55
+"""The mean width of a letter, as a multiple of the height of the text."""
+
+
+class OverlayMenuDisplay(OverlayDisplay):
+    """A display of a menu, with a mark beside the current entry."""
+
+    CLASS = "jsk_rviz_plugin/OverlayMenu"
+    MESSAGE = "jsk_rviz_plugins/msg/OverlayMenu"
+    SCHEMA: ClassVar[Schema] = (
+        topic_spec(description=MESSAGE),
+        _pixels("left", 128, "Distance from the left edge", minimum=0, when=((_CENTERED,), False)),
+        _pixels("top", 128, "Distance from the upper edge", minimum=0, when=((_CENTERED,), False)),
+        PropertySpec(_CENTERED, "bool", True, "Show the menu in the middle of the window."),
+        PropertySpec(_FOREGROUND, "bool", True, "Use the color below instead of that of the messages."),
+        PropertySpec(_BACKGROUND, "bool", True, "Use the background below instead of that of the messages."),
+        PropertySpec("Foreground Color", "color", "#19fff0", "Color of the texts.", when=((_FOREGROUND,), True)),
+        PropertySpec("Foreground Alpha", "float", 1.0, "Opacity of the texts.", minimum=0.0, maximum=1.0),
+        PropertySpec("Background Color", "color", "#000000", "Color of the background.", when=((_BACKGROUND,), True)),
+        PropertySpec("Background Alpha", "float", 0.5, "Opacity of the background.", minimum=0.0, maximum=1.0),
+    )
+
+    def figure(self, message: Any) -> Figure | None:
+        """Return the title, and below it the entries of the menu."""
+        if message.action == message.ACTION_CLOSE:
+            return None
+        lines = [message.title, *message.menus]
+        width = max(map(len, lines)) * _LETTER_WIDTH * _MENU_SIZE + 2 * _MENU_PADDING_X
+        height = (_MENU_LINE + _MENU_GAP) * len(lines) + 2 * _MENU_PADDING_Y
+        if self.properties.flag(_CENTERED):
+            figure = Figure(0, 0, width, height, "center", "center")
+        else:
+            figure = Figure(self.properties.number("left"), self.properties.number("top"), width, height)
+        figure.background = choose_color(self.properties, message.bg_color, _BACKGROUND, "Background")
+        color = choose_color(self.properties, message.fg_color, _FOREGROUND, "Foreground")
+        figure.add_text(message.title, _MENU_PADDING_X, _MENU_GAP, _MENU_SIZE, color)
+        underline = _MENU_GAP + _MENU_LINE
+        figure.add_line([(_MENU_PADDING_X / 2, underline), (width - _MENU_PADDING_X / 2, underline)], 1, color)
+        for index, entry in enumerate(message.menus):
+            y = _MENU_PADDING_Y + (_MENU_LINE + _MENU_GAP) * (index + 1)
+            figure.add_text(entry, _MENU_PADDING_X, y, _MENU_SIZE, color)
+            if index == message.current_index:
+                x, middle, size = _MENU_PADDING_X / 2, y + _MENU_SIZE / 2, _MENU_SIZE / 2
+                figure.add_area([(x, middle - size), (x + size, middle), (x, middle + size)], color)
+        return figure
 
 
 _FADE_PERIOD_S = 0.1
