@@ -77,6 +77,12 @@ class Autopilot:
         return float(self.server.simulation.data.joint(f"uav::rotor{index}_joint").qfrc_applied[0])
 
 
+@pytest.fixture(autouse=True)
+def _real_time(monkeypatch):
+    """Let no real time pass, so that autopilots are not lost on a slow computer."""
+    monkeypatch.setattr("linkwright.simulation.plugins.autopilots.ardupilot.monotonic", lambda: 0.0)
+
+
 @pytest.fixture
 def closing():
     """Close the autopilots of a test."""

@@ -30,8 +30,8 @@ from linkwright.simulation.sensors.mount import Mount
 
 _HALF_TURN: Transform = transform_of(Pose(rpy=(pi, 0.0, 0.0)))
 """The default of both frames: x forward, y right and z down instead of x forward, y left and z up."""
-_WAIT_S = 0.01
-"""The time in s for which Gazebo waits for each packet."""
+_WAIT_S = 0.1
+"""The real time in s that the autopilot has for each missed packet: ten times as long as Gazebo, which waits for it."""
 
 
 @dataclass(frozen=True, kw_only=True)
