@@ -260,7 +260,7 @@ class MotionPlanner:
     def _is_motion_free(self, request: PlanRequest, start: Array, indexes: Any, motion: Array) -> bool:
         """Return whether configurations are valid, and certainly nothing collides between them.
 
-        What touches at the start or at the end may do so in the first and last steps, as in a grasp.
+        Shapes that touch at the start or at the end may do so in the first and last steps, as in a grasp.
         """
         has_left, arrives = False, False
         with self._scene.measuring_up_to(RANGE_M):
