@@ -20,6 +20,8 @@ RANGE_M = 0.003
 """The distance in m up to which shapes are near. Farther ones do not meet within a step of a motion."""
 _MAX_SPLITS = 7
 """How many times a step is halved at most."""
+_ROUNDING_M = 1e-7
+"""The depth in m up to which shapes only touch."""
 _TOLERANCE_M = 1e-6
 """The depth in m up to which shapes may collide without being noticed; MuJoCo's distances are not more accurate."""
 
@@ -36,6 +38,11 @@ class CheckedConfiguration(NamedTuple):
     positions: Array
     distance: float
     is_reached_freely: bool
+
+    @property
+    def collides(self) -> bool:
+        """Whether shapes collide, and do not only touch."""
+        return self.distance < -_ROUNDING_M
 
 
 class MotionCheck:

@@ -266,7 +266,7 @@ class MotionPlanner:
         with self._scene.measuring_up_to(RANGE_M):
             for number, checked in enumerate(MotionCheck(self._scene, start, indexes).check(motion)):
                 self._stop_if_canceled()
-                if checked.distance < 0.0 or not self._fulfills_constraint(request, checked.positions):
+                if checked.collides or not self._fulfills_constraint(request, checked.positions):
                     return False
                 if not number:
                     continue
