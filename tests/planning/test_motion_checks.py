@@ -40,6 +40,20 @@ def test_collision_between_two_configurations_is_found() -> None:
     assert min(configuration.distance for configuration in between) < 0.0
 
 
+def test_approach_without_collision_is_certainly_free() -> None:
+    approach = check([-0.0015, -0.0011, -0.0007], HELD, STANDING)
+    assert all(configuration.is_reached_freely for configuration in approach)
+    assert 0.0 < approach[-1].distance < approach[0].distance
+
+
+def test_shapes_that_slide_along_each_other_are_not_split_without_end() -> None:
+    box = PlacedShape(Box((0.08, 0.5, 0.02)), np.array((0, 0, 0, 0, 0, 0, 1.0)))
+    table = SceneObject("table", (box,), np.array((0.97, 0.0, 0.2 - 0.025 - 0.01 - 2e-5, 0, 0, 0, 1.0)))
+    sliding = check([-0.004, 0.0, 0.004], HELD, table)
+    assert len(sliding) <= 5
+    assert all(configuration.is_reached_freely and 0.0 < configuration.distance < 5e-5 for configuration in sliding)
+
+
 def test_configurations_without_anything_near_are_only_those_of_the_motion() -> None:
     assert [checked.distance for checked in check([-0.5, -0.495, -0.49], HELD, STANDING)] == [RANGE_M] * 3
 

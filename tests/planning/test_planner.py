@@ -157,13 +157,13 @@ class TestTouches:
         planner = MotionPlanner(arm().model, scene(ball))
         planner.time_path(plan_request, arm().positions(**start, pan=0.3), path)
 
-    @pytest.mark.parametrize(("gap", "end"), [(1e-4, -0.3), (5e-6, 0.0)])
-    def test_distant_objects_and_touches_at_the_end_are_accepted(self, gap: float, end: float) -> None:
+    @pytest.mark.parametrize(("gap", "end"), [(1e-4, -0.3), (1e-5, -0.3), (5e-6, 0.0)])
+    def test_near_objects_and_touches_at_the_end_are_accepted(self, gap: float, end: float) -> None:
         self.time_path(gap, end)
 
-    def test_touch_on_the_way_is_refused(self) -> None:
+    def test_shallow_collision_on_the_way_is_refused(self) -> None:
         with pytest.raises(PlanError):
-            self.time_path(5e-6, -0.3)
+            self.time_path(-5e-6, -0.3)
 
 
 class TestFailures:

@@ -87,8 +87,8 @@ class LinkMargin:
 
 
 _NO_MARGIN = LinkMargin()
-TOUCH_M = 1e-5
-"""The distance in m up to which two shapes touch."""
+_RANGE_M = 1e-5
+"""The distance in m up to which MuJoCo finds shapes, so that those that touch are among them."""
 _WORLD = 2
 """The bit of MuJoCo's contype and conaffinity for contacts with objects of the world; 1 is for those of the robot."""
 
@@ -143,7 +143,7 @@ class CollisionScene:
         objects: Iterable[SceneObject],
         allowed: AllowedCollisions,
         margins: Mapping[str, LinkMargin] | None = None,
-        range_m: float = TOUCH_M,
+        range_m: float = _RANGE_M,
     ) -> None:
         objects = tuple(objects)
         parts = [

@@ -13,7 +13,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.planning.barriers import Barriers
 from linkwright.planning.cartesian import ArcError, ArcPoint, arc_poses, follow_poses, line_poses
-from linkwright.planning.collision_scene import TOUCH_M, CollisionScene, Contact
+from linkwright.planning.collision_scene import CollisionScene, Contact
 from linkwright.planning.effort import elapsed_s
 from linkwright.planning.goals import Goal, goal_configurations
 from linkwright.planning.groups import JointGroup
@@ -258,22 +258,24 @@ class MotionPlanner:
         return None
 
     def _is_motion_free(self, request: PlanRequest, start: Array, indexes: Any, motion: Array) -> bool:
-        """Return whether configurations are valid, and touch nothing except at the start and at the end.
+        """Return whether configurations are valid, and certainly nothing collides between them.
 
-        A motion that only touches an object may collide with it between two configurations.
+        Shapes that touch at the start or at the end may do so in the first and last steps, as in a grasp.
         """
-        was_clear, touches = False, False
+        has_left, arrives = False, False
         with self._scene.measuring_up_to(RANGE_M):
-            for positions, distance in MotionCheck(self._scene, start, indexes).check(motion):
+            for number, checked in enumerate(MotionCheck(self._scene, start, indexes).check(motion)):
                 self._stop_if_canceled()
-                if distance < 0.0 or not self._fulfills_constraint(request, positions):
+                if checked.collides or not self._fulfills_constraint(request, checked.positions):
                     return False
-                if distance <= TOUCH_M:
-                    touches = was_clear
-                elif touches:
+                if not number:
+                    continue
+                if not checked.is_reached_freely:
+                    arrives = has_left
+                elif arrives:
                     return False
                 else:
-                    was_clear = True
+                    has_left = True
         return True
 
     @staticmethod

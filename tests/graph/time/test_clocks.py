@@ -23,6 +23,7 @@ from linkwright.graph.executors import SingleThreadedExecutor
 from linkwright.graph.faults import NotInitializedError
 from linkwright.graph.time.values import INFINITE
 from linkwright.messages import get_message
+from tests.waiting import wait_until
 
 ClockMessage = get_message("rosgraph_msgs/msg/Clock")
 TimeMessage = get_message("builtin_interfaces/msg/Time")
@@ -332,6 +333,30 @@ class TestRates:
         graph.close_threadsafe()
         with pytest.raises(InterruptedWaitError):
             rate.sleep()
+
+    def test_sleep_of_a_node_that_another_executor_took_is_reported(self, monkeypatch):
+        monkeypatch.setattr("linkwright.graph.loop.timer._MAX_QUIET_WAIT_S", 0.05)
+        records = []
+        graph = Graph(threads=True, on_log=records.append)
+        node = graph.create_node("node")
+        rate, owner, taker = node.create_rate(100.0), SingleThreadedExecutor(), SingleThreadedExecutor()
+        owner.add_node(node)
+        owner_thread = threading.Thread(target=owner.spin)
+        owner_thread.start()
+        rate.sleep()
+        assert records == []
+        taker.add_node(node)  # as rclpy.spin_once(node) does
+        taker.remove_node(node)
+        sleeper = threading.Thread(target=rate.sleep)
+        sleeper.start()
+        wait_until(lambda: records, 60.0)
+        assert "no executor runs the callbacks of this node" in records[0].text
+        owner.add_node(node)
+        sleeper.join(60.0)
+        assert not sleeper.is_alive()
+        owner.shutdown()
+        owner_thread.join(60.0)
+        graph.close_threadsafe()
 
     def test_node_destruction_ends_rate_sleep(self):
         graph = Graph(threads=True, on_log=print)

@@ -263,6 +263,10 @@ def _check_period(period_ns: int) -> None:
         raise ValueError(f"timer period must be non-negative, not {period_ns} ns")
 
 
+_MAX_QUIET_WAIT_S = 5.0
+"""The time in s after which a sleep reports that its node has no executor."""
+
+
 class Rate:
     """A fixed rate for a loop: each `sleep` ends with the next tick of a timer.
 
@@ -276,7 +280,7 @@ class Rate:
     def __init__(self, timer: Timer) -> None:
         self.timer = timer
         self._next_tick: Future[None] = Future()
-        self._is_ended = False
+        self._is_ended = self._is_reported = False
         timer.callback = self._tick
         timer.node.add_cleanup(self.wake)
 
@@ -287,7 +291,9 @@ class Rate:
             InterruptedWaitError: the rate's node was destroyed, or its graph closed.
         """
         tick = self._begin()
-        tick.wait()
+        if not tick.wait(_MAX_QUIET_WAIT_S):
+            self._report_idle_node()
+            tick.wait()
         self._check_not_ended()
 
     async def wait(self) -> None:
@@ -319,6 +325,17 @@ class Rate:
         if self.timer.is_canceled():
             self.timer.reset()
         return self._next_tick
+
+    def _report_idle_node(self) -> None:
+        """Log an error if no executor runs the callbacks of the node, so that no tick comes."""
+        node = self.timer.node
+        if node.dispatcher is None and not self._is_reported:
+            self._is_reported = True
+            node.logger.error(
+                "rate.sleep() does not end, because no executor runs the callbacks of this node. rclpy.spin_once(node) "
+                "and rclpy.spin_until_future_complete(node, future) take the node out of the executor that another "
+                "thread spins, also on a robot: wait for the future there without spinning the node"
+            )
 
     def _check_not_ended(self) -> None:
         if self._is_ended:
