@@ -364,8 +364,9 @@ class _SourcePair(WholeSourcePair):
         server = self.new.find_user(old_item, path)
         if server is not None:
             return make_user_reason(old_item.kind, server, old_item.name)
-        reason = phrase("servers that offer '{name}' get no requests", name=old_item.name)
-        return reason if new_item.name else None
+        if not new_item.name:
+            return None  # the default of a parameter, whose new value is not known here
+        return phrase("servers that offer '{name}' get no requests", name=old_item.name)
 
     # --- expressions ------------------------------------------------------------------------------------------------
 
