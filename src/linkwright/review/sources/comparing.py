@@ -439,7 +439,7 @@ class _SourcePair(WholeSourcePair):
             drop_replaceable(added, removed_expressions)
 
     def _compare_prefixed(self, kind: NameKind, removed: list[SourceName], added: list[SourceName]) -> Iterator[Change]:
-        """Yield a line about two or more names that are computed now, because another text stands before them.
+        """Yield a line about two or more names that are computed now, because another text precedes them.
 
         These names are removed from the lists.
         """

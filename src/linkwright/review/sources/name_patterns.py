@@ -74,17 +74,6 @@ def can_make(expression: str, name: str) -> bool:
     return True
 
 
-def ends_with_name(expression: str, name: str) -> bool:
-    """Return whether an expression puts a namespace or another text before a name, as ``prefix + ".name"`` does.
-
-    Args:
-        expression: the expression that gives a name, in Python or C++.
-        name: the name.
-    """
-    pattern = extract_pattern(expression)
-    return pattern is not None and pattern.rpartition(_UNKNOWN_PART)[2].lstrip("./_") == name.lstrip("~/")
-
-
 def find_format(text: str, variable: str) -> str | None:
     """Return the last format with which a C++ source writes a variable, or None.
 
