@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from pathlib import Path
 
 _LIST = "list"
@@ -16,6 +17,10 @@ _TYPE = rf"(?:(?:std::)?vector\s*<[^;{{}}()]*>|{_INTEGER_PATTERN}|(?:float|doubl
 _OTHERS = r"(?:\w+\s*(?:=[^;,(){}]*)?,\s*)*"
 """The variables before another one in the same declaration."""
 _END = r"\s*(?=[;,=({)])"
+_VARIABLE = r"[A-Za-z_]\w*\s*(?:=[^;,(){}]*)?"
+_DECLARATION = re.compile(
+    rf"(?<![\w:<])(?P<type>{_TYPE})\s*&?\s*(?<=[\s>&])(?P<names>{_VARIABLE}(?:,\s*{_VARIABLE})*){_END}"
+)
 _FIELD = re.compile(r"^\s*(?P<type>[\w/]+)(?P<array>\[[^\]]*\])?\s+(?P<name>\w+)\s*(?:#.*)?$", re.MULTILINE)
 _FIELD_TYPES = ((re.compile(r"u?int\d+|byte|char"), "int"), (re.compile(r"float\d+"), "double"))
 _PASSED = re.compile(r"\s*,\s*(?:this\s*->\s*)?(?:(?P<object>\w+)\s*\.\s*)?(?P<name>[A-Za-z_]\w*)\s*[,)]")
@@ -73,16 +78,25 @@ class VariableTypes:
 
     def _find_types(self, name: str, position: int) -> set[str]:
         """Return the types of the declaration before a position in its function, or of all declarations."""
-        pattern = re.compile(rf"(?<![\w:<])(?P<type>{_TYPE})\s*&?\s*(?<=[\s>&]){_OTHERS}{name}\b{_END}")
         start = self._text.rfind("\n}", 0, position) + 1
-        local = [match["type"] for match in pattern.finditer(self._text, start, position)]
-        if local:
-            return {normalize_read_type(local[-1])}
-        return {
-            normalize_read_type(match["type"])
-            for text in (self._text, *self._headers)
-            for match in pattern.finditer(text)
-        }
+        own = self._declarations.get(name, [])
+        local = [kind for place, kind in own if start <= place < position]
+        return set(local[-1:]) or {kind for _, kind in own} | self._header_types.get(name, set())
+
+    @cached_property
+    def _declarations(self) -> dict[str, list[tuple[int, str]]]:
+        """The offsets and types of the declarations in the source, by variable."""
+        found: dict[str, list[tuple[int, str]]] = {}
+        for name, place, kind in _find_declarations(self._text):
+            found.setdefault(name, []).append((place, kind))
+        return found
+
+    @cached_property
+    def _header_types(self) -> dict[str, set[str]]:
+        found: dict[str, set[str]] = {}
+        for name, _, kind in (item for text in self._headers for item in _find_declarations(text)):
+            found.setdefault(name, set()).add(kind)
+        return found
 
     def _find_messages(self, name: str) -> Iterator[tuple[str, str]]:
         """Yield the package and the name of each type of messages with which a variable is declared."""
@@ -90,6 +104,14 @@ class VariableTypes:
         for text in (self._text, *self._headers):
             for match in pattern.finditer(text):
                 yield match["package"], match["name"]
+
+
+def _find_declarations(text: str) -> Iterator[tuple[str, int, str]]:
+    """Yield the name of each declared variable with the offset of its declaration and its type."""
+    for match in _DECLARATION.finditer(text):
+        kind = normalize_read_type(match["type"])
+        for item in match["names"].split(","):
+            yield item.partition("=")[0].strip(), match.start(), kind
 
 
 def _read_field(path: Path, package: str, message: str, name: str) -> str:
