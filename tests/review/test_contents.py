@@ -108,7 +108,7 @@ TEMPLATE = """<?xml version="1.0"?>
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("0 0 1 0", "0 0 2 0", "model {{ name }} link base pose: 0 0 1 0 0 0 -> 0 0 2 0 0 0"),
+        ("0 0 1 0", "0 0 2 0", "model {{ name }} link base pose: 0 0 1 0 0 0 -> 0 0 2 0 0 0 (moved by 1 m)"),
         ("else 1", "else 2",
          "model {{ name }} link base inertial mass: {{ mass if mass > 1 else 1 }} -> {{ mass if mass > 1 else 2 }}"),
     ],

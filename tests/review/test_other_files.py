@@ -168,7 +168,7 @@ WORLD = """<sdf version="1.9">
 @pytest.mark.parametrize(
     ("old", "new", "expected", "is_breaking"),
     [
-        ("0 0 1 0 0 0", "0 0 2 0 0 0", ["world yard model box pose: 0 0 1 0 0 0 -> 0 0 2 0 0 0"], False),
+        ("0 0 1 0 0 0", "0 0 2 0 0 0", ["world yard model box pose: 0 0 1 0 0 0 -> 0 0 2 0 0 0 (moved by 1 m)"], False),
         ("    <include><uri>model://tree", "    <include><uri>model://bush</uri></include>\n    <include><uri>model://tree",
          ["world yard include model://bush added"], False),
         ("<topic>/a", "<topic>/b", ["world yard plugin p topic: /a -> /b"], True),
