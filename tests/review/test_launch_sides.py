@@ -41,6 +41,29 @@ def test_remapping_is_breaking_by_the_side_of_the_node(repository, compare, pack
     assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
 
 
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [("/base/scan", None), ("/base/make_plan", None), ("/base/goal", CERTAIN), ("/base/other", POSSIBLE)],
+)
+def test_absolute_name_of_a_remapping_may_begin_with_the_namespace_of_the_node(repository, compare, name, reason):
+    remap = f'<remap from="{name}" to="/base/x"/>'
+    text = f'<launch><node pkg="arm" type="n.py" name="n">{remap}</node></launch>'
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/n.py": SOURCE}
+    repository.commit({**files, "arm/launch/arm.launch": text.replace(remap, "")})
+    repository.write({"arm/launch/arm.launch": text})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
+
+
+def test_remapping_of_an_absolute_name_that_the_node_gets_in_the_same_change_breaks_nobody(repository, compare):
+    text = '<launch><node pkg="arm" type="n.py" name="n"><remap from="/base/level" to="/x"/></node></launch>'
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/n.py": SOURCE}
+    repository.commit({**files, "arm/launch/arm.launch": text.replace('<remap from="/base/level" to="/x"/>', "")})
+    source = f'{SOURCE}level = rospy.Publisher("level", Level)\n'
+    repository.write({"arm/launch/arm.launch": text, "arm/scripts/n.py": source})
+    assert [change.reason for change in subject(compare(repository), "arm/launch/arm.launch").changes] == [None]
+
+
 BRIDGE = """<launch><node pkg="ros_gz_bridge" exec="parameter_bridge"
   args="/light@std_msgs/msg/Bool[gz.msgs.Boolean /dark@std_msgs/msg/Bool]gz.msgs.Boolean"/></launch>
 """
