@@ -37,6 +37,7 @@ from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
 from linkwright.review.launches.repeated_arguments import report_repeated_arguments
 from linkwright.review.launches.settings import SettingChanges
+from linkwright.review.launches.starting_nodes import find_starting_node
 from linkwright.review.launches.titles import (
     format_added_entry,
     format_removed_entry,
@@ -208,6 +209,11 @@ def _report_unpaired_entries(
         if _is_still_read(pair, entry, new_included.outline):
             text = phrase("argument '{name}' is no longer declared; the file still uses it", name=entry.name)
             pair.add(text, location)
+            continue
+        starting_node = find_starting_node(entry, added, pair.versions.new.root)
+        if starting_node is not None:
+            titles = {"old": format_title(written), "new": format_title(starting_node)}
+            pair.add(phrase("{old} replaced by {new}, whose script names the file", **titles), location)
             continue
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         outlines = old_included.outline, new_included.outline
