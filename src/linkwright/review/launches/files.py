@@ -184,6 +184,9 @@ def _report_unpaired_entries(
             moved.setdefault((file, False), []).append(entry)
     for entry in removed:
         file = new_included.find_unmatched_file(entry, old_included)
+        if file is None and entry.kind == SERVER_PARAMETER:
+            value = old_included.outline.resolve(entry.settings.get("value", ""))
+            file = new_included.find_file_with_parameter(entry.name.rpartition("/")[2], value)
         if file is not None:
             moved.setdefault((file, True), []).append(entry)
             continue

@@ -21,6 +21,7 @@ from linkwright.review.launches.outlines import (
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PROGRAM_KINDS,
+    SERVER_PARAMETER,
     Entry,
     LaunchOutline,
 )
@@ -160,6 +161,22 @@ class IncludedActions:
         """
         outline = self.outline.with_defaults(values) if values else self.outline
         return Counter(self._find_file_programs(outline, self._version.file(self._path), 0))
+
+    def find_file_with_parameter(self, name: str, value: str) -> str | None:
+        """Return an included file that sets a parameter of the server to a value, or None.
+
+        Args:
+            name: the last name of the parameter.
+            value: the value, without substitutions.
+        """
+        file = self._version.file(self._path)
+        for entry in self.outline.entries:
+            included = self.read_included_file(entry, self.outline, file)
+            for other in () if included is None else included.outline.entries:
+                is_parameter = other.kind == SERVER_PARAMETER and other.name.rpartition("/")[2] == name
+                if included and is_parameter and included.outline.resolve(other.settings.get("value", "")) == value:
+                    return self._version.relative(included.file)
+        return None
 
     def find_node_names(self, entry: Entry) -> frozenset[str] | None:
         """Return the names, with namespaces, of the nodes that an include starts; None if a file cannot be read."""
