@@ -32,6 +32,18 @@ _KEY_PATTERNS = {".yaml": _KEY, ".yml": _KEY, ".py": _QUOTED_WORD, ".xml": _QUOT
 """The names of controllers in parameter files and, for spawners, in launch files, by suffix."""
 
 
+_WRAPPER_CALL = re.compile(
+    r"\b\w+(?P<kind>Publisher|Subscriber|Subscription|Client)\(\s*[\w.]+\s*,\s*[\"'](?P<name>[~\w/]+)[\"']"
+)
+"""The call of a class of the package in Python that makes an interface of a type under a name."""
+_WRAPPED_KINDS = {
+    "Publisher": NameKind.PUBLISHER,
+    "Subscriber": NameKind.SUBSCRIPTION,
+    "Subscription": NameKind.SUBSCRIPTION,
+    "Client": NameKind.CLIENT,
+}
+
+
 class Side(Enum):
     """Whether a node offers a name to others."""
 
@@ -122,4 +134,7 @@ def _read_kinds_by_name(root: Path, package: str) -> dict[str, set[NameKind]]:
         for item in read_source_names(file).names:
             if item.kind in _OFFERING_KINDS | _USING_KINDS:
                 kinds.setdefault(item.name.strip("\"'").lstrip("~/"), set()).add(item.kind)
+        if file.suffix == PYTHON_SUFFIX:
+            for match in _WRAPPER_CALL.finditer(file.read_text("utf-8", "replace")):
+                kinds.setdefault(match["name"].lstrip("~/"), set()).add(_WRAPPED_KINDS[match["kind"]])
     return kinds
