@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.repositories import PACKAGE_XML
 from tests.review.conftest import subject
 
 PART = """<launch>
@@ -223,3 +224,16 @@ def test_node_that_moves_into_a_file_of_a_package_without_manifest_is_moved(repo
     changes = subject(compare(repository), "worlds/launch/arm.launch").changes
     assert [change.reason for change in changes] == [None, None]
     assert str(changes[1].sentence) == "node 'gazebo/gazebo' moved to worlds/launch/start.launch"
+
+
+SPAWNER = "#!/usr/bin/env python3\nimport roslaunch\n\nFILE = '{}'\nroslaunch.main(['roslaunch', 'elsewhere', FILE])\n"
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("safety.launch", False), ("unsafety.launch", True)])
+def test_an_include_can_become_a_node_whose_script_starts_the_file(repository, compare, name, is_breaking):
+    manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    repository.commit({**manifest, "arm/launch/arm.launch": FILE, "arm/scripts/start.py": SPAWNER.format(name)})
+    node = '  <node pkg="arm" type="start.py" name="start"/>\n'
+    repository.write({"arm/launch/arm.launch": FILE.replace(SAFETY, node)})
+    changes = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert any(change.reason is not None for change in changes) is is_breaking

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import subject
+
 XML = """<launch>
   <arg name="namespace"{default}/>
   <group ns="$(arg namespace)">
@@ -44,3 +47,40 @@ def test_lost_outer_namespace_is_breaking_if_the_inner_one_is_known(review_chang
     )
     assert len(changes) == 2
     assert (found == changes) is is_breaking
+
+
+INCLUDED = '<launch><node pkg="arm" exec="driver" name="driver"{}/></launch>\n'
+INCLUDING = '<launch><group>{}<include file="$(find-pkg-share arm)/launch/driver.launch.xml"/></group></launch>\n'
+
+
+@pytest.mark.parametrize(("namespace", "is_breaking"), [("left", False), ("right", True)])
+def test_namespace_that_moves_to_the_including_file_keeps_the_names_of_the_nodes(
+    repository, compare, namespace, is_breaking
+):
+    manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    included, including = "arm/launch/driver.launch.xml", "arm/launch/arm.launch.xml"
+    repository.commit({**manifest, included: INCLUDED.format(' namespace="left"'), including: INCLUDING.format("")})
+    push = f'<push_ros_namespace namespace="{namespace}"/>'
+    repository.write({included: INCLUDED.format(""), including: INCLUDING.format(push)})
+    (change,) = subject(compare(repository), including).changes
+    assert (change.reason is not None) is is_breaking
+
+
+PREFIXED = """<launch><arg name="side"/><group ns="$(arg side)">
+  <param name="tf_prefix" value="$(arg side){end}"/>
+  <node pkg="arm" type="driver" name="driver"/>
+</group></launch>
+"""
+CALL = '<include file="$(find arm)/launch/driver.launch">{}</include>'
+
+
+@pytest.mark.parametrize(("end", "is_breaking"), [("_tf", False), ("", True)])
+def test_a_prefix_of_frames_that_moves_into_the_included_file_breaks_nobody(repository, compare, end, is_breaking):
+    manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    included, including = "arm/launch/driver.launch", "arm/launch/arm.launch"
+    group = f'<launch><group ns="left"><param name="tf_prefix" value="left_tf"/>{CALL.format("")}</group></launch>'
+    repository.commit({**manifest, included: INCLUDED.replace("exec", "type").format(""), including: group})
+    call = CALL.format('<arg name="side" value="left"/>')
+    repository.write({included: PREFIXED.format(end=end), including: f"<launch>{call}</launch>"})
+    changes = subject(compare(repository), including).changes
+    assert any(change.reason is not None for change in changes) is is_breaking

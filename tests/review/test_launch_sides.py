@@ -41,6 +41,29 @@ def test_remapping_is_breaking_by_the_side_of_the_node(repository, compare, pack
     assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
 
 
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [("/base/scan", None), ("/base/make_plan", None), ("/base/goal", CERTAIN), ("/base/other", POSSIBLE)],
+)
+def test_absolute_name_of_a_remapping_may_begin_with_the_namespace_of_the_node(repository, compare, name, reason):
+    remap = f'<remap from="{name}" to="/base/x"/>'
+    text = f'<launch><node pkg="arm" type="n.py" name="n">{remap}</node></launch>'
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/n.py": SOURCE}
+    repository.commit({**files, "arm/launch/arm.launch": text.replace(remap, "")})
+    repository.write({"arm/launch/arm.launch": text})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
+
+
+def test_remapping_of_an_absolute_name_that_the_node_gets_in_the_same_change_breaks_nobody(repository, compare):
+    text = '<launch><node pkg="arm" type="n.py" name="n"><remap from="/base/level" to="/x"/></node></launch>'
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/n.py": SOURCE}
+    repository.commit({**files, "arm/launch/arm.launch": text.replace('<remap from="/base/level" to="/x"/>', "")})
+    source = f'{SOURCE}level = rospy.Publisher("level", Level)\n'
+    repository.write({"arm/launch/arm.launch": text, "arm/scripts/n.py": source})
+    assert [change.reason for change in subject(compare(repository), "arm/launch/arm.launch").changes] == [None]
+
+
 BRIDGE = """<launch><node pkg="ros_gz_bridge" exec="parameter_bridge"
   args="/light@std_msgs/msg/Bool[gz.msgs.Boolean /dark@std_msgs/msg/Bool]gz.msgs.Boolean"/></launch>
 """
@@ -91,3 +114,29 @@ def test_remapping_of_a_name_of_a_controller_breaks_nobody_if_the_controller_is_
     repository.write({"arm/launch/arm.launch.xml": node.format(remap), "arm/config/controllers.yaml": controllers})
     (change,) = subject(compare(repository), "arm/launch/arm.launch.xml").changes
     assert (change.reason is not None) is is_breaking
+
+
+WIDGET = "import lamp\n\nwatch = lamp.GUISubscriber(Level, 'level', call)\nask = lamp.GUIClient(Plan, 'plan', call)\n"
+WIDGET += "tell = lamp.GUIPublisher(Goal, 'target')\n"
+
+
+@pytest.mark.parametrize(("name", "reason"), [("/base/level", None), ("plan", None), ("target", CERTAIN)])
+def test_classes_that_wrap_a_subscription_or_client_tell_the_side(repository, compare, name, reason):
+    remap = f'<remap from="{name}" to="/base/x"/>'
+    text = f'<launch><node pkg="arm" type="n.py" name="n">{remap}</node></launch>'
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/n.py": WIDGET}
+    repository.commit({**files, "arm/launch/arm.launch": text.replace(remap, "")})
+    repository.write({"arm/launch/arm.launch": text})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
+
+
+@pytest.mark.parametrize(("source", "is_breaking"), [("goal", False), ("place", True)])
+def test_a_name_that_an_added_node_has_now_is_not_lost(repository, compare, source, is_breaking):
+    remap = '<remap from="{}" to="/base/goal"/>'
+    text = '<launch><node pkg="elsewhere" type="n" name="n">{}</node>{}</launch>'
+    repository.commit({"arm/launch/arm.launch": text.format(remap.format("goal"), "")})
+    added = f'<node pkg="elsewhere" type="switch" name="switch">{remap.format(source)}</node>'
+    repository.write({"arm/launch/arm.launch": text.format("", added)})
+    changes = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert any(change.reason is not None for change in changes) is is_breaking

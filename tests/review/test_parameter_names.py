@@ -371,3 +371,34 @@ def test_a_frame_of_the_odometry_that_the_node_publishes(repository, compare, te
     repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), path: text})
     repository.write({path: text.replace("a/odom", "odom")})
     assert bool(compare(repository).breaking_changes) is is_breaking
+
+
+SERVERS = "controller_server:\n  ros__parameters:\n    goal_checker_plugins: {checkers}\n    rate: {rate}\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_breaking"),
+    [
+        ({"checkers": "near", "rate": 10}, {"checkers": "[near]", "rate": 10}, False),
+        ({"checkers": "[near]", "rate": 10}, {"checkers": "near", "rate": 10}, True),
+        ({"checkers": "[near]", "rate": 10}, {"checkers": "[near]", "rate": "[10]"}, True),
+    ],
+)
+def test_list_of_plugins_that_was_a_text_breaks_nobody(review_changes, old, new, is_breaking):
+    found, found_breaking = review_changes(SERVERS.format(**old), SERVERS.format(**new))
+    assert found
+    assert bool(found_breaking) is is_breaking
+
+
+STAMPED = "    enable_stamped_cmd_vel: {}\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "value", "is_breaking"), [(True, "true", True), (True, "false", False), (False, "true", False)]
+)
+def test_velocity_commands_of_a_node_that_newly_have_a_header_are_breaking(review_changes, old, value, is_breaking):
+    other = "docking_server:\n  ros__parameters:\n    rate: 5\n"
+    text = SERVERS.format(checkers="[near]", rate=10)
+    found, found_breaking = review_changes(other + text if old else other, other + text + STAMPED.format(value))
+    assert found
+    assert bool(found_breaking) is is_breaking

@@ -92,3 +92,16 @@ def test_files_that_only_tests_use_are_not_breaking(repository, compare, cmake, 
     result = compare(repository)
     assert sentences(subject(result, path))
     assert any(found.path == path for found, _ in result.breaking_changes) is is_breaking
+
+
+@pytest.mark.parametrize("install", ["", "install(DIRECTORY test DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})\n"])
+def test_launch_files_of_tests_are_not_breaking_in_ros_1_either(repository, compare, install):
+    path = "arm/test/arm.launch"
+    package = PACKAGE_XML.replace("arm_description", "arm").replace(
+        "<exec", "<buildtool_depend>catkin</buildtool_depend><exec", 1
+    )
+    cmake = f"cmake_minimum_required(VERSION 3.0)\nproject(arm)\nfind_package(catkin)\ncatkin_package()\n{install}"
+    launch = '<launch><node pkg="amcl" type="amcl" name="amcl"/></launch>\n'
+    repository.commit({"arm/package.xml": package, "arm/CMakeLists.txt": cmake, path: launch})
+    repository.write({path: "<launch/>\n"})
+    assert bool(breaking(compare(repository))) is bool(install)

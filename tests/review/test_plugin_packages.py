@@ -19,6 +19,7 @@ REASON = "package.xml does not name '{}', without which the plugin is not loaded
         (PLANNER, "lamp_planner/Lamp", "sun_planner::deep::Sun", "", [REASON.format("sun_planner")]),
         (PLANNER, "lamp_planner/Lamp", "sun_planner/Sun", "sun_planner", []),
         (PLANNER, "lamp_planner/Lamp", "nav2_smac_planner/Grid", "navigation2", []),
+        (PLANNER, "lamp_planner/Lamp", "opennav_docking::Dock", "nav2_bringup", []),
         (PLANNER, "lamp_planner/Lamp", "lamp_planner/Candle", "", []),
         (PLANNER, "lamp_planner/Lamp", "lamp_plans/Lamp", "", []),
         (PLANNER, "lamp_planner/Lamp", "lamp_planner::Lamp", "", []),

@@ -265,3 +265,26 @@ def test_parts_that_keep_their_values_are_the_renamed_ones(review_changes):
         "layer.raytrace_min_range 0.0 added",
     ]
     assert found.changes[0].other_names == ("layer.raytrace_range -> layer.raytrace_max_range",)
+
+
+BRIDGE = "bridge:\n  ros__parameters:\n    {}:\n      topic: /ping\n      peer: lamp/ping\n      is_raw: true\n"
+NAMED_BRIDGE = BRIDGE.replace("      ", "        ").replace("{}:\n", "{}:\n      names: [lamp]\n      lamp:\n")
+
+
+def test_values_that_move_into_a_new_part_beside_them_are_moved(review_changes):
+    changed, reasons = review_changes(BRIDGE.format("out"), NAMED_BRIDGE.format("out"))
+    prefix = "bridge.ros__parameters.out"
+    assert sentences(changed)[0] == f"{prefix}.topic moved to {prefix}.lamp.topic"
+    assert any(
+        "values that are set under the old names no longer have an effect" in str(each.reason)
+        for each in changed.changes
+    )
+    assert reasons
+    assert not any("removed" in sentence for sentence in sentences(changed))
+
+
+def test_equal_numbers_alone_do_not_show_that_values_moved(review_changes):
+    old = BRIDGE.replace("lamp/ping", "2").replace("/ping", "1")
+    new = NAMED_BRIDGE.replace("lamp/ping", "2").replace("/ping", "1")
+    changed, _ = review_changes(old.format("out"), new.format("out"))
+    assert not any(" moved to " in sentence for sentence in sentences(changed))

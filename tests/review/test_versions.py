@@ -12,7 +12,7 @@ import pytest
 from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
 from linkwright.review import open_versions
-from tests.repositories import ARM, MACRO, Repository
+from tests.repositories import ARM, MACRO, PACKAGE_XML, Repository
 from tests.review.conftest import breaking, sentences, subject
 
 PATH = "arm_description/urdf/arm.urdf.xacro"
@@ -225,6 +225,19 @@ def test_submodule_change_is_a_note(package, compare, tmp_path):
     result = compare(package, "HEAD~1..HEAD")
     assert breaking(result) == ["submodule removed"]
     assert result.notes == []
+
+
+def test_removed_submodule_that_the_files_no_longer_name_breaks_nobody(package, compare, tmp_path):
+    other = Repository(tmp_path / "other")
+    other.commit({"a.urdf": "<robot name='a'><link name='a'/></robot>"})
+    package.git("submodule", "--quiet", "add", other.root.as_uri(), "vendor_arm")
+    manifest = PACKAGE_XML.replace("xacro", "vendor_arm")
+    package.commit({"arm_description/package.xml": manifest})
+    package.git("rm", "--quiet", "vendor_arm")
+    package.commit({"arm_description/package.xml": PACKAGE_XML})
+    result = compare(package, "HEAD~1..HEAD")
+    assert "submodule removed" in {str(each.sentence) for found in result.subjects for each in found.changes}
+    assert "submodule removed" not in breaking(result)
 
 
 def lose_contents(repository, commit, path):

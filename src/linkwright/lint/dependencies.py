@@ -60,6 +60,8 @@ _CORE_PACKAGES_OF_ROS1 = frozenset(
 _METAPACKAGE_PREFIXES = (
     ("navigation2", "nav2_"),
     ("nav2_bringup", "nav2_"),
+    ("navigation2", "opennav_docking"),
+    ("nav2_bringup", "opennav_docking"),
     ("moveit", "moveit_"),
     ("ros_gz", "ros_gz_"),
     ("gazebo_ros_pkgs", "gazebo_"),

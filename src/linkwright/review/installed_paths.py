@@ -71,6 +71,14 @@ def find_installed_paths(version: Version, package: str, path: str) -> frozenset
     folder = version.root / package
     if Manifest(read_document(str(folder / MANIFEST))).is_ros1:
         return None  # catkin also finds files in the source folder, whatever is installed
+    return find_targets(version, package, path)
+
+
+def find_targets(version: Version, package: str, path: str) -> frozenset[str] | None:
+    """Return the paths to which the build installs a file, or None if they are unknown.
+
+    They do not contain the name of the package.
+    """
     facts = read_package_facts(version, package)
     if facts is None or not facts.is_complete:
         return None

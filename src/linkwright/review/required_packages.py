@@ -28,7 +28,7 @@ def is_undeclared_and_new(versions: Versions, path: str, package: str) -> bool:
     folder = versions.new.package_of(path)
     if folder is None or not (versions.old.file(folder) / MANIFEST).is_file():
         return False
-    return not _is_declared(versions.new, package) and not _is_named(versions.old, package)
+    return not _is_declared(versions.new, package) and not is_named(versions.old, package)
 
 
 @lru_cache(maxsize=256)
@@ -45,7 +45,7 @@ def _is_declared(version: Version, package: str) -> bool:
 
 
 @lru_cache(maxsize=256)
-def _is_named(version: Version, package: str) -> bool:
+def is_named(version: Version, package: str) -> bool:
     """Return whether a file of a version names a package."""
     word = re.compile(rf"(?<!\w){re.escape(package)}(?!\w)")
     return any(word.search(version.text(path)) for path in version.paths(_SUFFIXES))

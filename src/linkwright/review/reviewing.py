@@ -66,6 +66,7 @@ from linkwright.review.parts import compare_parts
 from linkwright.review.removed_programs import merge_removed_options
 from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import match_moved_files, remove_consequences
+from linkwright.review.required_packages import is_named
 from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.sources.reading import forget_source_names
@@ -266,11 +267,17 @@ class _Reviewer:
         return sorted(merge_removed_options(result), key=lambda subject: subject.path)
 
     def _find_removed_submodules(self) -> Iterator[Subject]:
-        """Yield the removed submodules with their packages."""
-        reason = phrase("packages that depend on the packages in it do not build or start")
+        """Yield the removed submodules with their packages.
+
+        One that the files no longer name, although they did, breaks nobody.
+        """
+        packages_reason = phrase("packages that depend on the packages in it do not build or start")
         for file in self._changed_files:
             if self._is_removed_submodule(file):
-                change = Change(phrase("submodule removed"), Effect.BREAKING, reason)
+                name = PurePosixPath(file.path).name
+                is_dropped = is_named(self._versions.old, name) and not is_named(self._versions.new, name)
+                effect, reason = (Effect.CHANGED, None) if is_dropped else (Effect.BREAKING, packages_reason)
+                change = Change(phrase("submodule removed"), effect, reason)
                 yield Subject(SubjectKind.MANIFEST, file.path, file.old_path, None, [change])
 
     def _is_removed_submodule(self, file: ChangedFile) -> bool:

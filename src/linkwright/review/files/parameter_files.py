@@ -141,6 +141,10 @@ def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Nod
         first = next(iter(values_below.values()))
         location = Location(pair.new_path, first.line, first.column)
         reason = plugins.find_addition_reason(values_below) if old else None
+        added_reasons = (
+            rules.find_addition_reason(inner_name, value.text) for inner_name, value in values_below.items()
+        )
+        reason = reason or next((found for found in added_reasons if found is not None), None)
         yield ValueChange(name, "added", _list_values(name, values_below), location, reason)
     for name, values_below in _find_unpaired_parts(old, new):
         first = next(iter(values_below.values()))

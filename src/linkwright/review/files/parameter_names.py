@@ -51,11 +51,15 @@ _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
 _STAMPED_BY_DEFAULT = "use_stamped_vel"
 """The parameter of diff_drive_controller and its relatives, which is true by default."""
+_UNSTAMPED_BY_DEFAULT = "enable_stamped_cmd_vel"
+"""The parameter of the nodes of Nav2 with velocity commands, which is false by default in most releases."""
 _CLOCK_PARAMETER = "use_sim_time"
 """The parameter of all nodes that launch files give, too."""
 _NUMBER_OR_BOOLEAN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?|true|false", re.IGNORECASE)
 _PLUGIN_LIST = re.compile(r"(^|[._])(plugins|plugin_names|plugin_ids)$")
 """The parameters that list plugin names, which behavior trees and goals use."""
+_PLUGIN_LISTS = re.compile(r"(^|[._])(plugins|\w+_plugins|plugin_lib_names)$")
+"""The parameters of Nav2 that are lists of names."""
 _SEPARATOR = re.compile(r"(?<=.)[.\[]")
 """The separators of the names in a path."""
 _SUBSTITUTION = re.compile(r"\\\$\\\([\w\\ -]+\\\)")
@@ -123,7 +127,17 @@ class NameRules:
         reason = self._topics.find_reason(parameter)
         if reason is not None or not is_parameter(parameter) or self._readers.is_replaced(new):
             return reason
+        if new_value.is_list and _PLUGIN_LISTS.search(parameter):
+            return None  # the node accepts nothing else
         return find_type_reason(old_value, new_value)
+
+    def find_addition_reason(self, parameter: str, value: str) -> Phrase | None:
+        """Return the reason why adding a parameter is breaking, or None if it is not. A new node breaks nobody."""
+        if parameter.endswith(f".{_UNSTAMPED_BY_DEFAULT}") and value.lower() == "true":
+            node = find_node_name(parameter)
+            if node is not None and node not in self._added_nodes:
+                return phrase("the message type of a topic changes between one with and one without a header")
+        return None
 
     def find_removal_reason(self, parameter: str, old: str) -> Phrase | None:
         """Return the reason why removing a parameter is breaking, or None if it is not.

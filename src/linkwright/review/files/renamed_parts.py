@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import product
 
+from linkwright.review.files.moved_values import find_moved_values
 from linkwright.review.files.parameter_names import list_part_paths
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.merging import name_edit
@@ -48,7 +50,11 @@ def find_renamed_parts(old: Mapping[str, YamlValue], new: Mapping[str, YamlValue
     new_names = set(renamed.values())
     unmatched_new = {name: facts for name, facts in new_parts.items() if name not in new_names}
     renamed |= dict(_find_moved(_add_inner_parts(remaining_old, old), _add_inner_parts(unmatched_new, new)))
-    return renamed
+    is_paired = partial(_is_inside, parts={*renamed, *renamed.values()})
+    old_values, new_values = (
+        {name: value for name, value in values.items() if not is_paired(name)} for values in (old, new)
+    )
+    return renamed | dict(find_moved_values(old_values, new_values))
 
 
 def rename_parts(values: Mapping[str, YamlValue], renamed: Mapping[str, str]) -> dict[str, YamlValue]:

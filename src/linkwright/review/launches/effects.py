@@ -293,6 +293,8 @@ def _find_node_remapping_reason(
         return None
     if old is not None and old_outline.resolve(old) in _find_remapping_targets(entry, new_outline):
         return None  # the new file gives the name to a different topic of the node
+    if old is not None and _is_taken_over(source, old_outline.resolve(old), old_outline, new_outline):
+        return None
     return _find_remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
 
 
@@ -546,6 +548,20 @@ def _find_remapping_targets(entry: Entry, outline: LaunchOutline) -> set[str]:
     """Return the names to which an action remaps others."""
     settings = entry.settings.items()
     return {outline.resolve(value) for name, value in settings if name.startswith(REMAPPING)}
+
+
+def _is_taken_over(source: str, target: str, old: LaunchOutline, new: LaunchOutline) -> bool:
+    """Return whether an added node may offer a name that a node loses, because it has the same remapping."""
+    known = {entry.name for entry in old.entries}
+    return any(
+        entry.kind == "node"
+        and entry.name not in known
+        and any(
+            without_condition(setting) == f"{REMAPPING}{source}" and new.resolve(value) == target
+            for setting, value in entry.settings.items()
+        )
+        for entry in new.entries
+    )
 
 
 def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:

@@ -37,6 +37,7 @@ from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
 from linkwright.review.launches.repeated_arguments import report_repeated_arguments
 from linkwright.review.launches.settings import SettingChanges
+from linkwright.review.launches.starting_nodes import find_starting_node
 from linkwright.review.launches.titles import (
     format_added_entry,
     format_removed_entry,
@@ -183,6 +184,9 @@ def _report_unpaired_entries(
             moved.setdefault((file, False), []).append(entry)
     for entry in removed:
         file = new_included.find_unmatched_file(entry, old_included)
+        if file is None and entry.kind == SERVER_PARAMETER:
+            value = old_included.outline.resolve(entry.settings.get("value", ""))
+            file = new_included.find_file_with_parameter(entry.name.rpartition("/")[2], value)
         if file is not None:
             moved.setdefault((file, True), []).append(entry)
             continue
@@ -208,6 +212,11 @@ def _report_unpaired_entries(
         if _is_still_read(pair, entry, new_included.outline):
             text = phrase("argument '{name}' is no longer declared; the file still uses it", name=entry.name)
             pair.add(text, location)
+            continue
+        starting_node = find_starting_node(entry, added, pair.versions.new.root)
+        if starting_node is not None:
+            titles = {"old": format_title(written), "new": format_title(starting_node)}
+            pair.add(phrase("{old} replaced by {new}, whose script names the file", **titles), location)
             continue
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         outlines = old_included.outline, new_included.outline

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import re
-from functools import lru_cache
+from collections.abc import Collection
 from pathlib import PurePosixPath
 
+from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.versions import Version, Versions
-
-_REGISTRATION = re.compile(
-    r"rclcpp_components_register_node\s*\([^()]*?PLUGIN\s+\"?(?P<plugin>[\w:]+)\"?[^()]*?EXECUTABLE\s+\"?(?P<name>[\w.-]+)"
-)
-_BUILD_FILE = "CMakeLists.txt"
 
 
 def find_renamed_programs(versions: Versions) -> dict[str, str]:
@@ -21,15 +17,14 @@ def find_renamed_programs(versions: Versions) -> dict[str, str]:
         for file in versions.changed_files
         if file.old_path and file.new_path
     }
-    if not any(path.endswith(_BUILD_FILE) for path in names):
-        return names
-    old, new = _list_component_programs(versions.old), _list_component_programs(versions.new)
+    paths = {file.path for file in versions.changed_files if PurePosixPath(file.path).name == CMAKE_FILE}
+    old, new = _read_component_programs(versions.old, paths), _read_component_programs(versions.new, paths)
     left = set(new.values())
     return names | {old[plugin]: new[plugin] for plugin in old if plugin in new and old[plugin] not in left}
 
 
-@lru_cache(maxsize=4)
-def _list_component_programs(version: Version) -> dict[str, str]:
-    """Return the names of the executables that CMake makes for components, by the class of the component."""
-    texts = (version.text(path) for path in version.paths((_BUILD_FILE,)))
-    return {match["plugin"]: match["name"] for text in texts for match in _REGISTRATION.finditer(text)}
+def _read_component_programs(version: Version, paths: Collection[str]) -> dict[str, str]:
+    """Return the executables of components in the packages of build files, by the class of the component."""
+    folders = {folder for path in paths if (folder := version.package_of(path)) is not None}
+    facts = [read_package_facts(version, folder) for folder in sorted(folders)]
+    return {plugin: name for item in facts if item is not None for plugin, name in item.component_programs.items()}

@@ -206,6 +206,8 @@ class SettingChanges:
         if entry.kind == "include":
             if setting == CONDITION:
                 return reason if self._included.count_started_programs(entry) else None
+            if setting == NAMESPACE_OF_INCLUDED and self._keeps_node_names(entry, old):
+                return None
             return reason or self._find_passed_value_reason(entry, setting, old)
         if entry.kind == "argument" and setting == "default" and reason is None and old is not None:
             started = self._included.count_all_started_programs()
@@ -213,6 +215,12 @@ class SettingChanges:
             stopped &= self._old_included.count_all_started_programs() - started
             return _explain_stopped_programs(stopped) if stopped else None
         return reason
+
+    def _keeps_node_names(self, include: Entry, old_namespace: str | None) -> bool:
+        """Return whether the nodes of an included file had the new names before, with their own namespaces."""
+        settings = {**include.settings, NAMESPACE_OF_INCLUDED: old_namespace or ""}
+        old_names = self._old_included.find_node_names(replace(include, settings=settings))
+        return old_names is not None and old_names == self._included.find_node_names(include)
 
     def _find_passed_value_reason(self, include: Entry, setting: str, old: str | None) -> Phrase | None:
         """Return the reason why a different value for an included file is breaking, or None."""

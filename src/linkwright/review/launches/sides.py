@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from enum import Enum
 from functools import lru_cache
 from pathlib import Path
@@ -31,6 +32,18 @@ _KEY_PATTERNS = {".yaml": _KEY, ".yml": _KEY, ".py": _QUOTED_WORD, ".xml": _QUOT
 """The names of controllers in parameter files and, for spawners, in launch files, by suffix."""
 
 
+_WRAPPER_CALL = re.compile(
+    r"\b\w+(?P<kind>Publisher|Subscriber|Subscription|Client)\(\s*[\w.]+\s*,\s*[\"'](?P<name>[~\w/]+)[\"']"
+)
+"""The call of a class of the package in Python that makes an interface of a type under a name."""
+_WRAPPED_KINDS = {
+    "Publisher": NameKind.PUBLISHER,
+    "Subscriber": NameKind.SUBSCRIPTION,
+    "Subscription": NameKind.SUBSCRIPTION,
+    "Client": NameKind.CLIENT,
+}
+
+
 class Side(Enum):
     """Whether a node offers a name to others."""
 
@@ -52,7 +65,8 @@ def find_side(program: str, name: str, root: Path | None) -> Side:
     relative_name = name.lstrip("~/")
     if _SUBSCRIBING_PROGRAM.match(program) and _INPUT_TOPIC.fullmatch(relative_name):
         return Side.USES
-    kinds = set() if root is None else _read_kinds_by_name(root, program.partition("/")[0]).get(relative_name, set())
+    kinds_by_name = {} if root is None else _read_kinds_by_name(root, program.partition("/")[0])
+    kinds = kinds_by_name.get(_find_own_name(name, kinds_by_name), set())
     if kinds and kinds <= _USING_KINDS:
         return Side.USES
     if kinds & _OFFERING_KINDS or _NAMED_OUTPUT.fullmatch(relative_name):
@@ -80,9 +94,20 @@ def is_new_name(program: str, name: str, old_root: Path | None, new_root: Path |
         return controller not in _list_parameter_keys(old_root)
     if package not in find_package_folders(old_root):
         return False
-    return relative_name in _read_kinds_by_name(new_root, package) and relative_name not in _read_kinds_by_name(
-        old_root, package
-    )
+    new_kinds = _read_kinds_by_name(new_root, package)
+    own_name = _find_own_name(name, new_kinds)
+    return own_name in new_kinds and own_name not in _read_kinds_by_name(old_root, package)
+
+
+def _find_own_name(name: str, known: Collection[str]) -> str:
+    """Return the name by which the sources of a node know a topic or service of a remapping.
+
+    An absolute name may begin with the namespace of the node.
+    """
+    words = name.lstrip("~/").split("/")
+    count = len(words) if name.startswith("/") else 1
+    names = ["/".join(words[index:]) for index in range(count)]
+    return next((own_name for own_name in names if own_name in known), names[0])
 
 
 @lru_cache(maxsize=4)
@@ -109,4 +134,7 @@ def _read_kinds_by_name(root: Path, package: str) -> dict[str, set[NameKind]]:
         for item in read_source_names(file).names:
             if item.kind in _OFFERING_KINDS | _USING_KINDS:
                 kinds.setdefault(item.name.strip("\"'").lstrip("~/"), set()).add(item.kind)
+        if file.suffix == PYTHON_SUFFIX:
+            for match in _WRAPPER_CALL.finditer(file.read_text("utf-8", "replace")):
+                kinds.setdefault(match["name"].lstrip("~/"), set()).add(_WRAPPED_KINDS[match["kind"]])
     return kinds

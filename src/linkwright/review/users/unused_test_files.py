@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.review.files.cmake_branches import iterate_conditional_commands
-from linkwright.review.installed_paths import find_installed_paths
+from linkwright.review.installed_paths import find_targets
 from linkwright.review.users.installed_readers import READER_SUFFIXES
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -20,7 +20,7 @@ def is_test_file(version: Version, path: str) -> bool:
     if package is None or TEST_FOLDERS.isdisjoint(PurePosixPath(path).relative_to(package).parts):
         return False
     relative_path = PurePosixPath(path).relative_to(package)
-    return find_installed_paths(version, package, path) == frozenset() or _is_installed_for_tests(
+    return find_targets(version, package, path) == frozenset() or _is_installed_for_tests(
         version, package, relative_path
     )
 
