@@ -119,6 +119,15 @@ def test_renamed_link_that_moved_has_the_distance(package, compare):
     assert breaking(result) == ["link 'camera' renamed to 'head' (moved by 0.3 m)"]
 
 
+def test_renamed_link_that_rotated_has_the_angle(package, compare):
+    camera = """<link name="camera"><visual><geometry><mesh filename="package://arm_description/c.stl"/></geometry></visual></link>
+  <joint name="camera_joint" type="fixed"><parent link="lower"/><child link="camera"/></joint></robot>"""
+    package.commit({PATH: ARM.replace("</robot>", camera)})
+    turned = camera.replace('"camera', '"head').replace("<parent", '<origin rpy="0 0 1.5707963"/><parent')
+    package.write({PATH: ARM.replace("</robot>", turned)})
+    assert breaking(compare(package)) == ["link 'camera' renamed to 'head' (rotated by 90°)"]
+
+
 def test_renamed_moving_joint_that_moved_is_breaking(package, compare):
     text = MACRO.replace('"${name}_joint"', "\"${name + '_axis' if name == 'lower' else name + '_joint'}\"")
     package.write({"arm_description/urdf/segment.xacro": text.replace("length:=0.5", "length:=0.6")})

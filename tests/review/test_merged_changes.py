@@ -257,3 +257,47 @@ def test_interfaces_that_a_joint_loses_are_one_line(package, compare):
     assert str(change.reason) == (
         "controllers that claim 'upper_joint/pass_position' do not start; likewise for the others"
     )
+
+
+CONTROLLERS = """<robot name="arm">
+  <link name="base_link"><visual><geometry><box size="1 1 1"/></geometry>
+    <material name="orange"><color rgba="1 0.608 0 1"/></material></visual></link>
+  <gazebo>
+    <plugin name="sim::JointController" filename="a"><joint_name>hip</joint_name><p_gain>10</p_gain></plugin>
+    <plugin name="sim::JointController" filename="a"><joint_name>knee</joint_name><p_gain>10</p_gain></plugin>
+    <plugin name="sim::JointController" filename="a"><joint_name>toe</joint_name><p_gain>10</p_gain></plugin>
+  </gazebo>
+</robot>"""
+PLAIN = "arm_description/urdf/legs.urdf"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("<p_gain>10<", "<p_gain>20<",
+         "extension 'gazebo': plugin sim::JointController (hip) p_gain 10 -> 20; also 'knee', 'toe'"),
+        ("toe</joint_name><p_gain>10<", "toe</joint_name><p_gain>20<",
+         "extension 'gazebo': plugin sim::JointController (toe) p_gain 10 -> 20"),
+    ],
+)  # fmt: skip
+def test_plugins_of_the_same_name_are_told_apart_by_their_joints(repository, compare, old, new, expected):
+    repository.commit({PLAIN: CONTROLLERS})
+    repository.write({PLAIN: CONTROLLERS.replace(old, new)})
+    changes = subject(compare(repository), PLAIN).changes
+    assert [str(format_change(change)) for change in changes] == [expected]
+
+
+def test_plugin_inserted_before_others_of_its_name_does_not_shift_them(repository, compare):
+    first = '    <plugin name="sim::JointController" filename="a"><joint_name>hip</joint_name>'
+    other = first.replace("hip", "neck") + "<p_gain>1</p_gain></plugin>\n"
+    repository.commit({PLAIN: CONTROLLERS})
+    repository.write({PLAIN: CONTROLLERS.replace(first, other + first).replace("gain>10<", "gain>20<", 1)})
+    lines = sentences(subject(compare(repository), PLAIN))
+    assert [line.split(":", 1)[1].split("(")[1].split(")")[0] for line in lines] == ["neck", "hip"]
+
+
+@pytest.mark.parametrize(("color", "is_change"), [("1 0.607843137 0 1", False), ("1 0.604 0 1", True)])
+def test_colors_that_are_equal_in_8_bits_are_no_change(repository, compare, color, is_change):
+    repository.commit({PLAIN: CONTROLLERS})
+    repository.write({PLAIN: CONTROLLERS.replace("1 0.608 0 1", color)})
+    assert bool(compare(repository).subjects) == is_change

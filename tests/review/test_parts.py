@@ -318,3 +318,25 @@ def test_link_that_a_macro_makes_now_is_not_lost(library, compare):
     result = compare(library)
     assert "macro 'gripper': link ${name}_tip removed" in sentences(subject(result, TOOL))
     assert breaking(result) == []
+
+
+INSIDE = """<collision>
+        <xacro:if value="${side == 'left'}"><geometry><box size="1 1 1"/></geometry></xacro:if>
+        <xacro:unless value="${side == 'left'}"><geometry><box size="2 2 2"/></geometry></xacro:unless>
+      </collision>"""
+AROUND = """<xacro:if value="${side == 'left'}">
+        <collision><geometry><box size="1 1 1"/></geometry></collision>
+      </xacro:if>
+      <xacro:unless value="${side == 'left'}"><collision><geometry><box size="2 2 2"/></geometry></collision>
+      </xacro:unless>"""
+
+
+@pytest.mark.parametrize(
+    ("size", "expected"),
+    [("2 2 2", []), ("3 3 3", ["macro 'gripper': link ${name} collision geometry box size: 2 2 2 -> 3 3 3"])],
+)
+def test_conditions_that_move_around_a_collision_are_no_change(package, compare, size, expected):
+    collision = '<collision><geometry><box size="${width} 0.1 0.1"/></geometry></collision>'
+    package.commit({TOOL: GRIPPER.replace(collision, INSIDE)})
+    package.write({TOOL: GRIPPER.replace(collision, AROUND.replace("2 2 2", size))})
+    assert [line for part in compare(package).subjects for line in sentences(part)] == expected

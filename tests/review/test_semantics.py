@@ -205,3 +205,57 @@ def test_many_pairs_of_a_lost_link_are_summarized(package, compare):
     assert sentences(subject(compare(package), PATH)) == [
         "disable_collisions: 25 pairs removed: all pairs with cover, link_0 - link_1"
     ]
+
+
+def test_renamed_virtual_joint_is_renamed_in_the_groups_that_have_it(package, compare):
+    """Programs do not move a fixed joint."""
+    text = SRDF.replace('<joint name="left"/>', '<joint name="left"/><joint name="fixed"/>')
+    package.commit({PATH: text})
+    package.write({PATH: text.replace('"fixed"', '"to_world"').replace('type="to_world"', 'type="fixed"')})
+    (change,) = subject(compare(package), PATH).changes
+    assert str(change.sentence) == "virtual_joint 'fixed' renamed to 'to_world'"
+    assert change.reason is None
+
+
+def test_renamed_virtual_joint_that_moves_is_breaking(package, compare):
+    text = SRDF.replace('type="fixed"', 'type="planar"')
+    package.commit({PATH: text})
+    package.write({PATH: text.replace('"fixed"', '"to_world"')})
+    (change,) = subject(compare(package), PATH).changes
+    assert str(change.reason) == "controllers and programs that name the joint 'fixed' do not find it"
+
+
+TWO_HANDS = """<robot name="arms">
+  <group name="hands"><link name="palm"/></group>
+  <end_effector name="left" group="hands" parent_link="l_hand"/>
+  <end_effector name="right" group="hands" parent_link="r_hand"/>
+</robot>
+"""
+OTHER_LINKS = TWO_HANDS.replace("_hand", "_tip")
+REASON = "grasps of the end effector 'left' move 'l_tip' instead of 'l_hand' to their poses"
+
+
+def test_links_that_a_group_gets_in_addition_are_not_renamed(package, compare):
+    """An end effector with another parent link has grasps with another meaning."""
+    package.commit({PATH: TWO_HANDS})
+    package.write({PATH: OTHER_LINKS.replace('<link name="palm"/>', '<link name="l_tip"/><link name="r_tip"/>')})
+    changes = subject(compare(package), PATH).changes
+    assert "end_effector 'left': parent_link l_hand -> l_tip" in [str(change.sentence) for change in changes]
+    assert REASON in [str(change.reason) for change in changes]
+
+
+def test_links_that_both_robots_have_are_not_renamed(package, compare):
+    names = ("l_hand", "r_hand", "l_tip", "r_tip")
+    robot = '<robot name="arms">' + "".join(f'<link name="{name}"/>' for name in names) + "</robot>"
+    package.commit({PATH: TWO_HANDS, "arm_description/urdf/arms.urdf": robot})
+    package.write({PATH: OTHER_LINKS})
+    assert sentences(subject(compare(package), PATH)) == [
+        "end_effector 'left': parent_link l_hand -> l_tip",
+        "end_effector 'right': parent_link r_hand -> r_tip",
+    ]
+
+
+def test_links_with_other_names_in_the_same_places_are_renamed(package, compare):
+    package.commit({PATH: TWO_HANDS})
+    package.write({PATH: OTHER_LINKS})
+    assert sentences(subject(compare(package), PATH)) == ["links and joints renamed: l_hand -> l_tip, r_hand -> r_tip"]

@@ -255,9 +255,11 @@ class PartCheck:
                 yield difference
         old_name = next((before for before, after in comparison.links.items() if after == self._name), None)
         if old_name is not None:
-            distance = SharedFrames(old, self._robot, comparison.links).distance(old_name)
-            if distance is not None:
-                yield phrase("link '{name}': moved by {distance:.4g} m", name=self._name, distance=distance)
+            motion = SharedFrames(old, self._robot, comparison.links).motion(old_name)
+            if motion is not None and motion[0]:
+                yield phrase("link '{name}': moved by {distance:.4g} m", name=self._name, distance=motion[0])
+            elif motion is not None:
+                yield phrase("link '{name}': rotated by {angle:.3g}°", name=self._name, angle=motion[1])
 
     def _read_model(self, files: CommitFiles, commit: str) -> Model:
         name = self._history.name_in(commit)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -16,6 +17,8 @@ Array = NDArray[np.float64]
 UNMOVED = Placement(IDENTITY, (0.0, 0.0, 0.0))
 _TOLERANCE = 1e-6
 """The maximum difference, in m and between entries of rotation matrices, of a link that has not moved."""
+_MIN_ANGLE_DEG = 1e-4
+"""The minimum angle of a link that has rotated. Smaller ones are errors of rounding in the cosine."""
 
 
 class SharedFrames:
@@ -51,8 +54,8 @@ class SharedFrames:
             self.new_root = UNMOVED.seen_from(own_frames[self.reference]).inside(self.old[reference])
         self.new = {name: frame.inside(self.new_root) for name, frame in own_frames.items()}
 
-    def distance(self, old_name: str) -> float | None:
-        """Return the distance in m by which a link has moved.
+    def motion(self, old_name: str) -> tuple[float, float] | None:
+        """Return the distance in m and the angle in degrees by which a link has moved.
 
         The result is None if its pose is unchanged or cannot be compared.
         """
@@ -62,7 +65,11 @@ class SharedFrames:
         before, after = to_matrix(self.old[old_name]), to_matrix(self.new[new_name])
         if np.allclose(before, after, rtol=0.0, atol=_TOLERANCE):
             return None
-        return float(np.linalg.norm(before[:3, 3] - after[:3, 3]))
+        cosine = (np.trace(before[:3, :3].T @ after[:3, :3]) - 1.0) / 2.0
+        angle = math.degrees(math.acos(min(1.0, max(-1.0, float(cosine)))))
+        distance = float(np.linalg.norm(before[:3, 3] - after[:3, 3]))
+        motion = distance if distance > _TOLERANCE else 0.0, angle if angle > _MIN_ANGLE_DEG else 0.0
+        return motion if any(motion) else None
 
 
 def to_matrix(placement: Placement) -> Array:

@@ -9,8 +9,8 @@ from dataclasses import replace
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.changes import REMOVED_VALUE, Change, Location
 
-_PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+) (?P<property>.+)")
-"""A property of hardware of ros2_control below one of its joints, GPIOs or sensors."""
+_PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+|plugin \S+ \((?P<joint>[^()]+)\)) (?P<property>.+)")
+"""A property of hardware of ros2_control below one of its joints, GPIOs or sensors, or of a plugin for a joint."""
 _PARAMETER = re.compile(r"(?P<parent>(?:.* )?)(?P<parameter>param \S+)")
 """A parameter of hardware of ros2_control, or of one of its joints, as a whole."""
 _INTERFACE = re.compile(r"(?P<parent>(?:.* )?(?:command|state)_interface) \S+")
@@ -158,7 +158,7 @@ def _list_part_names(change: Change) -> tuple[str, ...]:
     if new_name is not None:
         return (f"{change.property_name} -> {new_name}",)
     part = _PART.fullmatch(change.property_name)
-    return (change.name,) if part is None else (part["part"],)
+    return (change.name,) if part is None else (part["joint"] or part["part"],)
 
 
 def _make_parameter_key(change: Change) -> Hashable | None:

@@ -26,7 +26,11 @@ def add_pose_motion(text: Phrase, old: Sequence[float], new: Sequence[float]) ->
         old: the old position in m, then roll, pitch and yaw in rad.
         new: the new position and rotation.
     """
-    distance, angle = math.dist(old[:3], new[:3]), compute_angle(old[3:], new[3:])
+    return add_motion(text, math.dist(old[:3], new[:3]), compute_angle(old[3:], new[3:]))
+
+
+def add_motion(text: Phrase, distance: float, angle: float) -> Phrase:
+    """Return a sentence about a moved frame with the distance in m and the angle in degrees, without those near 0."""
     if distance > _MIN_DISTANCE_M and angle > _MIN_ANGLE_DEG:
         return phrase(
             "{change} (moved by {distance:.4g} m, rotated by {angle:.3g}°)", change=text, distance=distance, angle=angle

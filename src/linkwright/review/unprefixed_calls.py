@@ -6,7 +6,7 @@ Source: ``handle_macro_call`` and ``eval_all`` of xacro 1.13 (``tag_name`` with 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from os import PathLike
 
 from linkwright.diagnostics import phrase, quoted_names
@@ -16,6 +16,9 @@ DESCRIPTION_SUFFIXES = (".xacro", ".urdf")
 _NAMESPACE, _ROOT = "xmlns:xacro", "<robot"
 _DEFINITION = re.compile(r"<(?:xacro:)?macro\s[^>]*?\bname\s*=\s*[\"'](?:xacro:)?([\w.\-]+)[\"']")
 _TAG = re.compile(r"<(/?)([A-Za-z_][\w.\-]*)(?=[\s/>])")
+_OPENING_TAG = re.compile(r"<([A-Za-z_][\w.\-]*)(?=[\s/>])")
+_PREFIX = "xacro:"
+_ANY_TAG = re.compile(r"<(xacro:|)([A-Za-z_][\w.\-]*)(?=[\s/>])")
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _STATEMENTS = frozenset({"macro", "property", "include", "if", "unless", "insert_block"})
 _TAGS_OF_URDF = frozenset(
@@ -30,15 +33,12 @@ _TAGS_OF_URDF = frozenset(
 """Tags of URDF, which a macro of the same name does not replace in this reading."""
 
 
-def find_prefixed_texts(texts: Mapping[str, str], manifests: Iterable[str]) -> dict[str | PathLike[str], str]:
+def find_prefixed_texts(texts: Mapping[str, str]) -> dict[str | PathLike[str], str]:
     """Return the texts in which xacro of ROS 1 expands tags without the prefix, with the prefix.
 
     Args:
         texts: the texts of all descriptions of a version, by path.
-        manifests: the texts of the manifests of the version.
     """
-    if not any(_is_of_ros1(text) for text in manifests):
-        return {}
     macros = find_macros(texts.values())
     prefixed: dict[str | PathLike[str], str] = {}
     for path, text in texts.items():
@@ -57,8 +57,9 @@ def find_unprefixed_calls(text: str, macros: Iterable[str]) -> list[str]:
     if _NAMESPACE not in text or _ROOT not in text:
         return []
     names = _STATEMENTS | frozenset(macros)
-    found = (match[2] for match in _TAG.finditer(_COMMENT.sub("", text)) if not match[1])
-    return [name for name in dict.fromkeys(found) if name in names]
+    if names.isdisjoint(_OPENING_TAG.findall(text)):
+        return []
+    return [name for name in dict.fromkeys(_OPENING_TAG.findall(_COMMENT.sub("", text))) if name in names]
 
 
 def _add_prefixes(text: str, macros: Iterable[str]) -> str:
@@ -66,15 +67,30 @@ def _add_prefixes(text: str, macros: Iterable[str]) -> str:
     return _TAG.sub(lambda match: f"<{match[1]}xacro:{match[2]}" if match[2] in names else match[0], text)
 
 
-def _is_of_ros1(manifest: str) -> bool:
+def is_of_ros1(manifest: str) -> bool:
+    """Return whether the text of a manifest is that of a package of ROS 1."""
     return "catkin" in manifest and "ament" not in manifest
 
 
 def compare_prefixes(
-    old_text: str, new_text: str, old_macros: Iterable[str], new_macros: Iterable[str]
+    old_text: str,
+    new_text: str,
+    find_old_macros: Callable[[], Iterable[str]],
+    find_new_macros: Callable[[], Iterable[str]],
 ) -> list[Change]:
-    """Return the changes that calls of macros get or lose the prefix."""
-    old, new = find_unprefixed_calls(old_text, old_macros), find_unprefixed_calls(new_text, new_macros)
+    """Return the changes that calls of macros get or lose the prefix.
+
+    Args:
+        old_text: the old text of a description.
+        new_text: the new text of the description.
+        find_old_macros: a function that returns all macros of the old version. It reads all descriptions, and is only
+            called if a tag with the prefix may be one without it in the other text.
+        find_new_macros: the same for the new version.
+    """
+    if not _may_change_prefixes(old_text, new_text):
+        return []
+    old = find_unprefixed_calls(old_text, find_old_macros())
+    new = find_unprefixed_calls(new_text, find_new_macros())
     changes = []
     for name_list, text, others in ((old, new_text, new), (new, old_text, old)):
         names = [name for name in name_list if name not in others and f"<xacro:{name}" in text]
@@ -86,3 +102,9 @@ def compare_prefixes(
             reason = phrase("xacro does not expand them since ROS Noetic")
             changes.append(Change(sentence, Effect.BREAKING, reason))
     return changes
+
+
+def _may_change_prefixes(old_text: str, new_text: str) -> bool:
+    """Return whether one text has a tag without the prefix that the other text has with it."""
+    old, new = (set(_ANY_TAG.findall(text)) for text in (old_text, new_text))
+    return any(("" if prefix else _PREFIX, name) in new for prefix, name in old)

@@ -21,7 +21,7 @@ from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import MANIFEST, SKIPPED_FOLDERS, SourceScan, package_name
 from linkwright.packages.share_layout import find_share_of_sources
 from linkwright.review.build_folders import find_build_files
-from linkwright.review.unprefixed_calls import DESCRIPTION_SUFFIXES, find_macros, find_prefixed_texts
+from linkwright.review.unprefixed_calls import DESCRIPTION_SUFFIXES, find_macros, find_prefixed_texts, is_of_ros1
 from linkwright.xmltree import Overlay
 
 TEST_FOLDERS = frozenset({"test", "tests"})
@@ -139,14 +139,19 @@ class Version:
     @cached_property
     def overlay(self) -> Overlay | None:
         """The descriptions of ROS 1 that call macros without the prefix, with the prefix; None if there are none."""
-        texts = {str(self.file(path)): self.text(path) for path in self.paths(DESCRIPTION_SUFFIXES)}
-        prefixed = find_prefixed_texts(texts, map(self.text, self.paths((MANIFEST,))))
+        if not any(is_of_ros1(self.text(path)) for path in self.paths((MANIFEST,))):
+            return None
+        prefixed = find_prefixed_texts({str(self.file(path)): self.text(path) for path in self._descriptions})
         return Overlay(prefixed) if prefixed else None
 
     @cached_property
     def macros(self) -> frozenset[str]:
         """The names of the macros that the descriptions of the version define."""
-        return find_macros(map(self.text, self.paths(DESCRIPTION_SUFFIXES)))
+        return find_macros(map(self.text, self._descriptions))
+
+    @cached_property
+    def _descriptions(self) -> list[str]:
+        return list(self.paths(DESCRIPTION_SUFFIXES))
 
     @cached_property
     def shares(self) -> Mapping[str, Path]:

@@ -12,6 +12,7 @@ from itertools import zip_longest
 from linkwright.descriptions.comparison.difference import Difference, Kind, location_of
 from linkwright.descriptions.comparison.gazebo_blocks import GAZEBO, joined_block
 from linkwright.descriptions.comparison.numbers import normalize_numbers
+from linkwright.descriptions.comparison.plugin_parts import find_plugin_parts
 from linkwright.descriptions.comparison.renamed_elements import renamed_elements
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.xmltree import Element
@@ -85,8 +86,9 @@ class ElementComparison:
         """
         contents = [[self._content(element, side) for element in elements] for side, elements in enumerate((old, new))]
         common = Counter(contents[0]) & Counter(contents[1])
+        parts = find_plugin_parts((old, new))
         old_rest, new_rest = (
-            _remove_common(_index_by_key(elements), keys, common, names)
+            _remove_common(_index_by_key(elements, parts), keys, common, names, parts)
             for elements, keys, names in zip((old, new), contents, (self.renamed, {}), strict=True)
         )
         yield from self._take_renamed(old, new, old_rest, new_rest)
@@ -183,14 +185,14 @@ def _to_comparable(attribute: str, text: str) -> str:
     return " ".join(text.split()) if attribute in _ATTRIBUTES_WITHOUT_NUMBERS else normalize_numbers(text)
 
 
-def _index_by_key(elements: Sequence[Element]) -> dict[str, Element]:
+def _index_by_key(elements: Sequence[Element], parts: Mapping[int, str]) -> dict[str, Element]:
     """Return elements in document order, by tag and name or reference.
 
-    The keys of elements with the same tag and name are numbered.
+    The keys of elements with the same tag and name are numbered, unless they are plugins for different parts.
     """
     keyed_elements: dict[str, Element] = {}
     for element in elements:
-        name = _find_name(element)
+        name = _find_name(element, parts)
         key = f"{element.tag} {name}" if name else element.tag
         number = 2
         unique_key = key
@@ -206,6 +208,7 @@ def _remove_common(
     contents: Sequence[Hashable],
     common: Counter[Hashable],
     renamed: Mapping[str, str],
+    parts: Mapping[int, str],
 ) -> _Rest:
     """Return the elements that have no counterpart, with their keys, by tag and name.
 
@@ -214,6 +217,7 @@ def _remove_common(
         contents: the contents of the elements.
         common: the number of counterparts of each content.
         renamed: the new names of renamed links and joints, by old name.
+        parts: the part of each plugin that has siblings of the same name, by the identity of the element.
     """
     remaining = Counter(common)
     unmatched: _Rest = {}
@@ -221,7 +225,8 @@ def _remove_common(
         if remaining[content]:
             remaining[content] -= 1
         else:
-            name = _find_name(element) or ""
+            part = parts.get(id(element), "")
+            name = _find_name(element, {id(element): renamed.get(part, part)} if part else {}) or ""
             unmatched.setdefault(f"{element.tag} {renamed.get(name, name)}", []).append((key, element))
     return unmatched
 
@@ -231,11 +236,14 @@ def _join_gazebo_elements(base: str, items: Sequence[tuple[str, Element]]) -> li
     return [(base.strip(), joined_block([element for _, element in items]))]
 
 
-def _find_name(element: Element) -> str | None:
+def _find_name(element: Element, parts: Mapping[int, str]) -> str | None:
     """Return the name that identifies an element among its siblings, or None if it has none.
 
     The included models of SDF have their names, or else their addresses, in children.
     """
+    part = parts.get(id(element))
+    if part:
+        return f"{element.attributes['name']} ({part})"
     name = element.attributes.get("name") or element.attributes.get("reference")
     if name is None and element.tag == "include":
         child = element.first("name") or element.first("uri")

@@ -19,6 +19,9 @@ ROTATION_TOLERANCE = 1e-6
 RELATIVE_TOLERANCE = 1e-6
 """The difference up to which other numbers are equal, as a fraction of the larger magnitude."""
 
+COLOR_TOLERANCE = 0.5 / 255
+"""The difference up to which color channels from 0 to 1 are equal: half a step of images with 8 bits."""
+
 Normalize = Callable[[str], str]
 
 
@@ -32,6 +35,7 @@ class Fact:
         unit: the unit of the numbers.
         rotation: the quaternion (x, y, z, w) of the numbers, if they are roll, pitch and yaw.
         is_direction: whether the numbers are an axis, whose length does not matter.
+        min_tolerance: the difference up to which small numbers are equal, too.
         element: the element with the property or, for a default, the nearest enclosing element.
         attribute: the name of the element's attribute with the property.
     """
@@ -43,6 +47,7 @@ class Fact:
     attribute: str
     rotation: tuple[float, ...] = ()
     is_direction: bool = False
+    min_tolerance: float = 0.0
 
     def equals(self, other: Fact, normalize: Normalize, normalize_other: Normalize) -> bool:
         """Return whether a property is equal in two descriptions, within the tolerances.
@@ -63,7 +68,7 @@ class Fact:
     def _is_close(self, value: float, other_value: float) -> bool:
         if value == other_value:
             return True
-        min_tolerance = LENGTH_TOLERANCE if self.unit == "m" else 0.0
+        min_tolerance = LENGTH_TOLERANCE if self.unit == "m" else self.min_tolerance
         return abs(value - other_value) <= max(min_tolerance, RELATIVE_TOLERANCE * max(abs(value), abs(other_value)))
 
     @property
@@ -201,7 +206,7 @@ def _make_visual_block(visual: Visual) -> Block:
     block.words("material", visual.material_name, element, "name")
     if material is not None and material.rgba is not None:
         child = nearest(material.element, "color")
-        block.facts["color rgba"] = Fact("", material.rgba, "", child or element, "rgba")
+        block.facts["color rgba"] = Fact("", material.rgba, "", child or element, "rgba", min_tolerance=COLOR_TOLERANCE)
     if material is not None and material.texture:
         child = nearest(material.element, "texture")
         block.words("texture", material.texture, child or element, "filename")

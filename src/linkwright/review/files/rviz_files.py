@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -137,15 +138,19 @@ def _read_properties(node: yaml.Node, path: str) -> Iterator[tuple[str, str]]:
 def _compare_values(pair: FilePair, old: Mapping[str, str], new: Mapping[str, str]) -> None:
     for name in dict.fromkeys([*new, *old]):
         before, after = old.get(name), new.get(name)
-        if name.startswith(_GLOBAL_PREFIX) and before != after:
-            option = name.removeprefix(_GLOBAL_PREFIX)
-            pair.add(phrase("{parameter} {old} -> {new}", parameter=option, old=before or "-", new=after or "-"), None)
+        if name.startswith(_GLOBAL_PREFIX) and not _are_equal(before, after):
+            pair.add(_format_change(name.removeprefix(_GLOBAL_PREFIX), before, after), None)
     old_view, new_view = (
         {name: values[name] for name in values if name.startswith(_VIEW_PREFIX)} for values in (old, new)
     )
-    if old_view != new_view:
+    changes = [
+        _format_change(name.removeprefix(_VIEW_PREFIX), old_view.get(name), new_view.get(name))
+        for name in dict.fromkeys([*new_view, *old_view])
+        if not _are_equal(old_view.get(name), new_view.get(name))
+    ]
+    if changes:
         classes = [view.get(f"{_VIEW_PREFIX}Class", "-") for view in (old_view, new_view)]
-        text = phrase("view changed")
+        text = _join_changes(phrase("view: {changes}", changes=joined(changes[:_MAX_PROPERTIES])), changes)
         if classes[0] != classes[1]:
             text = phrase("view {old} -> {new}", old=classes[0], new=classes[1])
         pair.add(text, None)
@@ -191,18 +196,42 @@ def _compare_display(old: _Item, new: _Item) -> Iterator[Phrase]:
             "display '{name}': topic {old} -> {new}", name=new.name, old=old.topic or "-", new=new.topic or "-"
         )
     changes = [
-        phrase("{parameter} {old} -> {new}", parameter=name, old=before or "-", new=after or "-")
+        _format_change(name, old.properties[name], new.properties[name])
         for name in dict.fromkeys([*new.properties, *old.properties])
         if name != _TOPIC and name in old.properties and name in new.properties
-        if (before := old.properties[name]) != (after := new.properties[name])
+        if not _are_equal(old.properties[name], new.properties[name])
     ]
-    if not changes:
-        return
-    text = phrase("display '{name}': {changes}", name=new.name, changes=joined(changes[:_MAX_PROPERTIES]))
+    if changes:
+        text = phrase("display '{name}': {changes}", name=new.name, changes=joined(changes[:_MAX_PROPERTIES]))
+        yield _join_changes(text, changes)
+
+
+def _are_equal(old: str | None, new: str | None) -> bool:
+    """Return whether two values are equal as texts, or as numbers of 32 bits, with which RViz calculates."""
+    try:
+        return old == new or (old is not None and new is not None and _to_float32(old) == _to_float32(new))
+    except (ValueError, OverflowError):
+        return False
+
+
+def _to_float32(text: str) -> bytes:
+    return struct.pack("f", float(text))
+
+
+def _format_change(name: str, old: str | None, new: str | None) -> Phrase:
+    if not old:
+        return phrase("{parameter} {value} added", parameter=name, value=new or "''")
+    if not new:
+        return phrase("{parameter} {value} removed", parameter=name, value=old)
+    return phrase("{parameter} {old} -> {new}", parameter=name, old=old, new=new)
+
+
+def _join_changes(text: Phrase, changes: Sequence[Phrase]) -> Phrase:
+    """Return a line with the first changes, and with the number of the others."""
     hidden_count = len(changes) - _MAX_PROPERTIES
-    if hidden_count > 0:
-        text = counted("{change} and {count} more value", "{change} and {count} more values", hidden_count, change=text)
-    yield text
+    if hidden_count <= 0:
+        return text
+    return counted("{change} and {count} more value", "{change} and {count} more values", hidden_count, change=text)
 
 
 def _compare_classes(pair: FilePair, old: Sequence[_Item], new: Sequence[_Item], title: Phrase) -> None:

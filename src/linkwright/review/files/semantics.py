@@ -10,9 +10,15 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined, joined_first, phrase, quoted_names, term
 from linkwright.lint.targets import find_files_and_packages
+from linkwright.review.breaking import joint_name_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.semantic_names import find_renamed_names, report_renamed_names
+from linkwright.review.files.semantic_names import (
+    LINK_ATTRIBUTES,
+    find_renamed_names,
+    find_renamed_virtual_joints,
+    report_renamed_names,
+)
 from linkwright.review.lenient_xml import read_lenient_root
 from linkwright.review.versions import Version
 from linkwright.xmltree import Element
@@ -27,6 +33,7 @@ _JOINT_TAG = re.compile(r"<joint\s[^<>]*>")
 _FIXED = re.compile(r"\stype\s*=\s*[\"']fixed[\"']")
 _NAME = re.compile(r"\sname\s*=\s*[\"']([^\"']*)[\"']")
 _VIRTUAL_JOINT = "virtual_joint"
+_PARENT_LINK = "parent_link"
 _PARENT_FRAME = "parent_frame"
 """The attribute of a virtual joint with the frame in which MoveIt plans."""
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
@@ -58,13 +65,15 @@ def compare_semantics(pair: FilePair) -> None:
 
 def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
     """Compare two semantic descriptions by their root elements."""
-    new_names = find_renamed_names(old_root, new_root)
+    new_names = find_renamed_names(pair, old_root, new_root)
+    all_new_names = new_names | find_renamed_virtual_joints(old_root, new_root)
     old, new = (
         {(entry.tag, entry.name): entry for entry in _read_entries(root, names)}
-        for root, names in ((old_root, new_names), (new_root, {}))
+        for root, names in ((old_root, all_new_names), (new_root, {}))
     )
     renamed = dict(_find_renamed(old, new))
     passive_joints = {name for tag, name in new if tag == "passive_joint"}
+    passive_joints |= {entry.name for entry in old.values() if _is_fixed_virtual_joint(entry)}
     if new_names:
         fixed_joints = {*passive_joints, *_find_fixed_joints(pair.versions.old)}
         report_renamed_names(pair, new_root, new_names, fixed_joints)
@@ -82,7 +91,10 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
         if key in renamed:
             text = phrase("{entry} renamed to '{name}'", entry=_format_title(entry), name=new[renamed[key]].name)
             location = pair.location(new[renamed[key]].element.span())
-            pair.add(text, location, find_removal_reason(entry.tag, entry.name))
+            reason = find_removal_reason(entry.tag, entry.name)
+            if entry.tag == _VIRTUAL_JOINT and not _is_fixed_virtual_joint(entry):
+                reason = joint_name_reason(entry.name)
+            pair.add(text, location, reason)
         elif key not in new:
             location = pair.location(entry.element.span(), is_old=True)
             reason = find_removal_reason(entry.tag, entry.name) or _find_planning_frame_reason(entry, new.values())
@@ -139,7 +151,11 @@ def _read_entries(root: Element, new_names: Mapping[str, str]) -> Iterator[_Entr
             values = {_format_member(part, new_names): "" for part in element.elements()}
         else:
             name = new_names.get(name, name) if element.tag == "passive_joint" else name
-            values = {key: new_names.get(text, text) for key, text in element.attributes.items() if key != "name"}
+            values = {
+                key: new_names.get(text, text) if key in LINK_ATTRIBUTES else text
+                for key, text in element.attributes.items()
+                if key != "name"
+            }
         yield _Entry(element.tag, name, values, element)
 
 
@@ -204,6 +220,7 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive_joints: C
         text = phrase("{entry}: {changes}", entry=_format_title(new), changes=joined_first(changes, MAX_NAMES))
         reason = _find_lost_joints_reason(pair.versions.old, old, new, passive_joints)
         reason = reason or _find_tip_reason(old, new) or _find_planning_frame_reason(old, [new])
+        reason = reason or _find_parent_link_reason(old, new)
         pair.add(text, pair.location(new.element.span()), reason)
 
 
@@ -218,6 +235,26 @@ def _find_planning_frame_reason(old: _Entry, new: Iterable[_Entry]) -> Phrase | 
     if not is_lost or any("$" in other for other in (frame, *frames) if other):
         return None
     return phrase("MoveIt no longer plans in the frame '{name}'", name=frame)
+
+
+def _is_fixed_virtual_joint(entry: _Entry) -> bool:
+    return entry.tag == _VIRTUAL_JOINT and entry.values.get("type") == "fixed"
+
+
+def _find_parent_link_reason(old: _Entry, new: _Entry) -> Phrase | None:
+    """Return the reason why another parent link of an end effector is breaking; None for other changes.
+
+    A grasp gives the pose of this link, see ``PickPlan`` of MoveIt.
+    """
+    links = [entry.values.get(_PARENT_LINK, "") for entry in (old, new)]
+    if old.tag != "end_effector" or links[0] == links[1] or not all(links) or "$" in str(links):
+        return None
+    return phrase(
+        "grasps of the end effector '{name}' move '{new}' instead of '{old}' to their poses",
+        name=new.name,
+        new=links[1],
+        old=links[0],
+    )
 
 
 def _find_lost_joints_reason(

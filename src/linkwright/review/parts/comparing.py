@@ -136,7 +136,7 @@ class _Comparer:
             changes += pair.changes
             versions = self._versions
             texts = versions.old.text(file.old_path), versions.new.text(file.new_path)
-            changes += compare_prefixes(*texts, versions.old.macros, versions.new.macros)
+            changes += compare_prefixes(*texts, lambda: versions.old.macros, lambda: versions.new.macros)
         return Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, changes)
 
     def find_left_uses(self, files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:

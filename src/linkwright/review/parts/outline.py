@@ -18,6 +18,7 @@ from linkwright.xmltree import Document, Element, Overlay
 
 ARG, INCLUDE, MACRO, PROPERTY = "xacro:arg", "xacro:include", "xacro:macro", "xacro:property"
 _CONDITIONS = {"xacro:if": "if", "xacro:unless": "unless"}
+_SHAPES = frozenset({"visual", "collision"})
 _CONDITION_TAGS = {word: tag for tag, word in _CONDITIONS.items()}
 _XACRO = "xacro:"
 STATEMENTS = frozenset(
@@ -121,11 +122,32 @@ def iterate_items(element: Element, conditions: tuple[str, ...] = ()) -> Iterato
     for child in element.elements():
         if child.tag in (ARG, MACRO):
             continue
-        word = _CONDITIONS.get(child.tag)
-        if word is None:
-            yield Item(_make_item_key(child), child, conditions)
+        if child.tag not in _CONDITIONS:
+            for element, inner_conditions in _split_by_conditions(child):
+                yield Item(_make_item_key(child), element, (*conditions, *inner_conditions))
         else:
-            yield from iterate_items(child, (*conditions, f"{word} {child.attributes.get('value', '')}"))
+            yield from iterate_items(child, (*conditions, _format_condition(child)))
+
+
+def _split_by_conditions(element: Element) -> Iterator[tuple[Element, tuple[str, ...]]]:
+    """Yield an element, or one for each condition if all contents of a visual or collision depend on conditions.
+
+    The condition then means the same around the element as inside it.
+    """
+    children = list(element.elements())
+    if element.tag not in _SHAPES or not children or any(child.tag not in _CONDITIONS for child in children):
+        yield element, ()
+        return
+    for condition in dict.fromkeys(map(_format_condition, children)):
+        part = Element(element.tag, dict(element.attributes), element.source, element.offset, element.origin)
+        part.children = [
+            inner for child in children if _format_condition(child) == condition for inner in child.children
+        ]
+        yield part, (condition,)
+
+
+def _format_condition(element: Element) -> str:
+    return f"{_CONDITIONS[element.tag]} {element.attributes.get('value', '')}"
 
 
 def join_items(items: Sequence[Item], conditions: tuple[str, ...] | None) -> Item:

@@ -22,7 +22,7 @@ from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.joint_limits import find_limits_reason
 from linkwright.review.left_names import find_left_names
 from linkwright.review.merging import merge_changes, merge_reasons
-from linkwright.review.motions import compute_angle
+from linkwright.review.motions import add_motion, compute_angle
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.parts.expanded import find_expanded_elements
 from linkwright.review.plugins import (
@@ -162,7 +162,8 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
         text = added_links.sentence(difference) or format_difference(difference)
         if difference.subject == "link" and difference.kind == "renamed":
             has_known_poses = partial is None or not partial.has_stand_ins
-            text = _add_motion(text, frames.distance(difference.old or "") if has_known_poses else None)
+            motion = frames.motion(difference.old or "") if has_known_poses else None
+            text = text if motion is None else add_motion(text, *motion)
         yield Change(
             text,
             effect,
@@ -208,11 +209,6 @@ def _is_expression_in_urdf(location: DifferenceLocation) -> bool:
         return False
     lines = read_bytes(path).splitlines()
     return location.span.line <= len(lines) and _FIND_EXPRESSION in lines[location.span.line - 1]
-
-
-def _add_motion(text: Phrase, distance: float | None) -> Phrase:
-    """Return the sentence about a renamed link, with the distance in m if it moved."""
-    return text if distance is None else phrase("{change} (moved by {distance:.4g} m)", change=text, distance=distance)
 
 
 def _find_mesh_location(pair: FilePair, case: Case, difference: Difference) -> Location | None:

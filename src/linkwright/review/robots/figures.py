@@ -18,7 +18,7 @@ from linkwright.kinematics import KinematicTree
 from linkwright.review.changes import Figure
 from linkwright.review.frames import to_matrix
 from linkwright.review.quantities import compare_quantity
-from linkwright.review.robots.reach import Chain, have_equal_distances, compare_reaches
+from linkwright.review.robots.reach import Chain, compare_reaches, have_equal_distances
 from linkwright.urdf import Collision, Mesh, Robot, Visual
 from linkwright.xmltree import Element
 
@@ -141,7 +141,9 @@ class RobotMeasures:
         chains = {}
         for link, joints in self._find_chain_ends().items():
             moving = [index for index, name in enumerate(names) if name in joints]
-            chains[link] = Chain(names, moving, turns, low, high, partial(self._compute_distances, self._tree.link_index(link)))
+            chains[link] = Chain(
+                names, moving, turns, low, high, partial(self._compute_distances, self._tree.link_index(link))
+            )
         return chains
 
     def _compute_distances(self, link: int, positions: Array) -> Array:
