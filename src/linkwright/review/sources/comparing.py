@@ -24,6 +24,7 @@ from linkwright.review.sources.details import (
 )
 from linkwright.review.sources.function_changes import NameChange, find_ignored_reason, merge_function_changes
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
+from linkwright.review.sources.merged_renames import merge_renames
 from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
 from linkwright.review.sources.names import (
     PYTHON_SUFFIX,
@@ -106,7 +107,7 @@ class _SourcePair(WholeSourcePair):
         changes += self.compare_header(old_names, new_names)
         changes += self.compare_packages(are_headers_told=not changes)
         changes += compare_statements(self.old, self.new, self.file, changes)
-        yield from changes
+        yield from merge_renames(changes)
 
     def _compare_kind(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changes to the names of a kind."""

@@ -24,6 +24,7 @@ _SERVICES_DEFAULT = re.compile(
 _DEFAULT_QOS = "default"
 _MAX_ARGUMENT_CHARACTERS = 80
 """The maximum number of characters of shown arguments of an added function or class."""
+_RENAME = "{kind} {old} renamed to {new}"
 _DEFAULT = " = ..."
 """The end of the text of a function parameter with a default."""
 
@@ -44,6 +45,11 @@ def format_names(items: Sequence[SourceName]) -> Phrase:
 def format_rename(old: SourceName, new: SourceName) -> Phrase:
     """Return the change of a name."""
     return phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=format_name(old), new=format_name(new))
+
+
+def is_rename(sentence: Phrase) -> bool:
+    """Return whether a sentence is the change of a name."""
+    return sentence.template == _RENAME
 
 
 def compare_computed(
