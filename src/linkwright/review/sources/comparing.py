@@ -335,8 +335,8 @@ class _SourcePair(WholeSourcePair):
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self.is_interface(path):
             return None
-        if items[0].kind is NameKind.FUNCTION:
-            items = [item for item in items if self.can_be_linked(item.name)]
+        if items[0].kind in _DECLARED_KINDS:
+            items = [item for item in items if self.can_be_linked(item.name, item.kind)]
         lost = [item for item in items if not self._is_left_to_others(item)]
         if not lost:
             return find_other_node_reason(items) if items else None

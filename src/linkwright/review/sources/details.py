@@ -11,7 +11,7 @@ from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_same_type
 from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
-from linkwright.review.sources.qos import find_qos_reason, normalize_qos
+from linkwright.review.sources.qos import find_depth, find_qos_reason, normalize_qos
 from linkwright.review.sources.signatures import parse_signature
 
 _KNOWN_IN_BOTH = (Detail.QOS, Detail.READ_AS, Detail.ARGUMENTS, Detail.RESULT, Detail.BASES, Detail.CREATED_IN)
@@ -86,6 +86,7 @@ def compare_details(
     old_details, new_details = dict(old.details), dict(new.details)
     for detail in Detail:
         before, after = old_details.get(detail), new_details.get(detail)
+        sides = (before, old_details), (after, new_details)
         if before == after or (detail in _KNOWN_IN_BOTH and None in (before, after)):
             continue
         if detail is Detail.DEFAULT:
@@ -95,6 +96,10 @@ def compare_details(
             continue  # the line about the default shows the type
         if detail is Detail.QOS and normalize_qos(before or "") == normalize_qos(after or ""):
             continue
+        if detail is Detail.QUEUE and None in (before, after):  # a depth is a QoS in ROS 2
+            before, after = (item or find_depth(side.get(Detail.QOS, "")) for item, side in sides)
+            if before == after or None in (before, after):
+                continue
         if detail is Detail.READ_AS and normalize_read_type(before or "") == normalize_read_type(after or ""):
             continue
         if detail is Detail.CONSTANT and after is not None:
