@@ -72,6 +72,7 @@ from linkwright.review.sources.reading import forget_source_names
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.users.left_robot_names import find_left_robot_names
 from linkwright.review.users.lost_files import find_lost_files
+from linkwright.review.users.lost_submodules import is_no_longer_used
 from linkwright.review.users.references import find_lost_references
 from linkwright.review.users.searches import SEARCHES
 from linkwright.review.versions import Version, Versions
@@ -271,6 +272,8 @@ class _Reviewer:
         for file in self._changed_files:
             if self._is_removed_submodule(file):
                 change = Change(phrase("submodule removed"), Effect.BREAKING, reason)
+                if is_no_longer_used(self._versions, PurePosixPath(file.path).name):
+                    change = Change(change.sentence)
                 yield Subject(SubjectKind.MANIFEST, file.path, file.old_path, None, [change])
 
     def _is_removed_submodule(self, file: ChangedFile) -> bool:
