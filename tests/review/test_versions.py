@@ -227,17 +227,20 @@ def test_submodule_change_is_a_note(package, compare, tmp_path):
     assert result.notes == []
 
 
-def test_removed_submodule_that_the_files_no_longer_name_breaks_nobody(package, compare, tmp_path):
+@pytest.mark.parametrize("is_used", [False, True])
+def test_removed_submodule_that_nothing_uses_breaks_nobody(package, compare, tmp_path, is_used):
     other = Repository(tmp_path / "other")
     other.commit({"a.urdf": "<robot name='a'><link name='a'/></robot>"})
-    package.git("submodule", "--quiet", "add", other.root.as_uri(), "vendor_arm")
-    manifest = PACKAGE_XML.replace("xacro", "vendor_arm")
-    package.commit({"arm_description/package.xml": manifest})
-    package.git("rm", "--quiet", "vendor_arm")
-    package.commit({"arm_description/package.xml": PACKAGE_XML})
+    package.git("submodule", "--quiet", "add", other.root.as_uri(), "vendor")
+    manifest = (package.root / "arm_description/package.xml").read_text(encoding="utf-8")
+    depend = "  <exec_depend>vendor</exec_depend>\n</package>"
+    package.commit({"arm_description/package.xml": manifest.replace("</package>", depend)})
+    package.git("rm", "--quiet", "vendor")
+    uses = {"arm_description/scripts/load.py": "import vendor\n"} if is_used else {}
+    package.commit({"arm_description/package.xml": manifest, **uses})
     result = compare(package, "HEAD~1..HEAD")
-    assert "submodule removed" in {str(each.sentence) for found in result.subjects for each in found.changes}
-    assert "submodule removed" not in breaking(result)
+    assert ("submodule removed" in breaking(result)) == is_used
+    assert "submodule removed" in sentences(subject(result, "vendor"))
 
 
 def lose_contents(repository, commit, path):

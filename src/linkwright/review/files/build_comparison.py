@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import TypeAlias
@@ -77,10 +77,14 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             installed = {fact.name for facts in (old, new) for fact in facts.facts if fact.kind in INSTALLED_KINDS}
             added = [fact for fact in added if fact.name not in installed | _find_test_programs(old)]
             removed = [fact for fact in removed if fact.name not in installed | _find_test_programs(new)]
-        _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new))
+        private = old.private_libraries if kind is FactKind.BUILT_LIBRARY else frozenset()
+        _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new), private)
         if kind is FactKind.STOP:
             _report_reworded_errors(pair, removed, added)
-        _report_unpaired(pair, kind, removed, added, is_replaced=_exports_folders_otherwise(kind, new))
+        unused = [fact for fact in removed if fact.name in private]
+        _report_unpaired(pair, kind, unused, [], is_replaced=True)
+        used = [fact for fact in removed if fact not in unused]
+        _report_unpaired(pair, kind, used, added, is_replaced=_exports_folders_otherwise(kind, new))
     _report_conditions(pair, conditions)
     _report_repeated_exports(pair, old, new)
     compare_installed_files(pair, old, new)
@@ -192,7 +196,12 @@ def _report_repeated_exports(pair: FilePair, old: BuildFacts, new: BuildFacts) -
 
 
 def _report_renamed(
-    pair: FilePair, kind: FactKind, removed: list[Fact], added: list[Fact], targets: Mapping[str, str]
+    pair: FilePair,
+    kind: FactKind,
+    removed: list[Fact],
+    added: list[Fact],
+    targets: Mapping[str, str],
+    private: Collection[str],
 ) -> None:
     """Report the renamed facts, and remove them from both lists.
 
@@ -202,6 +211,7 @@ def _report_renamed(
         removed: the facts of the old version.
         added: the facts of the new version.
         targets: the new names of targets that have the same sources, by old name.
+        private: the names of facts that nothing outside of the package uses.
     """
     names = PackageNames(find_renamed_packages(pair.versions))
     for old in list(removed):
@@ -214,7 +224,8 @@ def _report_renamed(
             removed.remove(old)
             added.remove(new)
             text = phrase("{kind}: '{old}' renamed to '{new}'", kind=kind.title, old=old.name, new=new.name)
-            pair.add(text, pair.location(new.span), None if is_test_condition(old.condition) else kind.reason)
+            is_harmless = old.name in private or is_test_condition(old.condition)
+            pair.add(text, pair.location(new.span), None if is_harmless else kind.reason)
 
 
 def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:

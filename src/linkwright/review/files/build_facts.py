@@ -171,6 +171,7 @@ class BuildFacts:
         has_unknown_sources: whether targets may have other sources than `targets` contains.
         has_library: whether others may call code outside of headers, because the package does not only build programs.
         include_folders: the folders relative to the prefix below which other packages find headers.
+        private_libraries: the libraries that only targets of the package use.
         output_names: the names of the files of targets that have another name, by target.
     """
 
@@ -187,6 +188,7 @@ class BuildFacts:
     component_programs: dict[str, str] = field(default_factory=dict)
     has_library: bool = True
     has_unknown_sources: bool = False
+    private_libraries: frozenset[str] = frozenset()
     output_names: Mapping[str, str] = field(default_factory=dict)
 
     @property

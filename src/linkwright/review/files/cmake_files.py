@@ -24,7 +24,13 @@ from linkwright.review.files.build_facts import (
 )
 from linkwright.review.files.cmake_branches import find_conditions, iterate_conditional_commands
 from linkwright.review.files.cmake_headers import find_header_paths, find_include_folders
-from linkwright.review.files.cmake_targets import builds_test, compare_targets, has_unknown_sources, read_targets
+from linkwright.review.files.cmake_targets import (
+    builds_test,
+    compare_targets,
+    find_private_libraries,
+    has_unknown_sources,
+    read_targets,
+)
 from linkwright.review.versions import Version
 
 CMAKE_FILE = "CMakeLists.txt"
@@ -122,6 +128,7 @@ def read_cmake_facts(version: Version, path: str, options: Iterable[str] = ()) -
     exported_folders = [fact.name for fact in facts.facts if fact.kind is FactKind.EXPORTED_FOLDER]
     facts.header_paths = frozenset(find_header_paths(commands, exported_folders))
     facts.component_programs = dict(_read_component_programs(commands))
+    facts.private_libraries = frozenset(find_private_libraries(commands, facts.targets, file.parent))
     facts.has_unknown_sources = has_unknown_sources(commands) or bool(program.unknown)
     facts.has_library = not _builds_only_programs(commands) or bool(program.unknown)
     facts.include_folders = frozenset(find_include_folders(commands))

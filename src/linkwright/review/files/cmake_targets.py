@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, phrase
@@ -24,6 +25,10 @@ _TEST_PROGRAM_COMMAND = re.compile(r"(\w+_)?add_(\w*_)?(gtest|gmock|gbenchmark|g
 _TEST_SOURCE = re.compile(r".+\.(c|cc|cpp|cxx|cu|py)")
 """A source among the arguments of a test, which also has a launch file, a timeout and an environment."""
 _LINK_COMMANDS = frozenset({"target_link_libraries", "ament_target_dependencies", "rosbuild_link_boost"})
+_LOADED = re.compile(
+    r"\b[A-Z]\w*(?:REGISTER|EXPORT|DECLARE)\w*\s*\(|\b[A-Z]\w*_MODULE\w*\s*\(|\bextern\s+\"C\"|\bPyInit_"
+)
+"""A class or function that programs load from a library at run time."""
 _VARIABLE = re.compile(r"\$\{(\w+?)_(LIBRARIES|LIBRARY|TARGETS|LIBS)\}", re.IGNORECASE)
 
 
@@ -61,6 +66,30 @@ def has_unknown_sources(commands: Iterable[Command]) -> bool:
         if command.name in _SOURCE_COMMANDS or builds_test(command.name)
         for argument in command.arguments
     )
+
+
+def find_private_libraries(
+    commands: Sequence[Command], targets: Mapping[str, TargetParts], folder: Path
+) -> Iterator[str]:
+    """Yield the libraries that only targets of their package of catkin use.
+
+    The package does not export them, and their sources neither register plugins nor have functions that programs load
+    by name. Libraries whose sources are not known are left out.
+
+    Args:
+        commands: the commands of the build file.
+        targets: the parts of targets, by target.
+        folder: the folder of the package.
+    """
+    exports = [command.words for command in commands if command.name == "catkin_package"]
+    if not exports or any(is_open(word) for words in exports for word in words):
+        return
+    exported = {word for words in exports for word in words}
+    for name, parts in targets.items():
+        sources = [folder / source for source in parts.sources]
+        is_known = bool(sources) and name not in exported and all(file.is_file() for file in sources)
+        if is_known and not any(_LOADED.search(file.read_text("utf-8", errors="replace")) for file in sources):
+            yield name
 
 
 def builds_test(command: str) -> bool:

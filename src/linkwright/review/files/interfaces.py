@@ -73,7 +73,7 @@ def _report_ros1_types(pair: FilePair, old: Mapping[str, Structure], new: Mappin
         locations = _Locations(pair, index, structure.type_name)
         for field in [field for field in structure.fields if field in old_fields]:
             text = field.type.to_msg_text()
-            old_text = _ROS2_TYPE.sub(lambda match: match[1].lower(), text)
+            old_text = _format_type(field, is_ros1=True)
             if old_text != text:
                 sentence = phrase("field '{name}': {old} -> {new}", name=part + field.name, old=old_text, new=text)
                 pair.add(sentence, locations.find(field.name))
@@ -113,9 +113,11 @@ def _compare(pair: FilePair, old: Mapping[str, Structure], new: Mapping[str, Str
 
 def interface_contents(version: Version, path: str) -> Phrase | None:
     """Return the typed fields and the constants of an interface, and whether it is not built; None for neither."""
-    parts = read_structures(version.file(path))
+    file = version.file(path)
+    parts = read_structures(file)
+    is_ros1 = file.suffix != _IDL and _is_ros1(file)
     names = [
-        f"{field.type.to_msg_text()} {part}{field.name}"
+        f"{_format_type(field, is_ros1=is_ros1)} {part}{field.name}"
         for part, structure in parts.items()
         for field in structure.fields
     ]
@@ -128,6 +130,12 @@ def interface_contents(version: Version, path: str) -> Phrase | None:
     if contents is None:
         return phrase("CMakeLists.txt does not build it")
     return phrase("{contents}; CMakeLists.txt does not build it", contents=contents)
+
+
+def _format_type(field: Field, *, is_ros1: bool) -> str:
+    """Return the type of a field as a definition for its ROS version writes it."""
+    text = field.type.to_msg_text()
+    return _ROS2_TYPE.sub(lambda match: match[1].lower(), text) if is_ros1 else text
 
 
 def read_structures(file: Path, *, is_ros1: bool | None = None) -> Mapping[str, Structure]:
@@ -282,7 +290,8 @@ def _compare_fields(
         if name in listed:
             continue
         if before is None and after is not None:
-            text = phrase("field '{name}' of type {type} added", name=part + name, type=after.type.to_msg_text())
+            type_name = _format_type(after, is_ros1=_is_ros1(pair.new_file))
+            text = phrase("field '{name}' of type {type} added", name=part + name, type=type_name)
             pair.add(text, locations.find(name), reason)
         elif after is None:
             text = phrase("field '{name}' removed", name=part + name)
@@ -323,7 +332,8 @@ def _list_fields(
     for own, other, is_old in ((new, old, False), (old, new, True)):
         names = [name for name in own if name not in other]
         if len(names) >= _MIN_LISTED_FIELDS:
-            items = [f"{own[name].type.to_msg_text()} {part}{name}" for name in names]
+            is_ros1 = _is_ros1(pair.old_file if is_old else pair.new_file)
+            items = [f"{_format_type(own[name], is_ros1=is_ros1)} {part}{name}" for name in names]
             text = phrase("fields added: {names}", names=joined_first(items, MAX_NAMES))
             if is_old:
                 text = phrase("fields removed: {names}", names=joined_first(items, MAX_NAMES))

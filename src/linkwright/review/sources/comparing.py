@@ -24,6 +24,7 @@ from linkwright.review.sources.details import (
 )
 from linkwright.review.sources.function_changes import NameChange, find_ignored_reason, merge_function_changes
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
+from linkwright.review.sources.merged_renames import merge_renames
 from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
 from linkwright.review.sources.names import (
     PYTHON_SUFFIX,
@@ -106,7 +107,7 @@ class _SourcePair(WholeSourcePair):
         changes += self.compare_header(old_names, new_names)
         changes += self.compare_packages(are_headers_told=not changes)
         changes += compare_statements(self.old, self.new, self.file, changes)
-        yield from changes
+        yield from merge_renames(changes)
 
     def _compare_kind(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changes to the names of a kind."""
@@ -334,8 +335,8 @@ class _SourcePair(WholeSourcePair):
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self.is_interface(path):
             return None
-        if items[0].kind is NameKind.FUNCTION:
-            items = [item for item in items if self.can_be_linked(item.name)]
+        if items[0].kind in _DECLARED_KINDS:
+            items = [item for item in items if self.can_be_linked(item.name, item.kind)]
         lost = [item for item in items if not self._is_left_to_others(item)]
         if not lost:
             return find_other_node_reason(items) if items else None

@@ -11,7 +11,7 @@ from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_same_type
 from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
-from linkwright.review.sources.qos import find_qos_reason, normalize_qos
+from linkwright.review.sources.qos import find_depth, find_qos_reason, normalize_qos
 from linkwright.review.sources.signatures import parse_signature
 
 _KNOWN_IN_BOTH = (Detail.QOS, Detail.READ_AS, Detail.ARGUMENTS, Detail.RESULT, Detail.BASES, Detail.CREATED_IN)
@@ -24,6 +24,7 @@ _SERVICES_DEFAULT = re.compile(
 _DEFAULT_QOS = "default"
 _MAX_ARGUMENT_CHARACTERS = 80
 """The maximum number of characters of shown arguments of an added function or class."""
+_RENAME = "{kind} {old} renamed to {new}"
 _DEFAULT = " = ..."
 """The end of the text of a function parameter with a default."""
 
@@ -44,6 +45,11 @@ def format_names(items: Sequence[SourceName]) -> Phrase:
 def format_rename(old: SourceName, new: SourceName) -> Phrase:
     """Return the change of a name."""
     return phrase("{kind} {old} renamed to {new}", kind=new.kind.title, old=format_name(old), new=format_name(new))
+
+
+def is_rename(sentence: Phrase) -> bool:
+    """Return whether a sentence is the change of a name."""
+    return sentence.template == _RENAME
 
 
 def compare_computed(
@@ -80,6 +86,7 @@ def compare_details(
     old_details, new_details = dict(old.details), dict(new.details)
     for detail in Detail:
         before, after = old_details.get(detail), new_details.get(detail)
+        sides = (before, old_details), (after, new_details)
         if before == after or (detail in _KNOWN_IN_BOTH and None in (before, after)):
             continue
         if detail is Detail.DEFAULT:
@@ -89,6 +96,10 @@ def compare_details(
             continue  # the line about the default shows the type
         if detail is Detail.QOS and normalize_qos(before or "") == normalize_qos(after or ""):
             continue
+        if detail is Detail.QUEUE and None in (before, after):  # a depth is a QoS in ROS 2
+            before, after = (item or find_depth(side.get(Detail.QOS, "")) for item, side in sides)
+            if before == after or None in (before, after):
+                continue
         if detail is Detail.READ_AS and normalize_read_type(before or "") == normalize_read_type(after or ""):
             continue
         if detail is Detail.CONSTANT and after is not None:

@@ -51,6 +51,12 @@ def normalize_qos(text: str) -> str:
     return compact if match is None else f"{match['depth']}{_DEFAULTS.sub('', match['rest'])}"
 
 
+def find_depth(text: str) -> str | None:
+    """Return the number of messages that a QoS keeps, or None if the text does not tell it."""
+    match = _DEPTH.match(re.sub(r"\s+|\b(?:rclcpp|rmw)::", "", text))
+    return None if match is None else match["depth"]
+
+
 def find_qos_reason(name: SourceName, old: str, new: str) -> Phrase | None:
     """Return the reason why a different QoS is breaking, or None if it is not or is not known."""
     was_best_effort, is_best_effort = (_BEST_EFFORT.search(text) is not None for text in (old, new))

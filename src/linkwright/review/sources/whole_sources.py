@@ -82,13 +82,19 @@ class WholeSourcePair:
             return is_module and not is_certainly_uninstalled(side.version, package or "", path)
         return package is not None and is_exported_header(side.version, package, path)
 
-    def can_be_linked(self, function: str) -> bool:
-        """Return whether other packages can call a function of the old source.
+    def can_be_linked(self, name: str, kind: NameKind = NameKind.FUNCTION) -> bool:
+        """Return whether other packages can use a function, class or member of the old source.
 
-        The code of one that its header only declares is in no library if the package builds none.
+        The code of a function that its header only declares is in no library if the package builds none. Then nothing
+        makes objects of its class.
         """
         path = self.file.old_path or self.file.path
-        if path.endswith(PYTHON_SUFFIX) or function not in self.old.get_names(path).declared_only:
+        declared = self.old.get_names(path).declared_only
+        scope = f"{name if kind is NameKind.CLASS else name.rpartition('::')[0]}::"
+        is_declared = name in declared or (
+            kind is not NameKind.FUNCTION and any(other.startswith(scope) for other in declared)
+        )
+        if path.endswith(PYTHON_SUFFIX) or not is_declared:
             return True
         package = self.old.find_package(path)
         facts = None if package is None else read_package_facts(self.old.version, package)
