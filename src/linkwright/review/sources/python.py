@@ -524,6 +524,7 @@ class _Reader:
 
     def _add_expression(self, kind: NameKind, node: ast.expr, type_name: str, full_type: str = "") -> None:
         text = " ".join(ast.unparse(node).split())
+        text = text if '"' in text else text.replace("'", '"')  # reports quote it by '
         self._names.expressions.append(SourceName(kind, text, type_name, self._python.span(node), full_type=full_type))
         parameter = None if kind is NameKind.PARAMETER else find_parameter_default(self._python, node)
         if parameter is not None:
