@@ -183,3 +183,21 @@ def test_an_interface_that_moves_to_another_package_keeps_the_types_of_its_packa
     lines = [line for found in compare(repository, "HEAD~..HEAD").subjects for line in sentences(found)]
     assert not [line for line in lines if line.startswith("field")]
     assert ("CMakeLists.txt does not build it" in lines) is not is_built
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_told"),
+    [
+        ("int32 id\nint32 sum\n", "int32 key\nint32 id\n", True),
+        ("int32 id\nint32 sum\n", "int32 id\nint32 key\n", False),
+        ("int32 id\nint32 sum\n", "int32 sum\nint32 id\n", False),
+        ("int32 id\nfloat32 sum\n", "int32 key\nint32 id\n", False),
+        ("int32 id\nint32 sum\n", "int32 key\nint32 id\nint32 sum\n", False),
+    ],
+)
+def test_field_that_takes_the_place_of_another_one(repository, compare, old, new, is_told):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/msg/Goal.msg": old})
+    repository.write({"arm/msg/Goal.msg": new})
+    lines = sentences(subject(compare(repository), "arm/msg/Goal.msg"))
+    told = "field 'id' is in the place of 'sum' now, and 'key' in its old place: it may have another meaning"
+    assert (told in lines) == is_told

@@ -61,6 +61,27 @@ def test_a_python_source_that_uses_a_lost_field_or_constant_is_named(repository,
     assert found == ([f"uses '{name}', which 'lamp_msgs/Light' no longer has"] if name else [])
 
 
+CALLBACK = IMPORT + CLASS.format(start="subscription(Light, 'light', self.react, 10)", more="")
+SHOW = "        {}\n    def show(self, place, light):\n        print(light.label)\n"
+
+
+@pytest.mark.parametrize(
+    ("code", "is_named"),
+    [
+        (SHOW.format("self.show(0, data)"), True),
+        (SHOW.format("threading.Thread(target=self.show, args=[0, data]).start()"), True),
+        (SHOW.format("self.show(data, 0)"), False),
+        (SHOW.format("self.lamp.show(0, data)"), False),
+        (SHOW.format("self.show(0, data)") + "        self.show(0, None)\n", False),
+        (SHOW.format("self.show(0, data)").replace("print", "light = 1; print"), False),
+    ],
+)
+def test_message_that_a_callback_passes_on(repository, compare, code, is_named):
+    files = {"lamp_msgs/msg/Light.msg": "uint8 OFF=0\nuint8 level\nstring title\n"}
+    found = review_source(repository, compare, "lamp.py", CALLBACK + code, files)
+    assert found == (["uses 'label', which 'lamp_msgs/Light' no longer has"] if is_named else [])
+
+
 @pytest.mark.parametrize(
     ("text", "name"),
     [

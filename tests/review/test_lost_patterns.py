@@ -18,7 +18,7 @@ def start(name, home):
 {}"""
 HOME = "rospy.Service('{}/home'.format(name), Empty, home)"
 STOP = "rospy.Service('{}/stop'.format(name), Empty, home)"
-REMOVED = "services with computed names removed: ''{}/home'.format(name)' (Empty)"
+REMOVED = "services with computed names removed: '\"{}/home\".format(name)' (Empty)"
 
 
 def find_breaking(repository, compare, old: list[str], new: list[str], client: str = ""):

@@ -47,3 +47,20 @@ def test_option_that_another_program_has_is_lost_unless_it_is_imported(repositor
     lines = sentences(subject(compare(repository), PATH)) if is_lost else []
     assert ("command-line options removed: '--rate'" in lines) is is_lost
     assert is_lost or not any("options removed" in str(change) for _, change in compare(repository).breaking_changes)
+
+
+@pytest.mark.parametrize(
+    ("beginning", "is_compared"),
+    [
+        ("#!/usr/bin/env python3\nimport argparse\n", True),
+        ("import argparse\n", False),
+        ("#!/usr/bin/env python3\nimport argparse\nimport unittest\n", False),
+        ("#!/usr/bin/env python3\nimport argparse\ndef test_speed():\n    pass\n", False),
+    ],
+)
+def test_program_whose_name_begins_like_that_of_a_test(repository, compare, beginning, is_compared):
+    path, option = "arm/scripts/test_speed.py", "parser.add_argument('--speed')\n"
+    repository.commit({path: beginning})
+    repository.write({path: beginning + option})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert any("'--speed'" in line for line in lines) == is_compared

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -315,6 +315,40 @@ def _compare_fields(
     common = [name for name in new_fields if name in old_fields]
     if common != [name for name in old_fields if name in new_fields]:
         pair.add(phrase("order of the fields changed"), locations.find(common[0]), reason)
+    for name, replaced, successor in _find_new_meanings(old_fields, new_fields, packages):
+        text = phrase(
+            "field '{name}' is in the place of '{old}' now, and '{new}' in its old place: it may have another meaning",
+            name=part + name,
+            old=replaced,
+            new=successor,
+        )
+        pair.add(text, locations.find(name))
+
+
+def _find_new_meanings(
+    old: Mapping[str, Field], new: Mapping[str, Field], packages: Sequence[str]
+) -> Iterator[tuple[str, str, str]]:
+    """Yield the fields that take the place of a removed one while an added one takes theirs: three names each.
+
+    Both names may only have moved to other values, if all types are equal.
+    """
+    if len(old) != len(new):
+        return
+    for name, (old_name, field), (new_name, new_field) in _pair_places(old, new):
+        is_shifted = old_name not in new and new_name not in old
+        types = (old[name], new[name]), (field, new[name]), (old[name], new_field)
+        if is_shifted and all(_have_same_type(*pair, packages) for pair in types):
+            yield name, old_name, new_name
+
+
+def _pair_places(
+    old: Mapping[str, Field], new: Mapping[str, Field]
+) -> Iterator[tuple[str, tuple[str, Field], tuple[str, Field]]]:
+    """Yield each common field, with the old field in its new place and the new field in its old place."""
+    before, after = list(old.items()), list(new.items())
+    for name in new:
+        if name in old:
+            yield name, before[list(new).index(name)], after[list(old).index(name)]
 
 
 def _have_same_type(old: Field, new: Field, packages: Sequence[str]) -> bool:

@@ -11,7 +11,8 @@ from linkwright.packages.manifest import MANIFEST
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.cpp_bases import ClassMethods
-from linkwright.review.sources.names import NameKind, SourceName, SourceNames, Timer
+from linkwright.review.sources.moved_code import MovedCode, find_moved_code, without_functions
+from linkwright.review.sources.names import CPP_SUFFIXES, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.reading import read_source_names, try_read_source
 from linkwright.review.sources.unchanged_sources import UnchangedSources, get_counterpart, is_same_topic
 from linkwright.review.sources.used_packages import UsedPackages
@@ -42,6 +43,7 @@ class ChangedSources:
         self._names = {path: read_source_names(version.file(path)) for path in paths if path is not None}
         self._unchanged_by_package: dict[str, UnchangedSources] = {}
         self._used_by_package: dict[str, UsedPackages] = {}
+        self._moved_code: dict[str, MovedCode] | None = None
 
     def get_names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
@@ -61,6 +63,23 @@ class ChangedSources:
         """The code of the changed sources, by path."""
         sources = {path: try_read_source(self.version.file(path)) for path in self._names}
         return {path: read_code(source) for path, source in sources.items() if source is not None}
+
+    def find_moved_code(self, old: ChangedSources) -> Mapping[str, MovedCode]:
+        """Return where Python sources of this version moved their code outside of functions, by the path of the source.
+
+        Args:
+            old: the changed sources of the old version.
+        """
+        if self._moved_code is None:
+            codes = {path: code for path, code in self.codes.items() if not path.endswith(CPP_SUFFIXES)}
+            added = {
+                path: without_functions(code, old.codes.get(path, Code()).functions) for path, code in codes.items()
+            }
+            found = {
+                path: find_moved_code(old.codes[path], code, added) for path, code in codes.items() if path in old.codes
+            }
+            self._moved_code = {path: moved for path, moved in found.items() if moved is not None}
+        return self._moved_code
 
     @cached_property
     def _texts(self) -> Sequence[str]:

@@ -40,6 +40,8 @@ _COUNTERS = frozenset({"0", "1"})
 _COMPARISONS = frozenset({"<", "<=", ">", ">=", "==", "!="})
 _MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
+_DECLARATION = re.compile(r"declare_parameter\(\s*(?:name\s*=\s*)?[\"']([^\"']+)[\"']")
+_DESCRIPTOR_TYPE = re.compile(r"(?:\w+\.)*ParameterDescriptor\(type=[\w.]+\)|(?:\w+\.)*Parameter\.Type\.\w+")
 _OPTION_SEPARATOR = re.compile(r"(?<=[\w-]),(?=[\w-])")
 """The comma between the names of an option, such as ``frame,f``."""
 
@@ -229,6 +231,8 @@ def _are_versions(old: Statement, new: Statement) -> bool:
 def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
     """Return whether other lines already report the replacement of a literal."""
     old, new = (text.strip("\"'") for text in (item.old, item.new))
+    if _is_declared_type(item, reported):
+        return True
     for line in reported:
         before, arrow, after = line.partition(" -> ")
         if arrow and all(not text or _has_value(side, text) for side, text in ((before, old), (after, new))):
@@ -246,6 +250,13 @@ def _is_reported(item: Difference, reported: Sequence[str]) -> bool:
     names = [max(_OPTION_SEPARATOR.split(text), key=len) for text in (old, new)]
     patterns = [re.compile(rf"'(?:[\w~/]*[~/]|--?)?{re.escape(name)}(?:/[\w~/]*)?'") for name in names]
     return _is_text(item.new) and all(any(pattern.search(line) for line in reported) for pattern in patterns)
+
+
+def _is_declared_type(item: Difference, reported: Sequence[str]) -> bool:
+    """Return whether a literal is the type of a declared parameter, which another line reports."""
+    declaration = _DECLARATION.search(item.text)
+    is_type = all(not text or _DESCRIPTOR_TYPE.fullmatch(text) for text in (item.old, item.new))
+    return declaration is not None and is_type and any(f" '{declaration[1]}': type " in line for line in reported)
 
 
 def _is_text(value: str) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import PurePosixPath
 
 from linkwright.files.git_repository import ChangedFile
@@ -11,6 +12,9 @@ from linkwright.review.sources.reading import is_program_text
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
+_PYTHON_TEST = re.compile(
+    r"^\s*(?:import|from)\s+(?:unittest|pytest|nose|rostest|launch_testing)\b|^\s*def test_", re.MULTILINE
+)
 
 
 def is_compared_source(versions: Versions, file: ChangedFile) -> bool:
@@ -21,5 +25,12 @@ def is_compared_source(versions: Versions, file: ChangedFile) -> bool:
     if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
         return False
     version = versions.new if file.new_path else versions.old
-    is_test = path.name.startswith("test_") and (path.suffix not in CPP_SUFFIXES or "gtest" in version.text(file.path))
+    is_test = path.name.startswith("test_") and _has_tests(version.text(file.path), is_cpp=path.suffix in CPP_SUFFIXES)
     return not is_test and is_program_text(version.file(file.path))
+
+
+def _has_tests(text: str, *, is_cpp: bool) -> bool:
+    """Return whether a source has tests, and is not only a program whose name begins with ``test_``."""
+    if is_cpp:
+        return "gtest" in text
+    return not text.startswith("#!") or _PYTHON_TEST.search(text) is not None

@@ -92,7 +92,7 @@ def compare_details(
         if detail is Detail.DEFAULT:
             yield from _compare_missing_defaults(old, new)
             continue
-        if detail is Detail.VALUE_TYPE and (Detail.DEFAULT, NO) in old.details and before is None:
+        if detail is Detail.VALUE_TYPE and _shows_type(old, new) and before is None:
             continue  # the line about the default shows the type
         if detail is Detail.QOS and normalize_qos(before or "") == normalize_qos(after or ""):
             continue
@@ -116,6 +116,11 @@ def compare_details(
             new=after or missing,
         )
         yield text, _find_detail_reason(new, detail, before, after), detail
+
+
+def _shows_type(old: SourceName, new: SourceName) -> bool:
+    """Return whether only the new version of a parameter has a default, which shows its type."""
+    return (Detail.DEFAULT, NO) in old.details and (Detail.DEFAULT, NO) not in new.details
 
 
 def _compare_missing_defaults(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None, Detail]]:

@@ -14,6 +14,7 @@ from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python2 import as_python3
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.sources.conditions import find_python_conditions
+from linkwright.review.sources.declared_types import find_declared_type
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.frame_helpers import find_frame_arguments
 from linkwright.review.sources.interface_types import PythonTypes
@@ -458,8 +459,10 @@ class _Reader:
                 details = ((Detail.VALUE_TYPE, type(literal.value).__name__),)
         elif is_required_parameter(self._python, call):
             details = ((Detail.REQUIRED, YES),)
-        elif function == "declare_parameter" and value is None and not _has_uncertain_arguments(call):
-            details = ((Detail.DEFAULT, NO),)
+        elif function == "declare_parameter" and not _has_uncertain_arguments(call):
+            type_name = find_declared_type(self._python, value, _get_argument(call, 2, "descriptor"))
+            details = ((Detail.DEFAULT, NO),) if value is None or type_name is not None else ()
+            details += () if type_name is None else ((Detail.VALUE_TYPE, type_name),)
         self._add(NameKind.PARAMETER, node, value, details)
 
     def _read_parameters(self, namespace: ast.expr | None, parameters: ast.expr | None) -> None:
@@ -521,6 +524,7 @@ class _Reader:
 
     def _add_expression(self, kind: NameKind, node: ast.expr, type_name: str, full_type: str = "") -> None:
         text = " ".join(ast.unparse(node).split())
+        text = text if '"' in text else text.replace("'", '"')  # reports quote it by '
         self._names.expressions.append(SourceName(kind, text, type_name, self._python.span(node), full_type=full_type))
         parameter = None if kind is NameKind.PARAMETER else find_parameter_default(self._python, node)
         if parameter is not None:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from linkwright.diagnostics import SourceText
 from linkwright.review.sources.interface_uses import WHOLE, InterfaceUse, LostInterface
+from linkwright.review.sources.passed_variables import find_passed
 from linkwright.review.sources.python import parse_source
 
 _SUBSCRIPTION = re.compile(r"\w*subscri(?:be|ber|ption)", re.IGNORECASE)
@@ -74,8 +75,11 @@ class _UseFinder:
         if self._handles_missing_fields or not (self._classes or self._modules):
             return
         yield from self._find_constructors()
-        for function, variable, part in self._find_variables():
+        variables = list(self._find_variables())
+        for function, variable, part in variables:  # the loop appends to the list
             yield from self._find_accesses(function, variable, part)
+            passed = [(item, name, part) for item, name in find_passed(self._tree, function, variable)]
+            variables += [item for item in passed if item not in variables]
 
     def _read_import(self, node: ast.ImportFrom) -> Iterator[InterfaceUse]:
         package, _, module = (node.module or "").partition(".")

@@ -15,6 +15,7 @@ from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import ReportedLines, find_added_code, find_code_change
 from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.frame_changes import find_frame_changes
+from linkwright.review.sources.moved_code import without_functions, without_statements
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
 from linkwright.review.sources.new_failures import FailureSide, find_new_failures
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
@@ -140,6 +141,14 @@ def _compare_code(
         side, path = (new, new_path) if code is before else (old, old_path)
         return side.has_function(name, code, path)
 
+    moved = new.find_moved_code(old).get(new_path)
+    if moved is not None:
+        line = before.outside[""][0].first_line
+        moving = Change(moved.format(new_path), location=Location(old_path, line, 1, is_old=True), is_code=True)
+        yield moving
+        reported = [*reported, moving]
+        own = [moved.function] if moved.path == new_path else []
+        before, after = without_statements(before), without_functions(without_statements(after), own)
     change = find_code_change(before, after, reported, has_moved, new.get_names(new_path), renamed)
     if change is not None:
         location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
@@ -153,9 +162,10 @@ def _find_added_code(
     code = new.codes.get(path)
     if code is None or not new.get_names(path).is_program:
         return
+    moved = [(item.path, item.function) for item in new.find_moved_code(old).values()]
 
     def has_moved(name: str, own: Code) -> bool:
-        return old.has_function(name, own, path)
+        return old.has_function(name, own, path) or (path, name) in moved
 
     change = find_added_code(code, reported, has_moved, new.get_names(path))
     if change is not None:
