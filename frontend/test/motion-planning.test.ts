@@ -76,7 +76,7 @@ describe("the state of the MotionPlanning panel", () => {
     const planning = new MotionPlanning(connection, new DisplayDataStore(connection), displays);
     let announcedCount = 0;
     planning.availabilityChanged.on(() => (announcedCount += 1));
-    const receive = (display: string, group: string): void => connection.data.emit(createContent("planning", { kind: "motion_planning_state", group }, display));
+    const receive = (display: string, group: string): void => connection.data.emit(createContent("planning", { kind: "motion_planning_state", group, links: [] }, display));
     displays.setTree(createTree(createDisplay({ id: "display-1", enabled: true }), createDisplay({ id: "display-2", enabled: true })));
     receive("display-1", "");
     planning.send({ type: "command_motion", command: "plan" });
@@ -92,5 +92,22 @@ describe("the state of the MotionPlanning panel", () => {
     ]);
     displays.setTree(createTree(createDisplay({ id: "display-1", enabled: true })));
     expect([planning.isAvailable, announcedCount]).toEqual([false, 2]);
+  });
+
+  it("names the robot whose motions are planned", () => {
+    const connection = new Connection("ws://localhost/ws");
+    const displays = new DisplaysState();
+    const planning = new MotionPlanning(connection, new DisplayDataStore(connection), displays);
+    const seen: unknown[] = [];
+    planning.robotChanged.on(() => seen.push(planning.robot));
+    const receive = (robot: string, links: string[], goal: string): void =>
+      connection.data.emit(createContent("planning", { kind: "motion_planning_state", group: "", robot, links, goal }));
+    displays.setTree(createTree(createDisplay({ id: "display-1", enabled: true })));
+    receive("", [], "");
+    receive("crane", ["base", "hook"], "");
+    receive("crane", ["base", "hook"], "home");
+    displays.setTree(createTree());
+    expect(seen.slice(-2)).toEqual([{ name: "crane", linkCount: 2 }, null]);
+    expect(seen.filter((robot) => robot !== null)).toHaveLength(1);
   });
 });

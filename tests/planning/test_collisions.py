@@ -46,6 +46,15 @@ class TestCollisionScene:
             assert {contact.first, contact.second} == {"ball", "upper_arm"}
             assert contact.depth == pytest.approx(0.0001, abs=2e-5)
 
+    @pytest.mark.parametrize(("depth", "collides"), [(5e-8, False), (1e-6, True)])
+    def test_depth_by_rounding_is_a_touch_for_all_checks(self, depth: float, collides: bool) -> None:
+        near = scene(ball("ball", 0.1, at=pose(0.14 - depth, 0.0, 0.35)))
+        every_shape = np.ones(len(near.shape_frames(arm().positions())), dtype=bool)
+        assert near.is_free(arm().positions()) is not collides
+        assert bool(near.contacts(arm().positions())) is collides
+        assert (near.find_colliding_pair(arm().positions(), every_shape) is not None) is collides
+        assert near.colliding_pairs(arm().positions()) == {frozenset(("ball", "upper_arm"))}
+
     def test_object_moves_with_the_link_that_holds_it(self) -> None:
         held = ball("held", 0.05, at=pose(0.0, 0.0, 0.1), link="tool", touch_links=frozenset(("tool",)))
         wall = SceneObject("wall", (PlacedShape(Box((0.1, 2.0, 2.0)), IDENTITY),), pose(0.92, 0.0, 0.5))

@@ -132,6 +132,7 @@ export interface PlanningSettings {
 /** The state of planning, for the panel and for the handles. */
 export interface MotionPlanningState {
   missing: MissingPart;
+  robot: string;
   groups: string[];
   group: string;
   states: string[];

@@ -39,19 +39,27 @@ export class StatusBar {
     session.displays.treeChanged.on(() => this.update());
     session.displays.valueChanged.on(() => this.update());
     session.robotChanged.on(() => this.update());
+    session.motionPlanning.robotChanged.on(() => this.update());
     setInterval(() => this.updateRate(), REFRESH_INTERVAL_MS);
     this.update();
     this.updateRate();
   }
 
   private update(): void {
-    const { connection, displays, robot } = this.session;
+    const { connection, displays } = this.session;
     this.connectionText.textContent = strings.connection[connection.state];
     this.connectionText.dataset["state"] = connection.state;
     this.fixedFrameText.textContent = displays.fixedFrame;
+    this.showRobot();
+  }
+
+  /** Shows the robot of a RobotModel display, or else the one whose motions are planned. */
+  private showRobot(): void {
+    const { robot, motionPlanning } = this.session;
+    const shown = robot ? { name: robot.name, linkCount: robot.links.length } : motionPlanning.robot;
     this.robotText.replaceChildren(
-      h("span", { class: "status-value" }, robot ? robot.name : strings.status.noRobot),
-      robot ? h("span", { class: "status-name" }, strings.status.links(robot.links.length)) : "",
+      h("span", { class: "status-value" }, shown ? shown.name : strings.status.noRobot),
+      shown ? h("span", { class: "status-name" }, strings.status.links(shown.linkCount)) : "",
     );
   }
 

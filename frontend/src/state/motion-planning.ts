@@ -13,8 +13,10 @@ export class MotionPlanning {
   readonly changed = new Signal();
   /** A display that can plan appeared, or the last one disappeared. */
   readonly availabilityChanged = new Signal();
+  readonly robotChanged = new Signal();
   private readonly states = new Map<string, MotionPlanningState>();
   private wasAvailable = false;
+  private announcedRobot = "null";
 
   constructor(
     private readonly connection: Connection,
@@ -44,6 +46,15 @@ export class MotionPlanning {
     return id === null ? null : (this.states.get(id) ?? null);
   }
 
+  /** The robot of the first enabled display that draws one: its name and the number of its links; or null. */
+  get robot(): { readonly name: string; readonly linkCount: number } | null {
+    for (const { id, isEnabled } of this.displays.displays) {
+      const state = isEnabled ? this.states.get(id) : undefined;
+      if (state && state.links.length > 0) return { name: state.robot, linkCount: state.links.length };
+    }
+    return null;
+  }
+
   /** The ID of that display. */
   get displayId(): string | null {
     const display = this.displays.displays.find(({ id, isEnabled }) => isEnabled && (this.states.get(id)?.group ?? "") !== "");
@@ -63,6 +74,11 @@ export class MotionPlanning {
 
   private announce(): void {
     this.changed.emit();
+    const robot = JSON.stringify(this.robot);
+    if (robot !== this.announcedRobot) {
+      this.announcedRobot = robot;
+      this.robotChanged.emit();
+    }
     if (this.isAvailable === this.wasAvailable) return;
     this.wasAvailable = this.isAvailable;
     this.availabilityChanged.emit();

@@ -89,6 +89,8 @@ class LinkMargin:
 _NO_MARGIN = LinkMargin()
 _RANGE_M = 1e-5
 """The distance in m up to which MuJoCo finds shapes, so that those that touch are among them."""
+ROUNDING_M = 1e-7
+"""The depth in m up to which shapes only touch. Neighboring links often do, with a depth that is a rounding error."""
 _WORLD = 2
 """The bit of MuJoCo's contype and conaffinity for contacts with objects of the world; 1 is for those of the robot."""
 
@@ -172,15 +174,14 @@ class CollisionScene:
     def is_free(self, positions: Array) -> bool:
         """Return whether nothing collides at the positions of all joints."""
         self._move(positions)
-        data = self._model.data
-        return not data.ncon or all(contact.dist >= contact.includemargin - self._range for contact in data.contact)
+        return not self._model.data.ncon or float(self._distances().min()) >= -ROUNDING_M
 
     def colliding_pairs(self, positions: Array) -> set[frozenset[str]]:
-        """Return the pairs of links or objects that collide at the positions of all joints."""
+        """Return the pairs of links or objects that collide or touch at the positions of all joints."""
         self._move(positions)
-        contact, names = self._model.data.contact, self._names_by_geom
-        colliding = contact.geom[contact.dist <= contact.includemargin - self._range]
-        return {frozenset((names[first], names[second])) for first, second in colliding.tolist()}
+        names = self._names_by_geom
+        touching = self._model.data.contact.geom[self._distances() <= 0.0]
+        return {frozenset((names[first], names[second])) for first, second in touching.tolist()}
 
     def find_colliding_pair(self, positions: Array, shapes: NDArray[np.bool_]) -> tuple[str, str] | None:
         """Return two links or objects that collide, by name, or None.
@@ -190,8 +191,7 @@ class CollisionScene:
             shapes: the shapes that count, in the order of `shape_frames`.
         """
         self._move(positions)
-        contact = self._model.data.contact
-        geoms = contact.geom[contact.dist <= contact.includemargin - self._range]
+        geoms = self._model.data.contact.geom[self._distances() < -ROUNDING_M]
         geoms = geoms[shapes[geoms].all(axis=1)]
         if not len(geoms):
             return None
@@ -233,9 +233,8 @@ class CollisionScene:
         data, radii = self._model.data, self._model.mujoco_model.geom_rbound
         distances: dict[tuple[int, int], float] = {}
         if data.ncon:
-            contact = data.contact
-            values = (contact.dist - contact.includemargin + self._range).tolist()
-            for (first, second), distance in zip(contact.geom.tolist(), values, strict=True):
+            values = self._distances().tolist()
+            for (first, second), distance in zip(data.contact.geom.tolist(), values, strict=True):
                 pair = (first, second) if radii[first] >= radii[second] else (second, first)
                 distances[pair] = min(distance, distances.get(pair, distance))
         return Nearness(distances, data.geom_xpos.copy(), data.geom_xmat.reshape(-1, 3, 3).copy(), radii)
@@ -257,10 +256,16 @@ class CollisionScene:
         for contact in self._model.data.contact:
             first, second = (self._names_by_geom[geom] for geom in contact.geom)
             depth = float(contact.includemargin - contact.dist) - self._range
-            if depth < 0.0:
+            if depth <= ROUNDING_M:
                 continue
             contacts.append(Contact(first, second, contact.pos.copy(), contact.frame[:3].copy(), depth))
         return contacts
+
+    def _distances(self) -> Array:
+        """Return the distances in m of the shapes that are near to each other; negative for collisions."""
+        contact = self._model.data.contact
+        distances: Array = contact.dist - contact.includemargin + self._range
+        return distances
 
     def _move(self, positions: Array) -> None:
         self._model.move(positions)

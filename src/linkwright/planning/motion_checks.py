@@ -14,14 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.planning.collision_scene import CollisionScene, Nearness
+from linkwright.planning.collision_scene import ROUNDING_M, CollisionScene, Nearness
 
 RANGE_M = 0.003
 """The distance in m up to which shapes are near. Farther ones do not meet within a step of a motion."""
 _MAX_SPLITS = 7
 """How many times a step is halved at most."""
-_ROUNDING_M = 1e-7
-"""The depth in m up to which shapes only touch."""
 _TOLERANCE_M = 1e-6
 """The depth in m up to which shapes may collide without being noticed; MuJoCo's distances are not more accurate."""
 
@@ -42,7 +40,7 @@ class CheckedConfiguration(NamedTuple):
     @property
     def collides(self) -> bool:
         """Whether shapes collide, and do not only touch."""
-        return self.distance < -_ROUNDING_M
+        return self.distance < -ROUNDING_M
 
 
 class MotionCheck:

@@ -17,7 +17,7 @@ from linkwright.page.protocol.motion_planning import (
 )
 from linkwright.planning.page.scene_edits import describe_objects, make_moved_object
 from linkwright.rviz.displays.moveit.scene import Scene
-from tests.planning.arms import SRDF
+from tests.planning.arms import SRDF, arm
 from tests.planning.nodes.bench import closed_room
 from tests.planning.page.bench import HANDLE, open_bench
 from tests.rviz.displays.moveit.arm import make_collision_object, make_pose, make_scene
@@ -46,6 +46,7 @@ async def test_groups_and_states_come_from_parameter_of_move_group():
     async with open_bench() as bench:
         panel = bench.panel()
         assert (panel["groups"], panel["group"], panel["states"]) == (["arm", "gripper", "all"], "arm", ["ready"])
+        assert panel["robot"] == arm().robot.name
         assert (panel["start"], panel["goal"]) == ("<current>", "<current>")
         request = next(row for row in bench.display.row().properties if row.name == "Planning Request")
         group = next(row for row in request.children if row.name == "Planning Group")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
@@ -149,6 +150,30 @@ def test_launch_files_load_with_the_builder(tmp_path: Path) -> None:
     assert 'name="given_extra"' in urdf_text
     assert "mock_components/GenericSystem" in urdf_text
     assert '<param name="initial_value">0.03</param>' in urdf_text
+
+
+@pytest.mark.parametrize(
+    ("distribution", "mimic", "parameters"),
+    [
+        ("jazzy", "multiplier='-2' offset='0.1'", {}),
+        ("humble", "multiplier='-2'", {"mimic": "left", "multiplier": "-2.0"}),
+        ("humble", "multiplier='-2' offset='0.1'", None),
+    ],
+)
+def test_states_of_a_finger_that_mimics_another_one_are_published(
+    tmp_path: Path, distribution: str, mimic: str, parameters: dict[str, str] | None
+) -> None:
+    text = urdf().replace("<mimic joint='left'/>", f"<mimic joint='left' {mimic}/>")
+    files = package_files(settings_of(tmp_path, text, distribution=distribution))
+    hardware = ET.fromstring(files["config/elbow_arm.ros2_control.xacro"])
+    found = [element for element in hardware.iter("joint") if element.get("name") == "right"]
+    if parameters is None:  # Humble's simulated hardware knows no offset.
+        assert found == []
+        return
+    (finger,) = found
+    assert [interface.get("name") for interface in finger.iter("state_interface")] == ["position", "velocity"]
+    assert finger.find("command_interface") is None
+    assert {element.get("name"): element.text for element in finger.findall("param")} == parameters
 
 
 def test_mobile_robot_has_planar_joint_and_passive_wheels(tmp_path: Path) -> None:

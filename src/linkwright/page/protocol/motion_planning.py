@@ -151,6 +151,7 @@ class MotionPlanningState(DataContent):
 
     Attributes:
         missing: the part that planning needs and that is not available yet.
+        robot: the name of the robot; empty if its description is missing.
         groups: the planning groups of the SRDF.
         group: the current planning group.
         states: the named states of the group.
@@ -172,11 +173,12 @@ class MotionPlanningState(DataContent):
         fraction: the share of a Cartesian path that was planned.
         executable: whether there is a plan to execute.
         objects: the objects of the planning scene, sorted by name.
-        links: the links to which objects can be attached, those with handles first.
+        links: the links of the robot, to which objects can be attached; those with handles first.
         refused: whether move_group did not accept the last change of the planning scene.
     """
 
     missing: MissingPart
+    robot: str
     groups: list[str]
     group: str
     states: list[str]

@@ -35,6 +35,7 @@ def make_panel_state(
     group, goal = session.group, session.state("goal")
     return MotionPlanningState(
         missing=_find_missing_part(session, has_state=has_state),
+        robot=session.robot.description.name if session.robot is not None else "",
         groups=list(groups),
         group=group.name if group else "",
         states=list(group.states) if group else [],

@@ -121,6 +121,15 @@ _CONTROL_JOINT = """\
                 </state_interface>
                 <state_interface name="velocity"/>
             </joint>"""
+_MIMIC_JOINT = """\
+            <joint name={attribute}>
+{parameters}                <state_interface name="position"/>
+                <state_interface name="velocity"/>
+            </joint>"""
+_MIMIC_PARAMETERS = """\
+                <param name="mimic">{leader}</param>
+                <param name="multiplier">{multiplier}</param>
+"""
 _SETUP_ASSISTANT = """\
 moveit_setup_assistant_config:
   urdf:
@@ -276,6 +285,13 @@ def _urdf(settings: PackageSettings) -> str:
 
 def _control(settings: PackageSettings) -> str:
     joints = [_CONTROL_JOINT.format(attribute=quoteattr(name), name=name) for name in settings.simulated_joints]
+    is_humble = settings.distribution == "humble"
+    for joint in settings.robot.joints.values():
+        mimic = joint.mimic
+        if mimic is None or mimic.joint not in settings.simulated_joints or (is_humble and mimic.offset):
+            continue  # Humble's simulated hardware knows no offset.
+        parameters = _MIMIC_PARAMETERS.format(leader=escape(mimic.joint), multiplier=mimic.multiplier)
+        joints.append(_MIMIC_JOINT.format(attribute=quoteattr(joint.name), parameters=parameters if is_humble else ""))
     return _CONTROL.format(macro=_macro_name(settings.file_name), joints="\n".join(joints))
 
 
