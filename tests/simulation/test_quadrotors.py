@@ -7,7 +7,9 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
+from linkwright.geometry.arrays import rotation_matrix
 from linkwright.messages import get_message
+from linkwright.simulation.server.server import ServerOptions
 from linkwright.testing import Recording
 from tests.simulation.test_plugins import SECOND_NS, running_server
 from tests.simulation.worlds import GROUND, box
@@ -179,3 +181,44 @@ async def test_true_velocity_is_in_the_axes_of_the_body_and_odometry_in_its_fram
             assert (twist.linear.x, twist.linear.y) == pytest.approx((cos(yaw), -sin(yaw)), abs=1e-6)
         assert len(odometry) == 30
         assert (odometry.last.header.frame_id, odometry.last.child_frame_id) == ("odom", "base_footprint")
+
+
+@pytest.mark.parametrize("mistakes", [False, True])
+@pytest.mark.parametrize("attitude", ["0 0 0", "0.5 0 0", "0.3 -0.4 1.1"])
+async def test_air_resists_the_velocity_of_the_body(attitude, mistakes):
+    """The original is right for a level quadrotor alone, and turns velocities the wrong way for others."""
+    plugin = '<plugin name="air" filename="libhector_gazebo_quadrotor_aerodynamics.so"/>'
+    uav = box("uav", f"0 0 5 {attitude}", mass=MASS).replace("</model>", f"{plugin}</model>")
+    options = ServerOptions(gazebo_mistakes=mistakes)
+    async with running_server(uav, options=options, gravity="0 0 0") as (server, graph, log):
+        wrenches = Recording(graph, server.node, "/aerodynamics/wrench")
+        wind = server.node.create_publisher("geometry_msgs/msg/Vector3", "/wind", 1)
+        await graph.settle()
+        wind.publish(get_message("geometry_msgs/msg/Vector3")(x=1.0, y=-2.0, z=0.5))
+        await graph.settle()
+        rotation = rotation_matrix(np.array(server.simulation.link_pose("uav::link")[3:]))
+        velocity, rates = np.array((4.0, 1.0, -2.0)), np.array((0.3, -0.2, 0.4))
+        server.simulation.set_model_velocity("uav", tuple(velocity), tuple(rates))
+        server.advance(1_000_000)
+        await graph.settle()
+        message = wrenches.last
+        airspeed = velocity - (1.0, -2.0, 0.5)
+        mirror = np.diag((1.0, -1.0, -1.0))
+        turn = mirror @ rotation @ mirror if mistakes else rotation.T
+        force = -np.array((0.12, 0.12, 0.1)) * np.linalg.norm(airspeed) * (turn @ airspeed)
+        torque = -np.array((0.074156208, 0.074156208, 0.050643264)) * np.linalg.norm(rates) * (turn @ rates)
+        vectors = (message.wrench.force, message.wrench.torque)
+        measured = [(vector.x, vector.y, vector.z) for vector in vectors]
+        assert measured == [pytest.approx(force, rel=0.01, abs=2e-3), pytest.approx(torque, rel=0.01, abs=2e-3)]
+        assert message.header.frame_id == "link"
+        assert not log
+
+
+async def test_air_slows_a_quadrotor_by_the_square_of_its_speed():
+    plugin = '<plugin name="air" filename="libhector_gazebo_quadrotor_aerodynamics.so"/>'
+    uav = box("uav", "0 0 5 0 0 0", mass=MASS).replace("</model>", f"{plugin}</model>")
+    async with running_server(uav, gravity="0 0 0") as (server, _, __):
+        server.simulation.set_model_velocity("uav", (10.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        server.advance(2 * SECOND_NS)
+        velocity = server.simulation.link_velocity("uav::link")[0][0]
+        assert velocity == pytest.approx(10.0 / (1.0 + 0.12 * 10.0 * 2.0 / MASS), rel=1e-3)

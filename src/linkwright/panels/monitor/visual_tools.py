@@ -1,6 +1,8 @@
 """The panel of rviz_visual_tools, whose buttons let a program continue that waits between its steps.
 
 The program receives sensor_msgs/msg/Joy, as from a gamepad.
+
+Source: rviz_visual_tools (the topic, the number of buttons, and their indices).
 """
 
 from __future__ import annotations

@@ -42,7 +42,6 @@ _STEERING_ALTERNATIVE = phrase("libgazebo_ros_ackermann_drive.so, or controllers
 _DRIVE_ALTERNATIVE = phrase("libgazebo_ros_diff_drive.so")
 _VIEW_ALTERNATIVE = phrase("the camera of the page")
 _TRANSFORM_ALTERNATIVE = phrase("robot_state_publisher, or static_transform_publisher of tf2_ros")
-_MAP_ALTERNATIVE = phrase("libgazebo_2Dmap_plugin.so, whose service makes a map of the world at a height")
 _FORCE_ALTERNATIVE = phrase("libgazebo_ros_ft_sensor.so, which publishes the force and torque in a joint")
 _BREAKING_ALTERNATIVE = phrase(
     "gz-sim-detachable-joint-system, and a ROS node that detaches the joint when the force of "
@@ -109,7 +108,6 @@ _GROUPS = {
         *("MrsGazeboCommonResources_LightPlugin", "MrsGazeboCommonResources_SafetyLedPlugin"),
     ),
     _LOGICAL_CAMERA_ALTERNATIVE: ("ROSLogicalCameraPlugin", "gazebo_irlock_plugin"),
-    _MAP_ALTERNATIVE: ("rotors_gazebo_octomap_plugin",),
     _MOTION_ALTERNATIVE: (
         *("robotnik_force_based_move", "slotcar"),
         *("SetVelPlugin", "gazebo_random_velocity_plugin", "gazebo_ros_force_based_move"),
@@ -137,7 +135,7 @@ _GROUPS = {
         "gazebo_drop_plugin",
     ),
     _ROTOR_SPEEDS_ALTERNATIVE: ("MrsGazeboCommonResources_MotorSpeedRepublisherPlugin",),
-    _ROTOR_ALTERNATIVE: ("hector_gazebo_quadrotor_aerodynamics", "hector_gazebo_quadrotor_propulsion"),
+    _ROTOR_ALTERNATIVE: ("hector_gazebo_quadrotor_propulsion",),
     _SPRING_ALTERNATIVE: ("spring_joint",),
     _STEERING_ALTERNATIVE: (
         *("VehiclePlugin", "ackermann_steering_controller"),
@@ -155,10 +153,7 @@ _GROUPS = {
         *("MRSGazeboThermalCameraPlugin", "gazebo_ros_thermal_camera", "gazebo_ros_thermal_camera_pink"),
     ),
     _TRACKS_ALTERNATIVE: ("SimpleTrackedVehiclePlugin", "TrackedVehiclePlugin", "WheelTrackedVehiclePlugin"),
-    _TRANSFORM_ALTERNATIVE: (
-        "MrsGazeboCommonResources_LinkStaticTFPublisher",
-        *("MRSGazeboStaticTransformRepublisher", "MrsGazeboCommonResources_StaticTransformRepublisher"),
-    ),
+    _TRANSFORM_ALTERNATIVE: ("MrsGazeboCommonResources_LinkStaticTFPublisher",),
     _VIEW_ALTERNATIVE: ("MRSGazeboRvizCameraSynchronizer", "MrsGazeboCommonResources_RvizCameraSynchronizer"),
     _WALK_ALTERNATIVE: ("gazebo_ros_actor_command", "gazebo_ros_actor_plugin"),
     _WATER_ALTERNATIVE: (

@@ -15,17 +15,13 @@ import numpy as np
 
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
 from linkwright.messages import Header, get_message
-from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.ray_casting import GROUP_COUNT
-from linkwright.simulation.scene.bodies import COLLISION_GROUP
+from linkwright.simulation.plugins.surfaces import find_surfaces
 
 _GRID_TYPE = "nav_msgs/msg/OccupancyGrid"
 _UNKNOWN, _FREE, _OCCUPIED = -1, 0, 100
 _LINES_PER_CELL = 2
-_SURFACE_GAP = 1e-6
-"""The distance in m behind a surface at which a ray continues."""
 _NEIGHBORS = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1) if (x, y) != (0, 0)])
 Cells = np.ndarray[Any, np.dtype[np.int8]]
 
@@ -90,23 +86,13 @@ class OccupancyMap(SimulatedPlugin[MapParameters]):
 
     def _find_surfaces(self, axis: int, sizes: Any) -> list[tuple[float, float]]:
         """Return the points in m where lines along an axis meet collisions at the height of the map."""
-        parameters, simulation, mujoco = self.parameters, self.simulation, load_mujoco()
-        groups, geom = np.zeros(GROUP_COUNT, dtype=np.uint8), np.zeros(1, dtype=np.int32)
-        groups[COLLISION_GROUP] = 1
-        direction = np.zeros(3)
-        direction[axis] = 1.0
-        spacing = parameters.map_resolution / _LINES_PER_CELL
+        simulation, spacing = self.simulation, self.parameters.map_resolution / _LINES_PER_CELL
         points = []
         for across in np.arange(-sizes[1 - axis] / 2 + spacing / 2, sizes[1 - axis] / 2, spacing):
-            origin = np.array((0.0, 0.0, parameters.map_height))
-            origin[axis], origin[1 - axis] = -sizes[axis] / 2, across
-            while origin[axis] < sizes[axis] / 2:
-                distance = mujoco.mj_ray(simulation.model, simulation.data, origin, direction, groups, 1, -1, geom)
-                if distance < 0.0:
-                    break
-                origin[axis] += distance
-                points.append((float(origin[0]), float(origin[1])))
-                origin[axis] += _SURFACE_GAP
+            start = [0.0, 0.0, self.parameters.map_height]
+            start[axis], start[1 - axis] = -sizes[axis] / 2, across
+            surfaces = find_surfaces(simulation, start, axis, sizes[axis])
+            points += [(surface, float(across)) if axis == 0 else (float(across), surface) for surface in surfaces]
         return points
 
 

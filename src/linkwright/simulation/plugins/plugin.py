@@ -143,6 +143,9 @@ class Environment(Protocol):
     def plugins(self, model: str) -> tuple[SimulatedPlugin[Any], ...]:
         """Return the running plugins and sensors of a model."""
 
+    def spawn(self, model: Model, name: str, pose: Transform) -> None:
+        """Add a model to the world at a pose, and start its plugins."""
+
 
 class SimulatedPlugin(Generic[P]):
     """A running plugin or sensor.
@@ -320,6 +323,22 @@ class SimulatedPlugin(Generic[P]):
         if element is None:
             return LinkwrightError(Diagnostic("SIM160", message))
         return LinkwrightError(Diagnostic("SIM160", message, element.span(), source=element.source))
+
+    def spawn(self, model: Model, name: str, pose: Transform) -> None:
+        """Add a model to the world, and start its plugins.
+
+        Call this only in callbacks of topics and services.
+
+        Args:
+            model: the model, with its includes resolved.
+            name: the name of the model in the world.
+            pose: the pose of the model's frame in the world; a model inside the ground is lifted onto it.
+
+        Raises:
+            LinkwrightError: SIM102, there is already a model with this name; SIM140, the model cannot be placed or
+                moved.
+        """
+        self._environment.spawn(model, name, pose)
 
     @staticmethod
     def text_in(parent: Element | None, tag: str) -> str:
