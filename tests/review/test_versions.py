@@ -12,7 +12,7 @@ import pytest
 from linkwright.cli import main
 from linkwright.diagnostics import LinkwrightError
 from linkwright.review import open_versions
-from tests.repositories import ARM, MACRO, PACKAGE_XML, Repository
+from tests.repositories import ARM, MACRO, Repository
 from tests.review.conftest import breaking, sentences, subject
 
 PATH = "arm_description/urdf/arm.urdf.xacro"
