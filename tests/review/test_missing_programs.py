@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 from tests.repositories import Repository
@@ -81,3 +83,23 @@ def test_a_changed_launch_file_that_starts_a_script_which_does_not_exist_is_name
     repository.write({f"lamp/launch/{launch}": LAUNCHES[launch].format(name="new.py")})
     found = [line for line in breaking(compare(repository)) if line.startswith("starts")]
     assert found == (["starts 'new.py' of 'lamp', which does not exist"] if is_found else [])
+
+
+@pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
+@pytest.mark.parametrize(
+    ("launch", "body", "mode", "is_found"),
+    [
+        ("a.launch", "", 0o644, True),
+        ("a.launch", "", 0o755, False),
+        ("a.launch", "catkin_install_python(PROGRAMS scripts/other.py DESTINATION lib/lamp)\n", 0o644, False),
+        ("a.launch.xml", SCRIPTS, 0o644, False),
+    ],
+)
+def test_a_changed_launch_file_that_starts_a_script_which_is_not_executable_is_named(
+    repository, compare, launch, body, mode, is_found
+):
+    write_package(repository, "catkin" if launch == "a.launch" else "ament_cmake", body, launch, "old.py")
+    (repository.root / "lamp/scripts/other.py").chmod(mode)
+    repository.write({f"lamp/launch/{launch}": LAUNCHES[launch].format(name="other.py")})
+    found = [line for line in breaking(compare(repository)) if line.startswith("starts")]
+    assert found == (["starts 'other.py' of 'lamp', which is not executable"] if is_found else [])

@@ -269,7 +269,7 @@ class _Reviewer:
     def _find_removed_submodules(self) -> Iterator[Subject]:
         """Yield the removed submodules with their packages.
 
-        One that the files no longer name, although they did, breaks nobody.
+        One that the files no longer name, although they did, is not breaking.
         """
         packages_reason = phrase("packages that depend on the packages in it do not build or start")
         for file in self._changed_files:

@@ -132,7 +132,7 @@ class NameRules:
         return find_type_reason(old_value, new_value)
 
     def find_addition_reason(self, parameter: str, value: str) -> Phrase | None:
-        """Return the reason why adding a parameter is breaking, or None if it is not. A new node breaks nobody."""
+        """Return the reason why adding a parameter is breaking, or None if it is not. A new node is not breaking."""
         if parameter.endswith(f".{_UNSTAMPED_BY_DEFAULT}") and value.lower() == "true":
             node = find_node_name(parameter)
             if node is not None and node not in self._added_nodes:

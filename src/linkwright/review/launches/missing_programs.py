@@ -37,6 +37,7 @@ _STARTS = (
     "starts '{name}' of '{package}', which does not exist",
     "starts '{name}' of '{package}', which is no longer installed",
     "starts '{name}' of '{package}', which no longer exists",
+    "starts '{name}' of '{package}', which is not executable",
 )
 _FINDING = "LW844"
 """The finding about a program that a launch file starts and that does not exist."""
@@ -109,6 +110,13 @@ class RepositoryPackage:
         paths = re.findall(rf"[^\s\"'()]*{re.escape(name)}", self.build_text)
         return any(".." in path or "$" in path for path in paths)
 
+    def has_only_unexecutable(self, name: str) -> bool:
+        """Return whether launch files of ROS 1 find a script in the source folder only, where it is not executable."""
+        if not self.is_ros1 or name in self.programs or self.facts is None or self.facts.unknown:
+            return False
+        paths = [path for path in self.version.paths((name,), self.folder) if PurePosixPath(path).name == name]
+        return bool(paths) and not any(os.access(self.version.file(path), os.X_OK) for path in paths)
+
     def has(self, name: str) -> bool:
         """Return whether launch files certainly find a program."""
         return name in self.programs or (self.is_ros1 and name in self.names)
@@ -147,12 +155,16 @@ def find_missing_programs(versions: Versions, changed_files: Sequence[ChangedFil
             if package not in packages or not name or entry.name in reported or re.search(r"[$/*:\s]", name):
                 continue
             old, new = packages[package]
-            if not new.lacks(name):
+            is_first = path in changed and name.endswith(_SCRIPT_SUFFIXES) and entry.name not in old_names
+            is_unexecutable = is_first and new.has_only_unexecutable(name)
+            if not is_unexecutable and not new.lacks(name):
                 continue
             change = None
-            if old.has(name) and package in changed_packages:
+            if is_unexecutable:
+                change = phrase("starts '{name}' of '{package}', which is not executable", name=name, package=package)
+            elif old.has(name) and package in changed_packages:
                 change = _make_removal_change(package, name, is_left=name in new.names)
-            elif path in changed and name.endswith(_SCRIPT_SUFFIXES) and entry.name not in old_names:
+            elif is_first:
                 change = phrase("starts '{name}' of '{package}', which does not exist", name=name, package=package)
             if change is not None:
                 reported.add(entry.name)
