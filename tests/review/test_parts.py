@@ -5,8 +5,15 @@ The tests cover macros, arguments, and elements that no robot uses.
 
 from __future__ import annotations
 
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
+
 import pytest
 
+from linkwright.review.changes import ExpandedElement
+from linkwright.review.parts.expanded import find_expanded_elements
+from linkwright.xacro.cache import read_document
 from tests.repositories import ARM, MACRO
 from tests.review.conftest import breaking, sentences, subject
 
@@ -340,3 +347,18 @@ def test_conditions_that_move_around_a_collision_are_no_change(package, compare,
     package.commit({TOOL: GRIPPER.replace(collision, INSIDE)})
     package.write({TOOL: GRIPPER.replace(collision, AROUND.replace("2 2 2", size))})
     assert [line for part in compare(package).subjects for line in sentences(part)] == expected
+
+
+def test_robot_that_reads_links_to_sources_uses_their_elements(tmp_path):
+    """The share folder consists of links to the sources if a build file installs files at other paths."""
+    (tmp_path / "source.xacro").write_text('<robot name="arm"><link name="base_link"/></robot>', encoding="utf-8")
+    (tmp_path / "link.xacro").symlink_to(tmp_path / "source.xacro")
+    document = read_document(str(tmp_path / "source.xacro"))
+    description = SimpleNamespace(files=[tmp_path / "link.xacro"], document=document)
+    version = SimpleNamespace(is_old=False, relative=lambda file: Path(file).resolve().name)
+    changed = [SimpleNamespace(old_path="source.xacro", new_path="source.xacro")]
+    versions = SimpleNamespace(old=version, new=version, changed_files=changed)
+    (link,) = document.root.elements()
+    assert ExpandedElement("source.xacro", link.offset, False) in set(
+        find_expanded_elements(cast(Any, versions), cast(Any, description), cast(Any, description))
+    )

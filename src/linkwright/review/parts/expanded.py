@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 
 from linkwright.descriptions import Description
@@ -26,7 +27,7 @@ def _find_used_elements(version: Version, description: Description, paths: set[s
     for file in description.files:
         path = version.relative(file)
         if path in paths:
-            names[str(file)] = path
+            names[str(file)] = names[os.path.realpath(file)] = path  # the share folder may link to the file
             yield ExpandedElement(path, FILE, version.is_old)
     if not names:
         return
