@@ -207,6 +207,10 @@ class _Reader:
         for name, functions in overloads.items():
             if not any(function.is_defined or function.is_pure for function in functions):
                 self._names.declared_only.add(name)
+            self._names.parameter_names |= {
+                (name, _join_overloads([function]).replace(" = ...", "")): function.parameter_names
+                for function in functions
+            }
             types = _join_overloads(functions)
             details = ((Detail.REQUIRED, YES),) if any(function.is_pure for function in functions) else ()
             if len(functions) == 1 and functions[0].result:

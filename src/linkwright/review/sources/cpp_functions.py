@@ -56,6 +56,7 @@ class DeclaredFunction(NamedTuple):
         result: the type that it returns; empty if it is unknown, as of constructors.
         start: the offset of the declaration.
         is_defined: whether the header has its code.
+        parameter_names: the names of the parameters; empty for those without a name.
     """
 
     name: str
@@ -66,6 +67,7 @@ class DeclaredFunction(NamedTuple):
     result: str
     start: int
     is_defined: bool
+    parameter_names: tuple[str, ...]
 
 
 class _Scope(NamedTuple):
@@ -205,13 +207,17 @@ def _read_function(chunk: str, classes: list[str], start: int) -> Iterator[Decla
             continue
         if declaration[: match.start()].rstrip().endswith("::"):
             return  # the definition of a method that its class declares
-        parameters = tuple(_parse_parameter_type(text) for text in _split_parameters(declaration[match.end() : end]))
+        texts = list(_split_parameters(declaration[match.end() : end]))
+        parameters = tuple(map(_parse_parameter_type, texts))
         name = "::".join([*classes, "".join(match["name"].split())])
         is_override = re.search(r"\b(?:override|final)\b", suffix) is not None
         is_pure = re.search(r"=\s*0\s*$", suffix) is not None
         is_const = re.match(r"\s*const\b", suffix) is not None
         result = _read_result(declaration[: match.start()], suffix)
-        yield DeclaredFunction(name, parameters, is_pure, is_override, is_const, result, start, is_defined=False)
+        names = tuple(map(_parse_parameter_name, texts))
+        yield DeclaredFunction(
+            name, parameters, is_pure, is_override, is_const, result, start, is_defined=False, parameter_names=names
+        )
         return
 
 
@@ -228,12 +234,21 @@ def _read_result(prefix: str, suffix: str) -> str:
 def _parse_parameter_type(text: str) -> str:
     """Return the type of a parameter, with a mark if it has a default."""
     value, _, default = text.partition("=")
-    match = _PARAMETER.fullmatch(value.strip())
-    type_name = value
-    if match is not None and set(match["type"].split()) - _QUALIFYING_WORDS and match["name"] not in _NOT_NAMES:
-        type_name = match["type"] + (match["array"] or "")
-    type_name = normalize_type(type_name)
+    match = _match_parameter(text)
+    type_name = normalize_type(value if match is None else match["type"] + (match["array"] or ""))
     return f"{type_name} = ..." if default else type_name
+
+
+def _parse_parameter_name(text: str) -> str:
+    match = _match_parameter(text)
+    return "" if match is None else match["name"]
+
+
+def _match_parameter(text: str) -> re.Match[str] | None:
+    """Return the type and the name of a parameter, or None if it has no name."""
+    match = _PARAMETER.fullmatch(text.partition("=")[0].strip())
+    is_named = match is not None and set(match["type"].split()) - _QUALIFYING_WORDS and match["name"] not in _NOT_NAMES
+    return match if is_named else None
 
 
 def _find_closing_parenthesis(text: str, start: int) -> int:

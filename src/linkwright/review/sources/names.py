@@ -207,6 +207,7 @@ class SourceNames:
         rates: the texts of rates and periods, each with its location.
         timers: the timers, in the order of the source.
         forward_classes: the classes outside of namespaces that a C++ header only declares.
+        parameter_names: the names of the parameters of functions in C++, by the function and their types.
         declared_only: the names of functions whose code is in no header, so that callers need a library.
         overrides: the names of functions that override a function of a base class, qualified by their classes.
         bases: the names of the base classes of each public class of a C++ source.
@@ -245,6 +246,7 @@ class SourceNames:
     rates: list[tuple[str, Span]] = field(default_factory=list)
     timers: list[Timer] = field(default_factory=list)
     forward_classes: set[str] = field(default_factory=set)
+    parameter_names: dict[tuple[str, str], tuple[str, ...]] = field(default_factory=dict)
     declared_only: set[str] = field(default_factory=set)
     overrides: set[str] = field(default_factory=set)
     bases: dict[str, list[str]] = field(default_factory=dict)

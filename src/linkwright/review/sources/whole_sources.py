@@ -22,6 +22,7 @@ from linkwright.review.sources.package_imports import (
 )
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.rates import compare_rates, compare_timers
+from linkwright.review.sources.swapped_arguments import compare_argument_order
 from linkwright.review.sources.transform_senders import find_lost_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.undefined_uses import find_undefined_uses
@@ -169,7 +170,7 @@ class WholeSourcePair:
             yield self.make_change(change.text, change.span, self.old if change.is_old else self.new, None)
 
     def compare_header(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
-        """Yield the changes to namespaces, protected members and enumerators of an installed header."""
+        """Yield the changes to namespaces, arguments, protected members and enumerators of an installed header."""
         if None in (self.file.old_path, self.file.new_path) or not self.is_interface(self.file.old_path or ""):
             return
         for change in (
@@ -178,6 +179,9 @@ class WholeSourcePair:
             *compare_enumerations(old_names.enumerations, new_names.enumerations),
         ):
             yield self.make_change(change.text, change.span, self.old if change.is_old else self.new, change.reason)
+        for change in compare_argument_order(old_names, new_names):
+            reason = change.reason if self.can_be_linked(str(change.text.arguments["name"])) else None
+            yield self.make_change(change.text, change.span, self.new, reason)
 
     @staticmethod
     def make_change(text: Phrase, span: Span, side: ChangedSources, reason: Phrase | None) -> Change:
