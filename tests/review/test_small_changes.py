@@ -24,7 +24,7 @@ def list_lines(repository, compare, old: str, new: str) -> list[str]:
 @pytest.mark.parametrize(
     ("old", "new", "change"),
     [
-        ("pass", "return True", "`return True` added"),
+        ("pass", "return False", "`return False` added"),
         ("return True", "pass", "`return True` removed"),
         ("pass", "if goal.is_empty():\n    return", "`if goal.is_empty(): return` added"),
         ("pass", "image = self.to(goal, self.cv.BGR2RGB)", "`image = self.to(goal, self.cv.BGR2RGB)` added"),
@@ -51,3 +51,10 @@ def test_small_change_is_shown(repository, compare, old, new, change):
 )
 def test_other_code_is_named_by_its_function(repository, compare, old, new):
     assert list_lines(repository, compare, old, new) == ["code changed in 'Arm.move()'"]
+
+
+def test_statement_that_another_line_reports_is_left_out(repository, compare):
+    code = "self.arm = self.node.create_client(Home, 'home')\nself.arm.wait_for_service()"
+    lines = list_lines(repository, compare, "pass", code)
+    assert "in 'Arm.move()': `self.arm.wait_for_service()` added" in lines
+    assert not any(line.startswith("code changed") for line in lines)

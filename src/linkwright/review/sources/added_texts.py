@@ -165,7 +165,8 @@ def _find_one_sided(
 
 
 def _has_word(line: str, word: str) -> bool:
-    return re.search(rf"(?<!\w){re.escape(word)}(?!\w)", line) is not None
+    """Return whether a line has a word that is not the name of an argument, as in ``frame='map'``."""
+    return re.search(rf"(?<!\w){re.escape(word)}(?![\w=])", line) is not None
 
 
 # --- keys and compared texts ----------------------------------------------------------------------------------------

@@ -379,6 +379,10 @@ class ReportedLines:
             for old_part, new_part in zip_longest(old[old_start:old_end], new[new_start:new_end])
         )
 
+    def reports(self, part: Part, *, is_old: bool) -> bool:
+        """Return whether a line reports a statement that only one version has."""
+        return self._reports(part if is_old else None, None if is_old else part, has_values=False)
+
     def _reports(self, old: Part | None, new: Part | None, *, has_values: bool) -> bool:
         """Return whether a line reports the change in a statement, which only one version may have."""
         for part, is_old in ((old, True), (new, False)):

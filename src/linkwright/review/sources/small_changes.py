@@ -21,9 +21,12 @@ _CONDITION = re.compile(r"(?:if|elif|while) .*", re.DOTALL)
 _RETURN = re.compile(r"return\b.*|raise\b.*|continue|break", re.DOTALL)
 _CONSTANT_RETURN = re.compile(r"return (?:None|True|False|-?[\d.]+|'[^']*'|(?:\w+\.)*[A-Z][A-Z0-9_]+)")
 _SENDING = re.compile(
-    r"(?:await )?[\w.\[\]'\"]+\.(?:publish|sendTransform|send_transform|send_goal|send_goal_async|call|call_async)\(.*",
+    r"(?:await )?[\w.\[\]'\"]+\."
+    r"(?:publish|sendTransform|send_transform|send_goal|send_goal_async|call|call_async|wait_for_service|wait_for_server)"
+    r"\(.*",
     re.DOTALL,
 )
+"""A call that sends something, or waits for the one who gets it."""
 _WITH_CONSTANT = re.compile(
     r"(?!return\b|raise\b|for\b|with\b|def\b)[^'\"]*(?:[(,=] ?(?:\w+\.)*[A-Z][A-Z0-9_]{2,}\b|[(,=] ?-?\d)[^'\"]*"
 )
@@ -62,7 +65,7 @@ def find_small_changes(old: Code, new: Code, lines: ReportedLines, names: Source
         before = old.functions.get(name)
         if before is None or not lines.has_unreported_change(before, parts, name):
             continue
-        changes = list(_compare(before, parts))
+        changes = list(_compare(before, parts, lines))
         if changes and len(changes) <= _MAX_CHANGES and all(text is not None for text, _, _ in changes):
             texts = joined([text for text, _, _ in changes if text is not None], "; ")
             _, line, is_old = changes[0]
@@ -71,14 +74,25 @@ def find_small_changes(old: Code, new: Code, lines: ReportedLines, names: Source
             )
 
 
-def _compare(old: Sequence[Part], new: Sequence[Part]) -> Iterator[tuple[Phrase | None, int, bool]]:
-    """Yield the differences of two functions, each with its line; without a text if it is not small."""
+def _compare(
+    old: Sequence[Part], new: Sequence[Part], lines: ReportedLines
+) -> Iterator[tuple[Phrase | None, int, bool]]:
+    """Yield the differences of two functions, each with its line; without a text if it is not small.
+
+    Added and removed statements that other lines report are left out.
+    """
     texts = [[_read(part) for part in parts] for parts in (old, new)]
     matcher = SequenceMatcher(None, texts[0], texts[1], autojunk=False)
     for tag, old_start, old_end, new_start, new_end in matcher.get_opcodes():
         if tag != "equal":
-            part = new[new_start] if new_end > new_start else old[old_start]
-            before, after = texts[0][old_start:old_end], texts[1][new_start:new_end]
+            parts = [old[old_start:old_end], new[new_start:new_end]]
+            if not all(parts):
+                is_old = bool(parts[0])
+                parts = [[part for part in own if not lines.reports(part, is_old=is_old)] for own in parts]
+            if not any(parts):
+                continue
+            part = (parts[1] or parts[0])[0]
+            before, after = ([_read(item) for item in own] for own in parts)
             is_moved = any(item in texts[1] for item in before) or any(item in texts[0] for item in after)
             text = None if is_moved else _describe(before, after)
             yield text, part.first_line, new_end == new_start

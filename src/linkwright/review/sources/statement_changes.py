@@ -8,6 +8,7 @@ from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.sources.added_texts import TextsChange, find_constant_changes, find_key_changes
+from linkwright.review.sources.attribute_changes import find_attribute_changes
 from linkwright.review.sources.changed_sources import ChangedSources
 from linkwright.review.sources.changed_texts import find_text_changes
 from linkwright.review.sources.changed_values import find_value_changes
@@ -44,6 +45,7 @@ def compare_statements(
         changes += _compare_values(old, new, file, changes)
         changes += _find_small_changes(old, new, file, changes)
         changes += _find_renamed_variables(old, new, file, changes)
+        changes += _find_attributes(old, new, file, changes)
         changes += _compare_code(old, new, file.old_path, file.new_path, changes)
         changes += _compare_keys(old, new, file, changes)
         changes += _find_deprecations(old, new, file)
@@ -76,6 +78,19 @@ def _find_small_changes(
     if before is None or after is None or file.path.endswith(CPP_SUFFIXES):
         return
     for change in find_small_changes(before, after, ReportedLines(reported), new.get_names(file.new_path)):
+        path = (file.old_path if change.is_old else file.new_path) or file.path
+        yield Change(change.text, location=Location(path, change.line, 1, change.is_old))
+
+
+def _find_attributes(
+    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
+) -> Iterator[Change]:
+    """Yield the attributes with literal values that only one version of a constructor in Python sets."""
+    before, after = old.codes.get(file.old_path or ""), new.codes.get(file.new_path or "")
+    if before is None or after is None or file.path.endswith(CPP_SUFFIXES):
+        return
+    sentences = [str(change.sentence) for change in reported]
+    for change in find_attribute_changes(before, after, (old.has_word, new.has_word), sentences):
         path = (file.old_path if change.is_old else file.new_path) or file.path
         yield Change(change.text, location=Location(path, change.line, 1, change.is_old))
 
