@@ -18,6 +18,7 @@ from linkwright.geometry.arrays import (
 )
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.geometry.single import rpy_from_quaternion
+from linkwright.kinematics.tree import MimicRelation
 from linkwright.planning.effort import ATTEMPT_S, elapsed_s, spend
 from linkwright.planning.groups import JointGroup
 from linkwright.planning.inverse_kinematics import ChainSolver
@@ -33,6 +34,17 @@ _DISTINCT = 0.05
 """The distance between two configurations, in rad or m over all joints, above which they count as different."""
 
 
+_TOLERANCE = 1e-3
+"""How far a joint may be outside of its target, in rad or m."""
+
+
+class ContradictionError(ValueError):
+    """Raised when the targets of a joint and of one that mimics it cannot both be reached."""
+
+    def __init__(self, name: str, leader: str) -> None:
+        super().__init__(f"the constraints of '{name}' contradict those of other joints that move with '{leader}'")
+
+
 @dataclass(frozen=True, slots=True)
 class JointTarget:
     """The position of a joint in rad or m, with the tolerance in both directions."""
@@ -40,6 +52,22 @@ class JointTarget:
     position: float
     above: float = 0.0
     below: float = 0.0
+
+    def for_leader(self, relation: MimicRelation) -> JointTarget:
+        """Return the target of the joint that this joint mimics."""
+        above, below = self.above / abs(relation.factor), self.below / abs(relation.factor)
+        position = (self.position - relation.offset) / relation.factor
+        return JointTarget(position, *((above, below) if relation.factor > 0.0 else (below, above)))
+
+    def intersect(self, other: JointTarget) -> JointTarget | None:
+        """Return the target that fulfills both, or None if there is none."""
+        low = max(self.position - self.below, other.position - other.below)
+        high = min(self.position + self.above, other.position + other.above)
+        if low - high > _TOLERANCE:
+            return None
+        low, high = min(low, high), max(low, high)
+        position = min(max(self.position, low), high)
+        return JointTarget(position, high - position, position - low)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,6 +132,27 @@ class Goal:
     joints: Mapping[str, JointTarget] = field(default_factory=dict)
     links: Sequence[LinkTarget] = ()
 
+    def follow_leaders(self, relations: Mapping[str, MimicRelation]) -> Goal:
+        """Return the goal with targets of the joints that mimic joints follow, instead of those of the mimic joints.
+
+        Args:
+            relations: the relations of all moving joints, by name.
+
+        Raises:
+            ContradictionError: the targets of two joints cannot both be reached.
+        """
+        joints: dict[str, JointTarget] = {}
+        for name, target in self.joints.items():
+            relation = relations.get(name)
+            leader = name
+            if relation is not None and relation.leader != name and relation.factor:
+                leader, target = relation.leader, target.for_leader(relation)
+            both = target if leader not in joints else joints[leader].intersect(target)
+            if both is None:
+                raise ContradictionError(name, leader)
+            joints[leader] = both
+        return Goal(joints, self.links)
+
     def find_invalid_number(self) -> str:
         """Return the first joint or link whose target has a number that is not finite, or an empty string."""
         for name, joint in self.joints.items():
@@ -121,7 +170,8 @@ class Goal:
         """Return whether the goal is fulfilled at the positions of all joints; the model is moved."""
         for name, target in self.joints.items():
             position = positions[model.index(name)]
-            if not target.position - target.below - 1e-3 <= position <= target.position + target.above + 1e-3:
+            low, high = target.position - target.below, target.position + target.above
+            if not low - _TOLERANCE <= position <= high + _TOLERANCE:
                 return False
         if self.links:
             model.move(positions)

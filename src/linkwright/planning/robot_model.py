@@ -44,6 +44,7 @@ class RobotModel:
 
     Attributes:
         joint_names: the joints that have a position of their own, in the order of positions.
+        relations: the relation of each moving joint to the one that it mimics, by name.
         mujoco_model: the compiled model.
         data: the state of the model.
     """
@@ -53,14 +54,14 @@ class RobotModel:
     ) -> None:
         self._mujoco = mujoco = load_mujoco()
         moving = [joint.name for joint in robot.joints.values() if joint.type in MOVING_TYPES and any(joint.axis)]
-        self.joint_names, relations = resolve_mimics(robot, moving)
+        self.joint_names, self.relations = resolve_mimics(robot, moving)
         spec = mujoco.MjSpec()
         _add_robot(spec, robot, moving, shapes or {})
         if complete is not None:
             complete(spec)
         self.mujoco_model = spec.compile()
         self.data = mujoco.MjData(self.mujoco_model)
-        self._expansion = _PositionExpansion(self.joint_names, relations, self.mujoco_model)
+        self._expansion = _PositionExpansion(self.joint_names, self.relations, self.mujoco_model)
         self._indexes = {name: index for index, name in enumerate(self.joint_names)}
 
     def index(self, joint: str) -> int:

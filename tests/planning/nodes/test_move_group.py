@@ -192,6 +192,19 @@ class TestPlans:
         np.testing.assert_allclose(points[-1].positions, (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), atol=1e-6)
         assert points[-1].time_from_start.sec + points[-1].time_from_start.nanosec * 1e-9 > 0.3
 
+    @pytest.mark.parametrize(("right", "code"), [(0.01, "SUCCESS"), (0.02, "INVALID_GOAL_CONSTRAINTS")])
+    async def test_goal_with_a_finger_that_mimics_another_one(self, bench, logged, right, code) -> None:
+        joints = [
+            message("moveit_msgs/msg/JointConstraint", joint_name=name, position=position)
+            for name, position in (("left", 0.01), ("right", right))
+        ]
+        request = motion_request(message("moveit_msgs/msg/Constraints", joint_constraints=joints))
+        request.group_name = "gripper"
+        response = await bench.call("GetMotionPlan", "plan_kinematic_path", motion_plan_request=request)
+        error = response.motion_plan_response.error_code
+        assert error.val == getattr(error, code)
+        assert any("'right' contradict" in text for text in logged("ERROR")) is (code != "SUCCESS")
+
     async def test_failure_has_a_code_and_a_reason(self, bench, logged) -> None:
         request = motion_request(joint_constraints(lift=2.0, elbow=-2.0))
         request.start_state.attached_collision_objects = []

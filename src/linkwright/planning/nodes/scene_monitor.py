@@ -11,7 +11,7 @@ from linkwright.graph import Node, Publisher
 from linkwright.messages import get_service
 from linkwright.planning.cartesian import ArcPoint
 from linkwright.planning.collision_scene import CollisionScene
-from linkwright.planning.goals import Goal
+from linkwright.planning.goals import ContradictionError, Goal
 from linkwright.planning.nodes.conversions import (
     FrameLookup,
     InvalidShapeError,
@@ -94,8 +94,11 @@ class SceneMonitor:
         """
         try:
             goal = goal_from_constraints(constraints, self.frame_lookup(positions), default_link)
+            goal = goal.follow_leaders(self._robot.model.relations)
         except InvalidShapeError as error:
             raise RequestError("INVALID_GOAL_CONSTRAINTS", f"a constraint region is not valid: {error}") from None
+        except ContradictionError as error:
+            raise RequestError("INVALID_GOAL_CONSTRAINTS", str(error)) from None
         joints = set(goal.joints).difference(self._robot.model.joint_names)
         links = {target.link for target in goal.links}.difference(self._robot.robot.links)
         if unknown := sorted(joints | links):
