@@ -5,7 +5,6 @@ from __future__ import annotations
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.sdf.plugins import library_name
 
-_SCORE_ALTERNATIVE = phrase("libStationkeepingScoringPlugin.so or libWayfindingScoringPlugin.so")
 _WIDE_CAMERA_ALTERNATIVE = phrase("a camera with a wide <horizontal_fov>")
 _AUTOPILOT_ALTERNATIVE = phrase(
     "a ROS node in place of the autopilot: commands on the topics of the motors and joints, "
@@ -142,7 +141,6 @@ _GROUPS = {
         "gazebo_ros_steer_drive",
         "gazebo_ros_steerbot",
     ),
-    _SCORE_ALTERNATIVE: ("stationkeeping_scoring_plugin", "wayfinding_scoring_plugin"),
     _TASK_ALTERNATIVE: (
         *(f"{task}ScoringPlugin" for task in _TASKS),
         *("navigation_scoring_plugin", "perception_scoring_plugin", "scan_dock_scoring_plugin"),

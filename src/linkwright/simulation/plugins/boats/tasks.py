@@ -84,14 +84,16 @@ class Goal:
 P = TypeVar("P", bound=TaskParameters)
 
 
-class _Task(SimulatedPlugin[P], ABC, Generic[P]):
+class Task(SimulatedPlugin[P], ABC, Generic[P]):
     """A task with its states, its collisions and its score.
 
     Attributes:
+        collision_buffer: the time in s after a collision in which further ones do not count.
         state: the current state.
         score: the current score.
     """
 
+    collision_buffer = _COLLISION_BUFFER_S
     CARRIED: ClassVar[tuple[str, ...]] = ("state", "score", "_collision_count", "_last_collision_s")
 
     @abstractmethod
@@ -102,11 +104,19 @@ class _Task(SimulatedPlugin[P], ABC, Generic[P]):
     def publish_goals(self) -> None:
         """Publish the goals and the errors, once a second while the task is ready or running."""
 
+    def create_outputs(self) -> None:
+        """Create the topics of the task's state and of the boat's release."""
+        self._info = self.node.publisher(_PARAMETERS_TYPE, self.parameters.task_info_topic)
+        self._release = self.node.publisher("std_msgs/msg/Empty", self.parameters.release_topic)
+
+    def announce_ready(self) -> None:
+        """Publish that the task became ready: the boat is released."""
+        self._release.publish(get_message("std_msgs/msg/Empty")())
+
     def start(self) -> None:
         """Create the topics, and start the task."""
         parameters, node = self.parameters, self.node
-        self._info = node.publisher(_PARAMETERS_TYPE, parameters.task_info_topic)
-        self._release = node.publisher("std_msgs/msg/Empty", parameters.release_topic)
+        self.create_outputs()
         node.subscribe("ros_gz_interfaces/msg/Contacts", "/vrx/contacts", self._on_contacts)
         self._globe = Globe(self.context.world.spherical_coordinates or SphericalCoordinates())
         self._ready_s = parameters.initial_state_duration
@@ -145,7 +155,7 @@ class _Task(SimulatedPlugin[P], ABC, Generic[P]):
         seconds = self.simulation.seconds
         if self.state == _INITIAL and seconds >= self._ready_s:
             self.state = _READY
-            self._release.publish(get_message("std_msgs/msg/Empty")())
+            self.announce_ready()
         elif self.state == _READY and seconds >= self._running_s:
             self.state = _RUNNING
         elif self.state == _RUNNING and seconds >= self._finish_s:
@@ -157,18 +167,27 @@ class _Task(SimulatedPlugin[P], ABC, Generic[P]):
             self.update_score((x, y, rpy_from_quaternion((qx, qy, qz, qw))[2]))
 
     def _publish(self) -> None:
+        self.publish_state()
+        if self.state in (_READY, _RUNNING):
+            self.publish_goals()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether the task runs."""
+        return self.state == _RUNNING
+
+    def publish_state(self) -> None:
+        """Publish the state of the task."""
         names = {"bool_value": 1, "integer_value": 2, "double_value": 3, "string_value": 4}
         parameter_class = get_message("rcl_interfaces/msg/Parameter")
         value_class = get_message("rcl_interfaces/msg/ParameterValue")
         parameters = [
             parameter_class(name=name, value=value_class(type=names[field], **{field: value}))
-            for name, field, value in self._describe_state()
+            for name, field, value in self.describe_state()
         ]
         self._info.publish(get_message(_PARAMETERS_TYPE)(params=parameters))
-        if self.state in (_READY, _RUNNING):
-            self.publish_goals()
 
-    def _describe_state(self) -> Iterator[tuple[str, str, Any]]:
+    def describe_state(self) -> Iterator[tuple[str, str, Any]]:
         """Yield the names of the values of a task, their fields in messages, and the values."""
         seconds = self.simulation.seconds
         elapsed = min(max(seconds - self._running_s, 0.0), self.parameters.running_state_duration)
@@ -186,7 +205,7 @@ class _Task(SimulatedPlugin[P], ABC, Generic[P]):
         hull = f"{self.parameters.vehicle}/base_link::"
         seconds = self.simulation.seconds
         is_hit = any(hull in item.collision1.name or hull in item.collision2.name for item in message.contacts)
-        if is_hit and seconds - self._last_collision_s > _COLLISION_BUFFER_S:
+        if is_hit and seconds - self._last_collision_s > self.collision_buffer:
             self._collision_count += 1
             self._last_collision_s = seconds
 
@@ -203,12 +222,12 @@ class StationkeepingParameters(TaskParameters):
     head_error_on: bool = True
 
 
-class Stationkeeping(_Task[StationkeepingParameters]):
+class Stationkeeping(Task[StationkeepingParameters]):
     """The substitute for ``libStationkeepingScoringPlugin.so``: the score is the mean error of the pose."""
 
     PARAMETERS = StationkeepingParameters
-    IGNORED = ("markers", "per_plugin_exit_on_completion", "exit_delay", "silent")
-    CARRIED = (*_Task.CARRIED, "_total", "_count", "_error")
+    IGNORED: ClassVar[tuple[str, ...]] = ("markers", "per_plugin_exit_on_completion", "exit_delay", "silent")
+    CARRIED = (*Task.CARRIED, "_total", "_count", "error")
 
     def start(self) -> None:
         """Read the goal, create the topics, and start the task.
@@ -216,12 +235,17 @@ class Stationkeeping(_Task[StationkeepingParameters]):
         Raises:
             LinkwrightError: SIM160, the goal is not valid.
         """
-        parameters, node = self.parameters, self.node
+        parameters = self.parameters
         super().start()
         if parameters.goal_pose or not parameters.goal_pose_cart:
-            self._goal = self.read_goal(parameters.goal_pose or "0 0 0", self.context.element)
+            self.goal = self.read_goal(parameters.goal_pose or "0 0 0", self.context.element)
         else:
-            self._goal = self.read_world_goal(parameters.goal_pose_cart, self.context.element)
+            self.goal = self.read_world_goal(parameters.goal_pose_cart, self.context.element)
+        self.create_goal_outputs()
+
+    def create_goal_outputs(self) -> None:
+        """Create the topics of the goal and of the errors."""
+        parameters, node = self.parameters, self.node
         self._goal_output = node.publisher("geometry_msgs/msg/Pose", parameters.goal_topic)
         self._error_output = node.publisher(_FLOAT_TYPE, parameters.pose_error_topic)
         self._mean_output = node.publisher(_FLOAT_TYPE, parameters.mean_error_topic)
@@ -229,19 +253,19 @@ class Stationkeeping(_Task[StationkeepingParameters]):
     def reset(self) -> None:
         """Start the task again."""
         super().reset()
-        self._total, self._count, self._error = 0.0, 0, 0.0
+        self._total, self._count, self.error = 0.0, 0, 0.0
 
     def update_score(self, pose: tuple[float, float, float]) -> None:
         """Add the error of a pose to the mean."""
-        self._error = self._goal.compute_error(pose, with_heading=self.parameters.head_error_on)
-        self._total, self._count = self._total + self._error, self._count + 1
+        self.error = self.goal.compute_error(pose, with_heading=self.parameters.head_error_on)
+        self._total, self._count = self._total + self.error, self._count + 1
         self.score = self._total / self._count
 
     def publish_goals(self) -> None:
         """Publish the goal, and the errors of a running task."""
-        self._goal_output.publish(self._goal.to_message())
+        self._goal_output.publish(self.goal.to_message())
         if self.state == _RUNNING:
-            self._error_output.publish(get_message(_FLOAT_TYPE)(data=self._error))
+            self._error_output.publish(get_message(_FLOAT_TYPE)(data=self.error))
             self._mean_output.publish(get_message(_FLOAT_TYPE)(data=self.score))
 
 
@@ -254,12 +278,18 @@ class WayfindingParameters(TaskParameters):
     mean_error_topic: str = "/vrx/wayfinding/mean_error"
 
 
-class Wayfinding(_Task[WayfindingParameters]):
+class Wayfinding(Task[WayfindingParameters]):
     """The substitute for ``libWayfindingScoringPlugin.so``: the score is the mean of the smallest errors."""
 
     PARAMETERS = WayfindingParameters
-    IGNORED = ("waypoints", "markers", "per_plugin_exit_on_completion", "exit_delay", "silent")
-    CARRIED = (*_Task.CARRIED, "_errors")
+    IGNORED: ClassVar[tuple[str, ...]] = (
+        "waypoints",
+        "markers",
+        "per_plugin_exit_on_completion",
+        "exit_delay",
+        "silent",
+    )
+    CARRIED = (*Task.CARRIED, "errors")
 
     def start(self) -> None:
         """Read the waypoints, create the topics, and start the task.
@@ -267,14 +297,19 @@ class Wayfinding(_Task[WayfindingParameters]):
         Raises:
             LinkwrightError: SIM160, there is no waypoint, or one is not valid.
         """
-        parameters, node, element = self.parameters, self.node, self.context.element
+        element = self.context.element
         super().start()
         parent = None if element is None else element.first("waypoints")
         children = () if parent is None else parent.elements("waypoint")
-        self._goals = [self.read_goal(self.text_in(child, "pose"), child) for child in children]
-        if not self._goals:
+        self.goals = [self.read_goal(self.text_in(child, "pose"), child) for child in children]
+        if not self.goals:
             message = phrase("plugin '{plugin}': <waypoints> needs a <waypoint>", plugin=self.context.name)
             raise self.parameter_error(message, parent)
+        self.create_goal_outputs()
+
+    def create_goal_outputs(self) -> None:
+        """Create the topics of the waypoints and of the errors."""
+        parameters, node = self.parameters, self.node
         self._goals_output = node.publisher("geometry_msgs/msg/PoseArray", parameters.waypoints_topic)
         self._errors_output = node.publisher("ros_gz_interfaces/msg/Float32Array", parameters.min_errors_topic)
         self._mean_output = node.publisher(_FLOAT_TYPE, parameters.mean_error_topic)
@@ -282,18 +317,18 @@ class Wayfinding(_Task[WayfindingParameters]):
     def reset(self) -> None:
         """Start the task again."""
         super().reset()
-        self._errors: list[float] = []
+        self.errors: list[float] = []
 
     def update_score(self, pose: tuple[float, float, float]) -> None:
         """Keep the smallest error of each waypoint."""
-        errors = [goal.compute_error(pose, with_heading=True) for goal in self._goals]
-        self._errors = [min(pair) for pair in zip(errors, self._errors or errors, strict=True)]
-        self.score = sum(self._errors) / len(self._errors)
+        errors = [goal.compute_error(pose, with_heading=True) for goal in self.goals]
+        self.errors = [min(pair) for pair in zip(errors, self.errors or errors, strict=True)]
+        self.score = sum(self.errors) / len(self.errors)
 
     def publish_goals(self) -> None:
         """Publish the waypoints, and the errors of a running task."""
-        poses = [goal.to_message() for goal in self._goals]
+        poses = [goal.to_message() for goal in self.goals]
         self._goals_output.publish(get_message("geometry_msgs/msg/PoseArray")(poses=poses))
         if self.state == _RUNNING:
-            self._errors_output.publish(get_message("ros_gz_interfaces/msg/Float32Array")(data=self._errors))
+            self._errors_output.publish(get_message("ros_gz_interfaces/msg/Float32Array")(data=self.errors))
             self._mean_output.publish(get_message(_FLOAT_TYPE)(data=self.score))
