@@ -55,7 +55,7 @@ class Entry:
             file, or the function that makes the action.
         settings: the values, by name. The value of an argument is its default.
         span: the location of the action.
-        namespaces: the namespaces of the groups around a parameter, which are no settings of it, the outermost first.
+        namespaces: the namespaces of the groups around a parameter, the outermost first; not among its settings.
     """
 
     kind: str
