@@ -103,3 +103,69 @@ def test_a_changed_launch_file_that_starts_a_script_which_is_not_executable_is_n
     repository.write({f"lamp/launch/{launch}": LAUNCHES[launch].format(name="other.py")})
     found = [line for line in breaking(compare(repository)) if line.startswith("starts")]
     assert found == (["starts 'other.py' of 'lamp', which is not executable"] if is_found else [])
+
+
+EXECUTABLE = "add_executable(old old.cpp)\ninstall(TARGETS old DESTINATION lib/lamp)\n"
+
+
+@pytest.mark.parametrize(
+    ("body", "is_found"),
+    [
+        (EXECUTABLE, True),
+        (EXECUTABLE + "add_executable(new new.cpp)\n", False),
+        (EXECUTABLE + "foreach(age ne)\nadd_executable(${age}w ${age}w.cpp)\nendforeach()\n", False),
+        ("set(prefix ne)\nadd_executable(${prefix}w new.cpp)\n", False),
+        ("include(cmake/programs.cmake)\n", False),
+    ],
+)
+def test_a_changed_launch_file_that_starts_an_executable_which_nothing_builds_is_named(
+    repository, compare, body, is_found
+):
+    write_package(repository, "catkin", body, "a.launch", "old")
+    repository.write({"lamp/launch/a.launch": LAUNCHES["a.launch"].format(name="new")})
+    found = [line for line in breaking(compare(repository)) if line.startswith("starts")]
+    assert found == (["starts 'new' of 'lamp', which does not exist"] if is_found else [])
+
+
+def rename_package(repository: Repository, launch: str, text: str):
+    write_package(repository, "ament_cmake", SCRIPTS, launch, "old.py", "start")
+    manifest = MANIFEST.format(name="beacon", tool="ament_cmake")
+    body = CMAKE.format(tool="ament_cmake", body=SCRIPTS.replace("lib/lamp", "lib/beacon"))
+    repository.write(
+        {
+            "lamp/package.xml": manifest,
+            "lamp/CMakeLists.txt": body.replace("project(lamp)", "project(beacon)"),
+            f"start/launch/{launch}": text,
+        }
+    )
+
+
+OLD_NAME = "names the package 'lamp', whose name is 'beacon' now"
+
+
+@pytest.mark.parametrize("launch", LAUNCHES)
+@pytest.mark.parametrize(("package", "is_found"), [("lamp", True), ("beacon", False)])
+def test_a_launch_file_that_names_a_renamed_package_is_named(repository, compare, launch, package, is_found):
+    rename_package(repository, launch, LAUNCHES[launch].replace("lamp", package).format(name="old.py"))
+    assert (OLD_NAME in breaking(compare(repository))) is is_found
+
+
+def test_a_launch_file_that_includes_a_file_of_a_renamed_package_is_named(repository, compare):
+    include = '<launch><include file="$(find-pkg-share lamp)/launch/lamp.launch.xml"/></launch>\n'
+    rename_package(repository, "a.launch.xml", include)
+    assert OLD_NAME in breaking(compare(repository))
+
+
+def test_a_renamed_package_that_another_one_replaces_is_found(repository, compare):
+    rename_package(repository, "a.launch.xml", LAUNCHES["a.launch.xml"].format(name="old.py"))
+    repository.write({"other/package.xml": MANIFEST.format(name="lamp", tool="ament_cmake")})
+    assert OLD_NAME not in breaking(compare(repository))
+
+
+def test_a_launch_file_that_starts_a_program_which_its_renamed_package_has_lost_is_named(repository, compare):
+    text = LAUNCHES["a.launch.xml"].replace("lamp", "beacon").format(name="old.py")
+    rename_package(repository, "a.launch.xml", text)
+    body = CMAKE.format(tool="ament_cmake", body=SCRIPTS.replace("scripts/old.py ", "").replace("lamp", "beacon"))
+    repository.write({"lamp/CMakeLists.txt": body.replace("project(lamp)", "project(beacon)")})
+    (repository.root / "lamp/scripts/old.py").unlink()
+    assert "starts 'old.py' of 'beacon', which no longer exists" in breaking(compare(repository))

@@ -23,6 +23,7 @@ from linkwright.review.launches.effects import find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.imports import compare_imports
+from linkwright.review.launches.include_trees import IncludeTree, find_other_include, find_same_parameter
 from linkwright.review.launches.included import (
     IncludedActions,
     find_callers,
@@ -167,6 +168,7 @@ def _report_unpaired_entries(
     """Report the added, removed and moved actions."""
     old_included, new_included = included
     stopped = old_included.count_all_started_programs() - new_included.count_all_started_programs()
+    trees = IncludeTree(old_included), IncludeTree(new_included)
     moved: dict[tuple[str, bool], list[Entry]] = {}
     for entry in added:
         file = old_included.find_unmatched_file(entry, new_included)
@@ -184,9 +186,6 @@ def _report_unpaired_entries(
             moved.setdefault((file, False), []).append(entry)
     for entry in removed:
         file = new_included.find_unmatched_file(entry, old_included)
-        if file is None and entry.kind == SERVER_PARAMETER:
-            value = old_included.outline.resolve(entry.settings.get("value", ""))
-            file = new_included.find_file_with_parameter(entry.name.rpartition("/")[2], value)
         if file is not None:
             moved.setdefault((file, True), []).append(entry)
             continue
@@ -220,9 +219,28 @@ def _report_unpaired_entries(
             continue
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         outlines = old_included.outline, new_included.outline
-        reason = find_removal_reason(entry, *outlines, stops_nodes=stops_nodes)
-        pair.add(text, location, reason or explain_lost_value(entry, *outlines))
+        reason = find_removal_reason(entry, *outlines, stops_nodes=stops_nodes) or explain_lost_value(entry, *outlines)
+        _report_removed(pair, entry, text, reason, trees)
     _report_moved(pair, moved)
+
+
+def _report_removed(
+    pair: FilePair, entry: Entry, text: Phrase, reason: Phrase | None, trees: tuple[IncludeTree, IncludeTree]
+) -> None:
+    """Report a removed action, which breaks nothing if an included file now does the same."""
+    if reason is not None and entry.kind == SERVER_PARAMETER:
+        parameter = find_same_parameter(entry, *trees)
+        if parameter is not None and parameter.path is not None:
+            text, reason = phrase("{change}; {file} sets it now", change=text, file=parameter.path), None
+    other = None if reason is None or entry.kind != "include" else find_other_include(entry, *trees)
+    if other is not None and other[0].includer is not None:
+        file, has_same_namespace = other
+        text = phrase("{change}; {file} includes it with the same arguments", change=text, file=file.includer)
+        reason = None
+        if not has_same_namespace:
+            text = phrase("{change}, in the namespace '{name}'", change=text, name=file.namespace)
+            reason = phrase("programs that use the names of the node, its topics or its services do not find them")
+    pair.add(text, pair.location(entry.span, is_old=True), reason)
 
 
 def _is_unused_argument(pair: FilePair, entry: Entry, old: LaunchOutline) -> bool:

@@ -16,15 +16,7 @@ from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import offers_nothing
 from linkwright.review.launches.matching import get_launch_file_stem
-from linkwright.review.launches.outlines import (
-    CONDITION,
-    NAMESPACE,
-    NAMESPACE_OF_INCLUDED,
-    PROGRAM_KINDS,
-    SERVER_PARAMETER,
-    Entry,
-    LaunchOutline,
-)
+from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import find_served_names
 from linkwright.review.versions import Version, Versions
@@ -73,14 +65,24 @@ class IncludedActions:
         outline: the actions of the file.
 
     Attributes:
+        path: the path of the launch file, relative to the root.
         outline: the actions of the file.
     """
 
     def __init__(self, version: Version, path: str, outline: LaunchOutline) -> None:
         self._version = version
-        self._path = path
+        self.path = path
         self.outline = outline
         self._outlines: dict[Path, LaunchOutline | None] = {}
+
+    @property
+    def file(self) -> Path:
+        """The launch file."""
+        return self._version.file(self.path)
+
+    def find_path(self, file: Path) -> str | None:
+        """Return the path of a file relative to the root, or None if it is outside of the repository."""
+        return self._version.relative(file)
 
     def find_unmatched_file(self, entry: Entry, other: IncludedActions) -> str | None:
         """Return the included file with an action that the other version does not include.
@@ -115,7 +117,7 @@ class IncludedActions:
     def _included(self) -> dict[str, LaunchOutline]:
         """The outlines of the included files, by path."""
         outlines: dict[str, LaunchOutline] = {}
-        queue = [(self._version.file(self._path), self.outline, 0)]
+        queue = [(self.file, self.outline, 0)]
         for file, outline, depth in queue:
             for entry in outline.entries if depth < MAX_INCLUDE_DEPTH else ():
                 included_file = self.find_included_file(entry, file)
@@ -151,7 +153,7 @@ class IncludedActions:
 
         An unknown file counts as one program.
         """
-        return Counter(self._find_action_programs(entry, self.outline, self._version.file(self._path), 0))
+        return Counter(self._find_action_programs(entry, self.outline, self.file, 0))
 
     def count_all_started_programs(self, values: Mapping[str, str] | None = None) -> Counter[Program]:
         """Count the shared programs that the launch file and its included files start by default.
@@ -160,44 +162,7 @@ class IncludedActions:
             values: the defaults that replace those of the file, by argument name.
         """
         outline = self.outline.with_defaults(values) if values else self.outline
-        return Counter(self._find_file_programs(outline, self._version.file(self._path), 0))
-
-    def find_file_with_parameter(self, name: str, value: str) -> str | None:
-        """Return an included file that sets a parameter of the server to a value, or None.
-
-        Args:
-            name: the last name of the parameter.
-            value: the value, without substitutions.
-        """
-        file = self._version.file(self._path)
-        for entry in self.outline.entries:
-            included = self.read_included_file(entry, self.outline, file)
-            for other in () if included is None else included.outline.entries:
-                is_parameter = other.kind == SERVER_PARAMETER and other.name.rpartition("/")[2] == name
-                if included and is_parameter and included.outline.resolve(other.settings.get("value", "")) == value:
-                    return self._version.relative(included.file)
-        return None
-
-    def find_node_names(self, entry: Entry) -> frozenset[str] | None:
-        """Return the names, with namespaces, of the nodes that an include starts; None if a file cannot be read."""
-        names = list(self._find_node_names(entry, self.outline, self._version.file(self._path), 0))
-        return None if None in names else frozenset(name for name in names if name is not None)
-
-    def _find_node_names(self, entry: Entry, outline: LaunchOutline, file: Path, depth: int) -> Iterator[str | None]:
-        """Yield the names of the nodes that an include starts, and None for a file that cannot be read."""
-        included = self.read_included_file(entry, outline, file) if depth < MAX_INCLUDE_DEPTH else None
-        namespace = outline.resolve(entry.settings.get(NAMESPACE_OF_INCLUDED, ""))
-        if included is None:
-            yield None
-            return
-        for other in included.outline.entries:
-            if other.kind == "include":
-                for name in self._find_node_names(other, included.outline, included.file, depth + 1):
-                    yield None if name is None else _join_namespaces(namespace, name)
-            elif other.kind in PROGRAM_KINDS:
-                own_namespace = included.outline.resolve(other.settings.get(NAMESPACE, ""))
-                own_name = included.outline.resolve(other.settings.get("name", other.name))
-                yield _join_namespaces(namespace, f"{own_namespace}/{own_name}" if own_namespace else own_name)
+        return Counter(self._find_file_programs(outline, self.file, 0))
 
     def _find_file_programs(self, outline: LaunchOutline, file: Path, depth: int) -> Iterator[Program]:
         """Yield the shared programs that a launch file starts by default."""
@@ -257,7 +222,7 @@ class IncludedActions:
             return {}
         outlines = [self.outline, *self._included.values()]
         declared = {entry.name for outline in outlines for entry in outline.entries if entry.has_value}
-        file = self._version.file(self._path)
+        file = self.file
         unknown_include_lines = [
             entry.span.line
             for entry in entries
@@ -272,10 +237,6 @@ class IncludedActions:
                     if match["name"] not in declared:
                         undeclared.setdefault(match["name"], entry)
         return undeclared
-
-
-def _join_namespaces(namespace: str, name: str) -> str:
-    return name if not namespace or name.startswith("/") else f"{namespace.rstrip('/')}/{name}"
 
 
 def find_callers(version: Version, path: str, name: str) -> Iterator[tuple[LaunchOutline, Entry]]:

@@ -187,7 +187,9 @@ def _read_entries(parent: LaunchTag, scope: Scope, other_code: list[CodePart]) -
         else:
             entries = list(_read_action(tag))
             for entry in entries:
-                yield Entry(entry.kind, entry.name, scope.add_to_settings(entry.kind, entry.settings), entry.span)
+                settings = scope.add_to_settings(entry.kind, entry.settings)
+                namespaces = scope.namespaces if entry.kind == "parameter" else ()
+                yield Entry(entry.kind, entry.name, settings, entry.span, namespaces)
             if entries:
                 if entries[0].kind == "node":
                     inner_tags = [child for child in tag.children if child.name in _NODE_TAGS]

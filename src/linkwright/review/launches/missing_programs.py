@@ -21,6 +21,7 @@ from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.launches.outlines import PROGRAM_KINDS, Entry
 from linkwright.review.launches.reading import read_outline
+from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 from linkwright.xacro.cache import read_document
 
@@ -42,6 +43,13 @@ _STARTS = (
 _FINDING = "LW844"
 """The finding about a program that a launch file starts and that does not exist."""
 _COMMENT = re.compile(r"#[^\n]*")
+_COMPUTED_NAME = re.compile(
+    r"\b(?:foreach|macro|function|include)\s*\(|add_executable\s*\(\s*[^\s)]*\$\{(?!PROJECT_NAME\})"
+    r"|\b(?:OUTPUT_NAME|SUFFIX)\s+[^\s)]*\$|\bfor\b.*\bin\b",
+    re.IGNORECASE,
+)
+"""A command of a build file that may build programs whose names it does not contain."""
+_PACKAGE_OF_PATH = re.compile(r"\$\(find(?:-pkg-share|-pkg-prefix)? (?P<package>[\w.-]+)\)")
 _SUBMODULE = re.compile(r"^\s*path\s*=\s*(?P<path>\S+)", re.MULTILINE)
 
 
@@ -105,6 +113,11 @@ class RepositoryPackage:
         commands = _COMMENT.sub("", self.build_text)  # the comments of catkin's template tell how to rename a program
         return _GENERATION.search(commands) is not None or any(path.is_relative_to(self.folder) for path in submodules)
 
+    @cached_property
+    def may_compute_names(self) -> bool:
+        """Whether the build may make programs whose names the build files do not contain."""
+        return _COMPUTED_NAME.search(_COMMENT.sub("", self.build_text)) is not None
+
     def _names_foreign_path(self, name: str) -> bool:
         """Return whether a build file names a script by a path that may lead out of the package."""
         paths = re.findall(rf"[^\s\"'()]*{re.escape(name)}", self.build_text)
@@ -135,12 +148,13 @@ class RepositoryPackage:
 def find_missing_programs(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the launch files that start a program which the new version does not have, each with a change.
 
-    The program was removed, or is a script that a changed launch file starts and that does not exist.
+    The program was removed, or a changed launch file starts it for the first time and it does not exist.
     """
     changed = {file.new_path: file.old_path for file in changed_files if file.new_path}
     packages = _find_shared_packages(versions)
     folders = {versions.old.package_of(file.old_path) for file in changed_files if file.old_path}
     changed_packages = {name for name, (old, _) in packages.items() if old.folder in folders}
+    new_names = {package.old_name: package.new_name for package in find_renamed_packages(versions)}
     for path in find_launch_files(versions.new):
         text = versions.new.text(path)
         if not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts):
@@ -148,15 +162,17 @@ def find_missing_programs(versions: Versions, changed_files: Sequence[ChangedFil
         if path not in changed and not any(name in text for name in changed_packages):
             continue
         old_path = changed.get(path, path)
-        old_names = {entry.name for entry in _read_nodes(versions.old, old_path)} if old_path else set[str]()
+        old_nodes = _read_nodes(versions.old, old_path) if old_path else []
+        old_names = {_translate_package(entry.name, new_names) for entry in old_nodes}
         reported: set[str] = set()
         for entry in _read_nodes(versions.new, path):
             package, _, name = entry.name.partition("/")
             if package not in packages or not name or entry.name in reported or re.search(r"[$/*:\s]", name):
                 continue
             old, new = packages[package]
-            is_first = path in changed and name.endswith(_SCRIPT_SUFFIXES) and entry.name not in old_names
-            is_unexecutable = is_first and new.has_only_unexecutable(name)
+            is_first = path in changed and entry.name not in old_names
+            is_script = name.endswith(_SCRIPT_SUFFIXES)
+            is_unexecutable = is_first and is_script and new.has_only_unexecutable(name)
             if not is_unexecutable and not new.lacks(name):
                 continue
             change = None
@@ -164,12 +180,53 @@ def find_missing_programs(versions: Versions, changed_files: Sequence[ChangedFil
                 change = phrase("starts '{name}' of '{package}', which is not executable", name=name, package=package)
             elif old.has(name) and package in changed_packages:
                 change = _make_removal_change(package, name, is_left=name in new.names)
-            elif is_first:
+            elif is_first and (is_script or not new.may_compute_names):
                 change = phrase("starts '{name}' of '{package}', which does not exist", name=name, package=package)
             if change is not None:
                 reported.add(entry.name)
                 location = Location(path, entry.span.line, entry.span.column)
                 yield path, Change(change, Effect.BREAKING, phrase("the node does not start"), location)
+
+
+def _translate_package(program: str, new_names: Mapping[str, str]) -> str:
+    """Return a program with the new name of its package."""
+    package, separator, name = program.partition("/")
+    return f"{new_names.get(package, package)}{separator}{name}"
+
+
+def find_old_package_names(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the launch files that still use the old name of a renamed package, each with a change."""
+    if not any(PurePosixPath(file.path).name == MANIFEST for file in changed_files):
+        return
+    new_names = {package.old_name: package.new_name for package in find_renamed_packages(versions)}
+    new_names = {old: new for old, new in new_names.items() if old != new and old not in versions.new.shares}
+    for path in find_launch_files(versions.new) if new_names else ():
+        text = versions.new.text(path)
+        is_test = not TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts)
+        reported: set[str] = set()
+        for entry in [] if is_test or not any(name in text for name in new_names) else _read(versions.new, path):
+            for package in _find_named_packages(entry):
+                if package not in new_names or package in reported:
+                    continue
+                reported.add(package)
+                change = phrase(
+                    "names the package '{package}', whose name is '{name}' now",
+                    package=package,
+                    name=new_names[package],
+                )
+                location = Location(path, entry.span.line, entry.span.column)
+                yield (
+                    path,
+                    Change(change, Effect.BREAKING, phrase("the launch file does not find the package"), location),
+                )
+
+
+def _find_named_packages(entry: Entry) -> Iterator[str]:
+    """Yield the packages whose programs or files an action uses."""
+    if entry.kind in PROGRAM_KINDS and "/" in entry.name:
+        yield entry.name.partition("/")[0]
+    for text in (entry.name, *entry.settings.values()):
+        yield from (match["package"] for match in _PACKAGE_OF_PATH.finditer(text))
 
 
 def drop_told_findings(subjects: Sequence[Subject], findings: Sequence[Diagnostic]) -> list[Diagnostic]:
@@ -196,9 +253,13 @@ def _make_removal_change(package: str, name: str, *, is_left: bool) -> Phrase:
 
 
 def _find_shared_packages(versions: Versions) -> dict[str, tuple[RepositoryPackage, RepositoryPackage]]:
-    """Return the packages that both versions have exactly once, by name."""
+    """Return the packages that both versions have exactly once, by their new name."""
     old, new = find_packages(versions.old), find_packages(versions.new)
-    return {name: (old[name], new[name]) for name in old if name in new}
+    shared = {name: (old[name], new[name]) for name in old if name in new}
+    for package in find_renamed_packages(versions):
+        if package.old_name in old and package.new_name in new:
+            shared.setdefault(package.new_name, (old[package.old_name], new[package.new_name]))
+    return shared
 
 
 @lru_cache(maxsize=8)
@@ -214,8 +275,12 @@ def find_packages(version: Version) -> dict[str, RepositoryPackage]:
 
 def _read_nodes(version: Version, path: str) -> list[Entry]:
     """Return the nodes of a launch file; none if it cannot be read."""
+    return [entry for entry in _read(version, path) if entry.kind in PROGRAM_KINDS]
+
+
+def _read(version: Version, path: str) -> list[Entry]:
+    """Return the actions of a launch file; none if it cannot be read."""
     try:
-        outline = read_outline(version.file(path), version.root)
+        return read_outline(version.file(path), version.root).entries
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError):
         return []
-    return [entry for entry in outline.entries if entry.kind in PROGRAM_KINDS]

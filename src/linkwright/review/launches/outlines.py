@@ -55,12 +55,14 @@ class Entry:
             file, or the function that makes the action.
         settings: the values, by name. The value of an argument is its default.
         span: the location of the action.
+        namespaces: the namespaces of the groups around a parameter, the outermost first; not among its settings.
     """
 
     kind: str
     name: str
     settings: dict[str, str]
     span: Span
+    namespaces: tuple[str, ...] = ()
 
     @property
     def has_value(self) -> bool:

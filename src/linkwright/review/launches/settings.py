@@ -14,6 +14,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings, keeps_meaning
 from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
+from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
 from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.lost_values import explain_lost_frames
 from linkwright.review.launches.moved_parameters import follow_moved_parameters
@@ -24,6 +25,7 @@ from linkwright.review.launches.outlines import (
     PARAMETER,
     READING,
     REMAPPING,
+    SERVER_PARAMETER,
     Entry,
     LaunchOutline,
 )
@@ -54,6 +56,7 @@ class _Setting:
         reason: why the change is breaking; None if it is not.
         defaults: both values with the defaults of arguments if only one version uses arguments; None if they are
             unknown.
+        keeps_names: whether the names of the nodes of an included file stay the same.
     """
 
     name: str
@@ -61,6 +64,7 @@ class _Setting:
     new: str | None
     reason: Phrase | None
     defaults: tuple[str, str] | None = None
+    keeps_names: bool = False
 
     @property
     def edit(self) -> Hashable | None:
@@ -76,6 +80,11 @@ class _Setting:
     @property
     def text(self) -> Phrase:
         """The change in one line."""
+        text = self._change_text
+        return phrase("{change}; their full names stay the same", change=text) if self.keeps_names else text
+
+    @property
+    def _change_text(self) -> Phrase:
         old, new = (None if value is None else value or "''" for value in (self.old, self.new))
         if old is None:
             return phrase("{parameter} {value} added", parameter=self.name, value=new or "")
@@ -130,6 +139,7 @@ class SettingChanges:
     ) -> None:
         self._pair = pair
         self._old_included, self._included = included
+        self._trees = IncludeTree(included[0]), IncludeTree(included[1])
         self._old = old
         self._new = new
         self._renamed = renamed
@@ -168,12 +178,15 @@ class SettingChanges:
             reason = reason or explain_lost_frames(new, pair.name, pair.old, pair.new, self._old)
             if new.kind == READING and reason is None:
                 continue
+            keeps_names = reason is not None and self._keeps_names(old, new, pair.name)
+            reason = None if keeps_names else reason
             old_text = None if pair.old is None else rename_in_text(pair.old, self._old_names)
             transform = compare_transforms(old.name, new.name, old_text, pair.new) if pair.name == "arguments" else None
             if transform is not None:
                 self._collect(new, transform, reason)
                 continue
-            setting = _Setting(pair.name, old_text, pair.new, reason, self._find_defaults(new, pair))
+            keeps_names = keeps_names and new.kind == "include"
+            setting = _Setting(pair.name, old_text, pair.new, reason, self._find_defaults(new, pair), keeps_names)
             if setting.edit is None:
                 settings.append(setting)
             else:
@@ -206,8 +219,6 @@ class SettingChanges:
         if entry.kind == "include":
             if setting == CONDITION:
                 return reason if self._included.count_started_programs(entry) else None
-            if setting == NAMESPACE_OF_INCLUDED and self._keeps_node_names(entry, old):
-                return None
             return reason or self._find_passed_value_reason(entry, setting, old)
         if entry.kind == "argument" and setting == "default" and reason is None and old is not None:
             started = self._included.count_all_started_programs()
@@ -216,11 +227,15 @@ class SettingChanges:
             return _explain_stopped_programs(stopped) if stopped else None
         return reason
 
-    def _keeps_node_names(self, include: Entry, old_namespace: str | None) -> bool:
-        """Return whether the nodes of an included file had the new names before, with their own namespaces."""
-        settings = {**include.settings, NAMESPACE_OF_INCLUDED: old_namespace or ""}
-        old_names = self._old_included.find_node_names(replace(include, settings=settings))
-        return old_names is not None and old_names == self._included.find_node_names(include)
+    def _keeps_names(self, old: Entry, new: Entry, setting: str) -> bool:
+        """Return whether a changed setting leaves the full names as they were, because included files follow it."""
+        old_tree, new_tree = self._trees
+        if old.kind == SERVER_PARAMETER:
+            return find_same_parameter(old, old_tree, new_tree) is not None
+        if setting != NAMESPACE_OF_INCLUDED:
+            return False
+        old_names = old_tree.find_node_names(old)
+        return old_names is not None and old_names == new_tree.find_node_names(new)
 
     def _find_passed_value_reason(self, include: Entry, setting: str, old: str | None) -> Phrase | None:
         """Return the reason why a different value for an included file is breaking, or None."""

@@ -9,7 +9,7 @@ from linkwright.review.changes import Change
 from linkwright.review.chosen_robots import find_chosen_robots
 from linkwright.review.launches.left_nodes import find_left_nodes
 from linkwright.review.launches.left_parameters import find_left_parameters
-from linkwright.review.launches.missing_programs import find_missing_programs
+from linkwright.review.launches.missing_programs import find_missing_programs, find_old_package_names
 from linkwright.review.launches.passed_arguments import find_passed_arguments
 from linkwright.review.launches.script_callers import find_lost_arguments
 from linkwright.review.sources.callers import find_broken_callers
@@ -48,6 +48,7 @@ SEARCHES: tuple[Search, ...] = (
         find_lost_installs,
     ),
     *(find_lost_libraries, find_lost_programs, find_lost_registrations, find_lost_sources, find_missing_programs),
+    find_old_package_names,
     *(find_passed_arguments, find_left_nodes, find_left_parameters, find_lost_interfaces, find_left_types),
     *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),
     find_unusable_programs,
