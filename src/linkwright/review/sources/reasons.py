@@ -48,7 +48,9 @@ def find_removal_reason(
         path: the path of the old source.
     """
     kind = items[0].kind
-    if kind in _HARMLESS_KINDS or (kind is NameKind.NODE and _only_sends_requests(names)):
+    if kind is NameKind.PARAMETER:
+        items = [item for item in items if not _belongs_to_other_node(item, names)]
+    if not items or kind in _HARMLESS_KINDS or (kind is NameKind.NODE and _only_sends_requests(names)):
         return None
     text = joined_first([item.name for item in items], MAX_NAMES)
     if kind is NameKind.PARAMETER:
@@ -83,6 +85,13 @@ def find_removal_reason(
             return phrase("programs that import '{name}' do not find it", name=text)
         return phrase("code of other packages that uses '{name}' does not build", name=text)
     return name_reason(str(text))
+
+
+def _belongs_to_other_node(parameter: SourceName, names: SourceNames) -> bool:
+    """Return whether a parameter has an absolute name in the namespace of another node, which only the source reads."""
+    node, separator, _ = parameter.name.lstrip("/").partition("/")
+    is_below_node = parameter.name.startswith("/") and bool(separator)
+    return is_below_node and all(item.name.strip("/") != node for item in names.of_kind(NameKind.NODE))
 
 
 def _only_sends_requests(names: SourceNames) -> bool:
