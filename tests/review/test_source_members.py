@@ -357,7 +357,14 @@ def test_filtered_subscription_in_python_is_compared(repository, compare, made):
 
 
 @pytest.mark.parametrize(
-    ("name", "is_breaking"), [("/planner/rate", False), ("/arm/rate", True), ("/rate", True), ("planner/rate", True)]
+    ("name", "is_breaking"),
+    [
+        ("/move_group/rate", False),
+        ("/planner/rate", True),
+        ("/arm/rate", True),
+        ("/rate", True),
+        ("planner/rate", True),
+    ],
 )
 def test_removed_parameter_of_another_node_breaks_nobody(repository, compare, name, is_breaking):
     source = 'int main() {{ ros::init(argc, argv, "arm");\n  ros::NodeHandle nh;\n  {} }}\n'

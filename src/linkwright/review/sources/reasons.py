@@ -15,6 +15,10 @@ _HARMLESS_KINDS = (
     *(NameKind.CLAIMED_INTERFACE, NameKind.PLUGINLIB_CLASS),
 )
 _REQUESTS = frozenset({NameKind.CLIENT, NameKind.ACTION_CLIENT})
+_OTHER_NODES = frozenset(
+    {"move_group", "move_base", "amcl", "gazebo", "controller_manager", "robot_state_publisher", "map_server"}
+)
+"""The usual names of nodes of common packages. Other first words of parameters may be namespaces without a node."""
 _HEADER_FOLDER = "include"
 
 
@@ -88,10 +92,14 @@ def find_removal_reason(
 
 
 def _belongs_to_other_node(parameter: SourceName, names: SourceNames) -> bool:
-    """Return whether a parameter has an absolute name in the namespace of another node, which only the source reads."""
+    """Return whether a parameter has an absolute name in the namespace of a node of a common package."""
     node, separator, _ = parameter.name.lstrip("/").partition("/")
     is_below_node = parameter.name.startswith("/") and bool(separator)
-    return is_below_node and all(item.name.strip("/") != node for item in names.of_kind(NameKind.NODE))
+    return (
+        is_below_node
+        and node in _OTHER_NODES
+        and all(item.name.strip("/") != node for item in names.of_kind(NameKind.NODE))
+    )
 
 
 def _only_sends_requests(names: SourceNames) -> bool:
