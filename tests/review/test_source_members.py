@@ -69,6 +69,18 @@ def test_the_periods_of_an_added_node_are_told(repository, compare):
          "action 'reach' (ReachAction) renamed to 'grasp' (ReachAction)"),
         ("message_filters::Subscriber<sensor_msgs::Image> image_;", 'Arm::Arm() : image_(nh_, "reach", 1) {}',
          "subscription 'reach' (Image) renamed to 'grasp' (Image)"),
+        ("message_filters::Subscriber<sensor_msgs::Image> image_;",
+         'void Arm::f() { image_.subscribe(nh_, "reach", 1); }',
+         "subscription 'reach' (Image) renamed to 'grasp' (Image)"),
+        ("std::shared_ptr<message_filters::Subscriber<Image>> image_;",
+         'void Arm::f() { image_->subscribe(this, "reach"); }',
+         "subscription 'reach' (Image) renamed to 'grasp' (Image)"),
+        ("std::shared_ptr<message_filters::Subscriber<Image>> image_;",
+         'Arm::Arm() { image_ = std::make_shared<message_filters::Subscriber<Image>>(this, "reach"); }',
+         "subscription 'reach' (Image) renamed to 'grasp' (Image)"),
+        ("boost::shared_ptr<message_filters::Subscriber<Image> > image_;",
+         'Arm::Arm() { image_.reset(new message_filters::Subscriber<Image>(nh_, "reach", 10)); }',
+         "subscription 'reach' (Image) renamed to 'grasp' (Image)"),
     ],
 )  # fmt: skip
 def test_a_member_that_a_header_declares_has_the_name_that_the_source_gives(
@@ -333,3 +345,31 @@ def test_a_node_whose_own_base_class_gets_its_name_is_compared(repository, compa
     repository.commit({**MANIFEST, "arm/include/arm/base_node.hpp": header, "arm/src/arm.cpp": source})
     repository.write({"arm/src/arm.cpp": source.replace('"arm"', '"arms"')})
     assert breaking(compare(repository)) == expected
+
+
+@pytest.mark.parametrize("made", ['message_filters.Subscriber("reach", Image)', "Subscriber(self, Image, 'reach')"])
+def test_filtered_subscription_in_python_is_compared(repository, compare, made):
+    source = f"import message_filters\nfrom message_filters import Subscriber\nsub = {made}\n"
+    repository.commit({**MANIFEST, "arm/scripts/arm.py": source})
+    repository.write({"arm/scripts/arm.py": source.replace("reach", "grasp")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["subscription 'reach' (Image) renamed to 'grasp' (Image)"]
+
+
+@pytest.mark.parametrize(
+    ("name", "is_breaking"),
+    [
+        ("/move_group/rate", False),
+        ("/planner/rate", True),
+        ("/arm/rate", True),
+        ("/rate", True),
+        ("planner/rate", True),
+    ],
+)
+def test_removed_parameter_of_another_node_breaks_nobody(repository, compare, name, is_breaking):
+    source = 'int main() {{ ros::init(argc, argv, "arm");\n  ros::NodeHandle nh;\n  {} }}\n'
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": source.format(f'nh.getParam("{name}", rate);')})
+    repository.write({"arm/src/arm.cpp": source.format("")})
+    (found,) = compare(repository).subjects
+    change = next(change for change in found.changes if name in str(change.sentence))
+    assert (change.reason is not None) is is_breaking

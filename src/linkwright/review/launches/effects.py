@@ -29,8 +29,9 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     without_condition,
 )
-from linkwright.review.launches.sides import Side, find_side, is_new_name
+from linkwright.review.launches.sides import Side, find_old_side, is_new_name
 from linkwright.review.launches.spawned_names import is_other_group
+from linkwright.review.launches.taken_names import is_taken_over
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names, format_title
 from linkwright.review.launches.topic_tools import find_forwarding_reason
 from linkwright.review.list_changes import list_items
@@ -288,12 +289,12 @@ def _find_node_remapping_reason(
     """Return the reason why a changed remapping of a node is breaking, or None if it is not."""
     if is_new_name(entry.name, source, old_outline.root, new_outline.root):
         return None
-    side = find_side(find_loaded_class(entry) or entry.name, source, new_outline.root)
-    if side is Side.USES or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
+    side = find_old_side(find_loaded_class(entry) or entry.name, source, old_outline.root, new_outline.root)
+    if side in (Side.USES, Side.LACKS) or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
         return None
     if old is not None and old_outline.resolve(old) in _find_remapping_targets(entry, new_outline):
         return None  # the new file gives the name to a different topic of the node
-    if old is not None and _is_taken_over(source, old_outline.resolve(old), old_outline, new_outline):
+    if old is not None and is_taken_over(entry, old, old_outline, new_outline):
         return None
     return _find_remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
 
@@ -548,20 +549,6 @@ def _find_remapping_targets(entry: Entry, outline: LaunchOutline) -> set[str]:
     """Return the names to which an action remaps others."""
     settings = entry.settings.items()
     return {outline.resolve(value) for name, value in settings if name.startswith(REMAPPING)}
-
-
-def _is_taken_over(source: str, target: str, old: LaunchOutline, new: LaunchOutline) -> bool:
-    """Return whether an added node may offer a name that a node loses, because it has the same remapping."""
-    known = {entry.name for entry in old.entries}
-    return any(
-        entry.kind == "node"
-        and entry.name not in known
-        and any(
-            without_condition(setting) == f"{REMAPPING}{source}" and new.resolve(value) == target
-            for setting, value in entry.settings.items()
-        )
-        for entry in new.entries
-    )
 
 
 def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from enum import Enum
 from functools import lru_cache
 from pathlib import Path
 
 from linkwright.review.launches.default_names import find_package_folders
+from linkwright.review.launches.program_modules import find_program_modules
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind
 from linkwright.review.sources.reading import read_source_names
 
@@ -26,22 +27,13 @@ _NAMED_OUTPUT = re.compile(r"(.*[/_])?(out|output)([/_].*)?")
 _OFFERING_KINDS = frozenset({NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION})
 _USING_KINDS = frozenset({NameKind.SUBSCRIPTION, NameKind.CLIENT, NameKind.ACTION_CLIENT})
 _MAX_SOURCES = 80
+_LIBRARY_NAMES = frozenset({"tf", "tf_static", "diagnostics", "rosout", "clock", "parameter_events"})
+"""The names that libraries of ROS publish for a program, so that its sources need not have them."""
+_LITERAL_NAME = re.compile(r"[~/\w]+")
 _CONTROLLER_MANAGER = "controller_manager/ros2_control_node"
 _KEY, _QUOTED_WORD = re.compile(r"^\s*(\w+):", re.MULTILINE), re.compile(r"[\"'](\w+)[\"']")
 _KEY_PATTERNS = {".yaml": _KEY, ".yml": _KEY, ".py": _QUOTED_WORD, ".xml": _QUOTED_WORD, ".launch": _QUOTED_WORD}
 """The names of controllers in parameter files and, for spawners, in launch files, by suffix."""
-
-
-_WRAPPER_CALL = re.compile(
-    r"\b\w+(?P<kind>Publisher|Subscriber|Subscription|Client)\(\s*[\w.]+\s*,\s*[\"'](?P<name>[~\w/]+)[\"']"
-)
-"""The call of a class of the package in Python that makes an interface of a type under a name."""
-_WRAPPED_KINDS = {
-    "Publisher": NameKind.PUBLISHER,
-    "Subscriber": NameKind.SUBSCRIPTION,
-    "Subscription": NameKind.SUBSCRIPTION,
-    "Client": NameKind.CLIENT,
-}
 
 
 class Side(Enum):
@@ -49,13 +41,15 @@ class Side(Enum):
 
     OFFERS = "offers"
     USES = "uses"
+    LACKS = "lacks"
     UNKNOWN = "unknown"
 
 
 def find_side(program: str, name: str, root: Path | None) -> Side:
-    """Return whether a node offers a topic or service, or uses it.
+    """Return whether a node offers a topic or service, uses it, or lacks it.
 
-    The sources of the node or the name decide.
+    The sources of the node or the name decide. Those of a Python program are its script and the modules that it
+    imports; those of other programs are all sources of the package.
 
     Args:
         program: the package and the executable of the node.
@@ -65,13 +59,32 @@ def find_side(program: str, name: str, root: Path | None) -> Side:
     relative_name = name.lstrip("~/")
     if _SUBSCRIBING_PROGRAM.match(program) and _INPUT_TOPIC.fullmatch(relative_name):
         return Side.USES
-    kinds_by_name = {} if root is None else _read_kinds_by_name(root, program.partition("/")[0])
+    modules = () if root is None else _find_modules(root, program)
+    package = program.partition("/")[0]
+    kinds_by_name = _collect_kinds(modules) if modules or root is None else _read_package_kinds(root, package)
     kinds = kinds_by_name.get(_find_own_name(name, kinds_by_name), set())
+    if modules and not kinds and _lacks_name(name, modules):
+        return Side.LACKS
     if kinds and kinds <= _USING_KINDS:
         return Side.USES
     if kinds & _OFFERING_KINDS or _NAMED_OUTPUT.fullmatch(relative_name):
         return Side.OFFERS
     return Side.USES if _NAMED_INPUT.fullmatch(relative_name) else Side.UNKNOWN
+
+
+def find_old_side(program: str, name: str, old_root: Path | None, new_root: Path | None) -> Side:
+    """Return the side of a node before a change: others only use a name that the old sources offer.
+
+    The new sources decide if the old repository does not have the package.
+
+    Args:
+        program: the package and the executable of the node.
+        name: the name that the node itself gives to the topic or service.
+        old_root: the folder of the old repository; None if it is unknown.
+        new_root: the folder of the new repository; None if it is unknown.
+    """
+    has_package = old_root is not None and program.partition("/")[0] in find_package_folders(old_root)
+    return find_side(program, name, old_root if has_package else new_root)
 
 
 def is_new_name(program: str, name: str, old_root: Path | None, new_root: Path | None) -> bool:
@@ -94,9 +107,9 @@ def is_new_name(program: str, name: str, old_root: Path | None, new_root: Path |
         return controller not in _list_parameter_keys(old_root)
     if package not in find_package_folders(old_root):
         return False
-    new_kinds = _read_kinds_by_name(new_root, package)
+    new_kinds = _read_package_kinds(new_root, package)
     own_name = _find_own_name(name, new_kinds)
-    return own_name in new_kinds and own_name not in _read_kinds_by_name(old_root, package)
+    return own_name in new_kinds and own_name not in _read_package_kinds(old_root, package)
 
 
 def _find_own_name(name: str, known: Collection[str]) -> str:
@@ -121,20 +134,43 @@ def _list_parameter_keys(root: Path) -> frozenset[str]:
     return frozenset(keys)
 
 
+def _find_modules(root: Path, program: str) -> tuple[Path, ...]:
+    """Return the modules of a Python program; empty if none of them makes a node, topic or service."""
+    modules = find_program_modules(root, program)
+    is_node = any(read_source_names(module).makes_node for module in modules) or bool(_collect_kinds(modules))
+    return modules if is_node else ()
+
+
+def _lacks_name(name: str, modules: Iterable[Path]) -> bool:
+    """Return whether the sources of a program, which do not name a topic or service, certainly do not have it.
+
+    They may have it if they compute a name, or if a library publishes it.
+    """
+    if _LITERAL_NAME.fullmatch(name) is None or name.rpartition("/")[2].lstrip("~") in _LIBRARY_NAMES:
+        return False
+    return not any(
+        item.kind in _OFFERING_KINDS and item.name not in names.wrapper_arguments
+        for names in map(read_source_names, modules)
+        for item in names.expressions
+    )
+
+
 @lru_cache(maxsize=64)
-def _read_kinds_by_name(root: Path, package: str) -> dict[str, set[NameKind]]:
+def _read_package_kinds(root: Path, package: str) -> dict[str, set[NameKind]]:
     """Return the kinds of topics, services and actions in a package's sources, by name."""
-    kinds: dict[str, set[NameKind]] = {}
     folder = find_package_folders(root).get(package)
     if folder is None:
-        return kinds
+        return {}
     suffixes = (*CPP_SUFFIXES, PYTHON_SUFFIX)
     files = [file for file in sorted(folder.rglob("*")) if file.suffix in suffixes and file.is_file()]
-    for file in files[:_MAX_SOURCES]:
+    return _collect_kinds(files[:_MAX_SOURCES])
+
+
+def _collect_kinds(files: Iterable[Path]) -> dict[str, set[NameKind]]:
+    """Return the kinds of topics, services and actions in sources, by name."""
+    kinds: dict[str, set[NameKind]] = {}
+    for file in files:
         for item in read_source_names(file).names:
             if item.kind in _OFFERING_KINDS | _USING_KINDS:
                 kinds.setdefault(item.name.strip("\"'").lstrip("~/"), set()).add(item.kind)
-        if file.suffix == PYTHON_SUFFIX:
-            for match in _WRAPPER_CALL.finditer(file.read_text("utf-8", "replace")):
-                kinds.setdefault(match["name"].lstrip("~/"), set()).add(_WRAPPED_KINDS[match["kind"]])
     return kinds

@@ -12,12 +12,15 @@ from linkwright.review.sources.cpp_conditions import blank_disabled
 from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind, SourceName
 
 _CLASS = r"(?:\w+::)*(?:Simple(?P<action>ActionServer|ActionClient)|Subscriber)\s*<(?P<type>[^<>;(){}]*)>"
-_MEMBER = re.compile(rf"(?<![\w:])(?P<class>{_CLASS})\s*(?P<variable>\w+)\b")
+_MEMBER = re.compile(rf"(?<![\w:])(?P<class>{_CLASS})[\s>]*(?P<variable>\w+)\b")
 _ALIASES = (
     re.compile(rf"\busing\s+(?P<name>\w+)\s*=\s*{_CLASS}\s*;"),
     re.compile(rf"\btypedef\s+{_CLASS}\s*(?P<name>\w+)\s*;"),
 )
 _CONSTRUCTION = re.compile(rf"(?:\bmake_(?:unique|shared)\s*<\s*|\bnew\s+){_CLASS}\s*>?\s*(?=\()")
+_FILTER = "message_filters::"
+_SUBSCRIBING_CALL = r"(?:\s*(?:\.|->)\s*subscribe)?"
+"""The method that gives a filtered subscription its topic after the construction."""
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<path>[^">\n]+)[">]', re.MULTILINE)
 _MAX_BYTES = 1 << 20
 _MAX_FOLDERS = 4
@@ -51,13 +54,14 @@ def find_constructions(text: str, headers: Sequence[str]) -> Iterator[Constructi
         for match in (match for pattern in _ALIASES for match in pattern.finditer(source)):
             aliases[match["name"]] = _get_kind(match["action"]), _normalize_type(match["type"])
         for match in _MEMBER.finditer(source):
-            if match["action"] or "message_filters" in match["class"]:
+            if match["action"] or _FILTER in match["class"]:
                 types[match["variable"]] = _get_kind(match["action"]), _normalize_type(match["type"])
     for source in (*headers, text):
         for name, alias in aliases.items():
             types.update((match[1], alias) for match in re.finditer(rf"\b{name}\s+(\w+)\s*[;({{,]", source))
     for variable, (kind, type_name) in types.items():
-        for construction in re.finditer(rf"\b{variable}\s*\(", text):
+        method = _SUBSCRIBING_CALL if kind is NameKind.SUBSCRIPTION else ""
+        for construction in re.finditer(rf"\b{variable}{method}\s*\(", text):
             yield Construction(kind, type_name, construction.end() - 1)
     for name, (kind, type_name) in aliases.items():
         for construction in re.finditer(
@@ -65,7 +69,7 @@ def find_constructions(text: str, headers: Sequence[str]) -> Iterator[Constructi
         ):
             yield Construction(kind, type_name, construction.end() - 1)
     for match in _CONSTRUCTION.finditer(text):
-        if match["action"]:
+        if match["action"] or _FILTER in match[0]:
             yield Construction(_get_kind(match["action"]), _normalize_type(match["type"]), match.end())
 
 

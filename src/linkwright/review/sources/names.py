@@ -232,6 +232,8 @@ class SourceNames:
         enumerations: the values and locations of the enumerators of each public enumeration of a C++ header.
         ignoring_keywords: the functions and classes of a Python source that take any keyword argument but use none.
         hidden_classes: the names of the protected and private classes in a C++ source.
+        wrapper_arguments: the expressions that name topics and services in classes of a Python source, for which the
+            callers of the classes pass the names.
         has_star_import: whether an ``__init__.py`` imports all names of a module, so that it may have other names.
     """
 
@@ -268,6 +270,7 @@ class SourceNames:
     enumerations: dict[str, dict[str, tuple[str, Span]]] = field(default_factory=dict)
     ignoring_keywords: set[str] = field(default_factory=set)
     hidden_classes: set[str] = field(default_factory=set)
+    wrapper_arguments: set[str] = field(default_factory=set)
     has_star_import: bool = False
 
     def add(self, name: SourceName) -> None:

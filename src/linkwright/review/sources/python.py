@@ -26,6 +26,7 @@ from linkwright.review.sources.python_bases import find_inherited_names
 from linkwright.review.sources.python_callbacks import CallbackFunctions
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
 from linkwright.review.sources.python_source import PythonSource
+from linkwright.review.sources.python_wrappers import CREATING_METHODS, WrapperClasses, get_argument
 from linkwright.review.sources.required_parameters import is_required_parameter
 from linkwright.review.sources.signatures import (
     find_argument_default,
@@ -35,14 +36,6 @@ from linkwright.review.sources.signatures import (
 )
 from linkwright.review.sources.undefined_names import find_bound_names, find_undefined_names
 
-_RCLPY_METHODS = {
-    "create_publisher": (NameKind.PUBLISHER, "msg_type", "topic", 2),
-    "create_lifecycle_publisher": (NameKind.PUBLISHER, "msg_type", "topic", 2),
-    "create_subscription": (NameKind.SUBSCRIPTION, "msg_type", "topic", 3),
-    "create_service": (NameKind.SERVICE, "srv_type", "srv_name", -1),
-    "create_client": (NameKind.CLIENT, "srv_type", "srv_name", -1),
-}
-"""The kind of each method of nodes, the keywords of its type and name, and the index of its QoS argument."""
 _NAME_FIRST_CLASSES = {
     "Publisher": NameKind.PUBLISHER,
     "Subscriber": NameKind.SUBSCRIPTION,
@@ -109,18 +102,18 @@ def read_dynamic_parameters(source: SourceText, names: SourceNames) -> None:
     """
     python = parse_source(source)
     for call in python.calls("add"):
-        name = python.text(_get_argument(call, 0, "name"))
+        name = python.text(get_argument(call, 0, "name"))
         if name is None:
             continue
         details = [
-            (Detail.VALUE_TYPE, _format_expression(python, _get_argument(call, 1, "paramtype")).removesuffix("_t"))
+            (Detail.VALUE_TYPE, _format_expression(python, get_argument(call, 1, "paramtype")).removesuffix("_t"))
         ]
         for detail, index, keyword in (
             (Detail.LEVEL, 2, "level"),
             (Detail.MINIMUM, 5, "min"),
             (Detail.MAXIMUM, 6, "max"),
         ):
-            text = _format_expression(python, _get_argument(call, index, keyword))
+            text = _format_expression(python, get_argument(call, index, keyword))
             if text and text != "None":
                 details.append((detail, text))
         choices = argument_of(call, "edit_method")
@@ -131,7 +124,7 @@ def read_dynamic_parameters(source: SourceText, names: SourceNames) -> None:
                 if len(item.args) > 1
             )
             details.append((Detail.CHOICES, ", ".join(values)))
-        default = _format_expression(python, _get_argument(call, 4, "default"))
+        default = _format_expression(python, get_argument(call, 4, "default"))
         names.add(SourceName(NameKind.PARAMETER, name, default, python.span(call), tuple(details)))
 
 
@@ -154,12 +147,6 @@ def parse_source(source: SourceText) -> PythonFile:
     except SyntaxError:
         text = as_python3(source.text)
         return PythonSource(SourceText(source.name, text))
-
-
-def _get_argument(call: ast.Call, index: int, keyword: str) -> ast.expr | None:
-    if 0 <= index < len(call.args):
-        return call.args[index]
-    return argument_of(call, keyword)
 
 
 def _format_expression(python: PythonFile, node: ast.expr | None) -> str:
@@ -198,6 +185,7 @@ class _Reader:
         self._names = names
         self._types = PythonTypes(python.tree)
         self._functions = CallbackFunctions(python.tree)
+        self._wrappers = WrapperClasses(Path(python.source.name), python.tree)
         self._frame_arguments = find_frame_arguments(python.tree, _FRAME_FIELDS)
 
     def read(self) -> None:
@@ -214,6 +202,7 @@ class _Reader:
                 if isinstance(node.func, ast.Attribute) and function == "":
                     function = node.func.attr
                 self._read_call(node, function)
+        self._names.wrapper_arguments |= self._wrappers.list_arguments()
         self._names.conditional_lines += find_python_conditions(tree)
         for part in ast.walk(tree):
             if isinstance(part, (ast.FunctionDef, ast.AsyncFunctionDef)):
@@ -300,42 +289,42 @@ class _Reader:
     def _read_call(self, call: ast.Call, function: str) -> None:
         if isinstance(call.func, ast.Name) or ast.unparse(call.func) == f"self.{function}":
             for argument in self._frame_arguments.get(function, ()):
-                node = _get_argument(call, argument.position, argument.name)
+                node = get_argument(call, argument.position, argument.name)
                 if node is not None:
                     self._add_frame(_FRAME_FIELDS[argument.field], node)
         for keyword in call.keywords:
             if keyword.arg in _FRAME_FIELDS and function not in _PARAMETER_CALLS:
                 self._add_frame(_FRAME_FIELDS[keyword.arg], keyword.value)
-        if function in _RCLPY_METHODS:
-            kind, type_keyword, name_keyword, qos_index = _RCLPY_METHODS[function]
-            qos = self._read_qos(kind, _get_argument(call, qos_index, "qos_profile"))
-            self._add(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 0, type_keyword), qos)
+        if function in CREATING_METHODS:
+            kind, type_keyword, name_keyword, qos_index = CREATING_METHODS[function]
+            qos = self._read_qos(kind, get_argument(call, qos_index, "qos_profile"))
+            self._add(kind, get_argument(call, 1, name_keyword), get_argument(call, 0, type_keyword), qos)
             if kind in _CALLBACK_KEYWORDS:
-                self._add_callback(kind, _get_argument(call, 1, name_keyword), _get_argument(call, 2, "callback"))
+                self._add_callback(kind, get_argument(call, 1, name_keyword), get_argument(call, 2, "callback"))
         elif function == "wait_for_message" and len(call.args) > 1:
             is_ros1 = self._is_ros1(call)
-            name, types = (call.args[0], call.args[1]) if is_ros1 else (_get_argument(call, 2, "topic"), call.args[0])
+            name, types = (call.args[0], call.args[1]) if is_ros1 else (get_argument(call, 2, "topic"), call.args[0])
             self._add(NameKind.SUBSCRIPTION, name, types)
         elif self._has_node_first(call, function):
             self._add(
                 _NODE_FIRST_CLASSES[function],
-                _get_argument(call, 2, "action_name"),
-                _get_argument(call, 1, "action_type"),
+                get_argument(call, 2, "action_name"),
+                get_argument(call, 1, "action_type"),
             )
             if _NODE_FIRST_CLASSES[function] is NameKind.ACTION:
-                self._add_callback(NameKind.ACTION, call.args[2], _get_argument(call, 3, "execute_callback"))
+                self._add_callback(NameKind.ACTION, call.args[2], get_argument(call, 3, "execute_callback"))
         elif function in _NAME_FIRST_CLASSES and (call.args or call.keywords):
             self._read_ros1_call(call, function)
         elif function in _PARAMETER_CALLS:
             self._read_parameter(call, function)
         elif function == "declare_parameters":
-            self._read_parameters(_get_argument(call, 0, "namespace"), _get_argument(call, 1, "parameters"))
-        elif (function in _NODE_CALLS and self._python.text(_get_argument(call, 0, "node_name")) is not None) or (
+            self._read_parameters(get_argument(call, 0, "namespace"), get_argument(call, 1, "parameters"))
+        elif (function in _NODE_CALLS and self._python.text(get_argument(call, 0, "node_name")) is not None) or (
             function == "__init__" and self._is_node_constructor(call)
         ):
             self._names.makes_node = True
             index = int(bool(call.args) and ast.unparse(call.args[0]) == "self")  # ``Base.__init__(self, ...)``
-            node = _get_argument(call, index, "node_name")
+            node = get_argument(call, index, "node_name")
             default = find_argument_default(self._python.tree, node) if isinstance(node, ast.Name) else None
             self._add(NameKind.NODE, node if self._python.text(default) is None else default, None)
         else:
@@ -353,7 +342,7 @@ class _Reader:
         return any(name.partition(".")[0] in ("rospy", "actionlib") for name in names)
 
     def _read_ros1_call(self, call: ast.Call, function: str) -> None:
-        name, types = _get_argument(call, 0, "name"), _get_argument(call, 1, "data_class")
+        name, types = get_argument(call, 0, "name"), get_argument(call, 1, "data_class")
         if self._python.text(name) is None and not self._is_ros1(call):
             return
         details = []
@@ -364,16 +353,25 @@ class _Reader:
         kind = _NAME_FIRST_CLASSES[function]
         self._add(kind, name, types, tuple(details))
         if kind in _CALLBACK_KEYWORDS:
-            self._add_callback(kind, name, _get_argument(call, 2, _CALLBACK_KEYWORDS[kind]))
+            self._add_callback(kind, name, get_argument(call, 2, _CALLBACK_KEYWORDS[kind]))
+
+    def _read_wrapper_call(self, call: ast.Call) -> None:
+        """Add the topics and services that a class of the package makes for its caller."""
+        for wrapped in () if _has_uncertain_arguments(call) else self._wrappers.find(call):
+            given = (None if place is None else get_argument(call, *place) for place in wrapped[2:5])
+            name, type_node, qos_node = given
+            qos = () if qos_node is None else self._read_qos(wrapped.kind, qos_node)
+            self._add(wrapped.kind, wrapped.default if name is None else name, type_node, qos)
 
     def _read_other_call(self, call: ast.Call, function: str) -> None:
+        self._read_wrapper_call(call)
         if function in _RATE_CALLS and called_name(call).partition(".")[0] != "threading" and call.args:
             period = self._python.resolved(call.args[0])
             text = f"{function}({_format_expression(self._python, period)})"
             span = self._python.span(call.args[0])
             self._names.rates.append((text, span))
             if "imer" in function:
-                callback = _get_argument(call, 1, "callback")
+                callback = get_argument(call, 1, "callback")
                 self._add_callback(None, None, callback)
                 is_name = isinstance(callback, (ast.Name, ast.Attribute))
                 name = ast.unparse(callback).rpartition(".")[2] if is_name and callback is not None else ""
@@ -394,7 +392,7 @@ class _Reader:
             self._read_getopt(call)
         elif reads_parameter(function):
             self._read_helper_call(call)
-            parameter = self._python.text(_get_argument(call, 0, "name")) if function == "get_parameter" else None
+            parameter = self._python.text(get_argument(call, 0, "name")) if function == "get_parameter" else None
             if parameter is not None:
                 self._names.parameter_reads.setdefault(parameter, []).append(call.lineno)
 
@@ -435,7 +433,7 @@ class _Reader:
 
     def _read_getopt(self, call: ast.Call) -> None:
         """Add the options of getopt: the letters of the second argument, and the names in the third."""
-        letters, names = _get_argument(call, 1, "shortopts"), _get_argument(call, 2, "longopts")
+        letters, names = get_argument(call, 1, "shortopts"), get_argument(call, 2, "longopts")
         for letter in re.findall(r"[A-Za-z0-9?]", self._python.text(letters) or ""):
             self._names.add(SourceName(NameKind.OPTION, f"-{letter}", "", self._python.span(call)))
         items = None if names is None else self._python.resolved(names)
@@ -447,7 +445,7 @@ class _Reader:
     def _read_parameter(self, call: ast.Call, function: str) -> None:
         index = 2 if function == "get_parameter_or" else 1
         keyword = "value" if function == "declare_parameter" else "default"
-        node, value = _get_argument(call, 0, "name"), _get_argument(call, index, keyword)
+        node, value = get_argument(call, 0, "name"), get_argument(call, index, keyword)
         is_ros1 = function.startswith("get_param") and function != "get_parameter_or"
         if is_ros1 and self._python.text(node) is None:
             return  # a different function with the same name

@@ -87,6 +87,26 @@ def find_inherited_names(path: Path, tree: ast.Module, definition: ast.ClassDef,
     return inherited
 
 
+def find_class(path: Path, tree: ast.Module, name: str, depth: int = 0) -> tuple[Path, ast.Module, ast.ClassDef] | None:
+    """Return a class that a source defines or imports from its package, with its source; None for other classes.
+
+    Args:
+        path: the path of the source.
+        tree: the syntax tree of the source.
+        name: the name of the class in the source, such as ``Widget`` or ``widgets.Widget``.
+        depth: the number of sources that lead to this one.
+    """
+    definitions = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == name]
+    if definitions:
+        return (path, tree, definitions[0]) if len(definitions) == 1 else None
+    module, own_name, level = _find_import(tree, name)
+    file = find_own_module(path, module, level) if module or level else None
+    other = None if file is None or file == path else read_module(str(file), file.stat().st_mtime_ns)
+    if file is None or other is None or depth >= _MAX_DEPTH:
+        return None
+    return find_class(file, other, own_name, depth + 1)
+
+
 def select_methods(
     items: Iterable[SourceName], own: Mapping[str, Collection[str]], other: Mapping[str, Collection[str]]
 ) -> list[SourceName]:

@@ -15,6 +15,10 @@ _HARMLESS_KINDS = (
     *(NameKind.CLAIMED_INTERFACE, NameKind.PLUGINLIB_CLASS),
 )
 _REQUESTS = frozenset({NameKind.CLIENT, NameKind.ACTION_CLIENT})
+_OTHER_NODES = frozenset(
+    {"move_group", "move_base", "amcl", "gazebo", "controller_manager", "robot_state_publisher", "map_server"}
+)
+"""The usual names of nodes of common packages. Other first words of parameters may be namespaces without a node."""
 _HEADER_FOLDER = "include"
 
 
@@ -48,7 +52,9 @@ def find_removal_reason(
         path: the path of the old source.
     """
     kind = items[0].kind
-    if kind in _HARMLESS_KINDS or (kind is NameKind.NODE and _only_sends_requests(names)):
+    if kind is NameKind.PARAMETER:
+        items = [item for item in items if not _belongs_to_other_node(item, names)]
+    if not items or kind in _HARMLESS_KINDS or (kind is NameKind.NODE and _only_sends_requests(names)):
         return None
     text = joined_first([item.name for item in items], MAX_NAMES)
     if kind is NameKind.PARAMETER:
@@ -83,6 +89,17 @@ def find_removal_reason(
             return phrase("programs that import '{name}' do not find it", name=text)
         return phrase("code of other packages that uses '{name}' does not build", name=text)
     return name_reason(str(text))
+
+
+def _belongs_to_other_node(parameter: SourceName, names: SourceNames) -> bool:
+    """Return whether a parameter has an absolute name in the namespace of a node of a common package."""
+    node, separator, _ = parameter.name.lstrip("/").partition("/")
+    is_below_node = parameter.name.startswith("/") and bool(separator)
+    return (
+        is_below_node
+        and node in _OTHER_NODES
+        and all(item.name.strip("/") != node for item in names.of_kind(NameKind.NODE))
+    )
 
 
 def _only_sends_requests(names: SourceNames) -> bool:

@@ -1,0 +1,47 @@
+"""Find names of a node that an added node of the same launch file offers in the new version."""
+
+from __future__ import annotations
+
+from linkwright.review.launches.matching import find_loaded_class
+from linkwright.review.launches.outlines import (
+    NAMESPACE,
+    PROGRAM_KINDS,
+    REMAPPING,
+    Entry,
+    LaunchOutline,
+    without_condition,
+)
+from linkwright.review.launches.sides import Side, find_side
+
+
+def is_taken_over(entry: Entry, name: str, old: LaunchOutline, new: LaunchOutline) -> bool:
+    """Return whether a program that the old file does not start offers a name to which a node remapped its own.
+
+    Args:
+        entry: the node.
+        name: the name outside of the node.
+        old: the outline of the old file.
+        new: the outline of the new file.
+    """
+    known = {other.name for other in old.entries}
+    resolved = old.resolve(name)
+    return any(
+        _offers(other, resolved, entry, new)
+        for other in new.entries
+        if other.kind in PROGRAM_KINDS and other.name not in known
+    )
+
+
+def _offers(other: Entry, name: str, entry: Entry, outline: LaunchOutline) -> bool:
+    """Return whether a node remaps a topic or service that it may offer to a name."""
+    namespaces = (outline.resolve(item.settings.get(NAMESPACE, "")).strip("/") for item in (entry, other))
+    if not name.startswith("/") and len(set(namespaces)) > 1:
+        return False
+    program = find_loaded_class(other) or other.name
+    return any(
+        outline.resolve(value) == name
+        and find_side(program, without_condition(setting).removeprefix(REMAPPING), outline.root)
+        in (Side.OFFERS, Side.UNKNOWN)
+        for setting, value in other.settings.items()
+        if setting.startswith(REMAPPING)
+    )
