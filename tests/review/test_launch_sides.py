@@ -117,27 +117,12 @@ def test_remapping_of_a_name_of_a_controller_breaks_nobody_if_the_controller_is_
     assert (change.reason is not None) is is_breaking
 
 
-WIDGET = "import lamp\n\nwatch = lamp.GUISubscriber(Level, 'level', call)\nask = lamp.GUIClient(Plan, 'plan', call)\n"
-WIDGET += "tell = lamp.GUIPublisher(Goal, 'target')\n"
-
-
-@pytest.mark.parametrize(("name", "reason"), [("/base/level", None), ("plan", None), ("target", CERTAIN)])
-def test_classes_that_wrap_a_subscription_or_client_tell_the_side(repository, compare, name, reason):
-    remap = f'<remap from="{name}" to="/base/x"/>'
-    text = f'<launch><node pkg="arm" type="n.py" name="n">{remap}</node></launch>'
-    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/n.py": WIDGET}
-    repository.commit({**files, "arm/launch/arm.launch": text.replace(remap, "")})
-    repository.write({"arm/launch/arm.launch": text})
-    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
-    assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
-
-
-@pytest.mark.parametrize(("source", "is_breaking"), [("goal", False), ("place", True)])
-def test_a_name_that_an_added_node_has_now_is_not_lost(repository, compare, source, is_breaking):
-    remap = '<remap from="{}" to="/base/goal"/>'
+@pytest.mark.parametrize(("target", "is_breaking"), [("/base/goal", False), ("/base/place", True)])
+def test_a_name_that_an_added_node_has_now_is_not_lost(repository, compare, target, is_breaking):
+    remap = '<remap from="goal" to="{}"/>'
     text = '<launch><node pkg="elsewhere" type="n" name="n">{}</node>{}</launch>'
-    repository.commit({"arm/launch/arm.launch": text.format(remap.format("goal"), "")})
-    added = f'<node pkg="elsewhere" type="switch" name="switch">{remap.format(source)}</node>'
+    repository.commit({"arm/launch/arm.launch": text.format(remap.format("/base/goal"), "")})
+    added = f'<node pkg="elsewhere" type="switch" name="switch">{remap.format(target)}</node>'
     repository.write({"arm/launch/arm.launch": text.format("", added)})
     changes = subject(compare(repository), "arm/launch/arm.launch").changes
     assert any(change.reason is not None for change in changes) is is_breaking

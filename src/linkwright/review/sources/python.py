@@ -458,7 +458,7 @@ class _Reader:
         elif is_required_parameter(self._python, call):
             details = ((Detail.REQUIRED, YES),)
         elif function == "declare_parameter" and not _has_uncertain_arguments(call):
-            type_name = find_declared_type(self._python, value, _get_argument(call, 2, "descriptor"))
+            type_name = find_declared_type(self._python, value, get_argument(call, 2, "descriptor"))
             details = ((Detail.DEFAULT, NO),) if value is None or type_name is not None else ()
             details += () if type_name is None else ((Detail.VALUE_TYPE, type_name),)
         self._add(NameKind.PARAMETER, node, value, details)
