@@ -198,8 +198,8 @@ class Node(Base):
         ("arm/src/a.cpp", FORMATTED, "in%02d", "inner%02d",
          """publisher '"in%02d"' (State) renamed to '"inner%02d"' (State)"""),
         ("arm/a.py", PATTERN, "{name}/go", "{name}/drive",
-         "service 'f'{name}/go'' (Trigger) renamed to 'f'{name}/drive'' (Trigger)"),
-        ("arm/a.py", PATTERN, "Trigger", "SetBool", "service 'f'{name}/go'': type Trigger -> SetBool"),
+         'service \'f"{name}/go"\' (Trigger) renamed to \'f"{name}/drive"\' (Trigger)'),
+        ("arm/a.py", PATTERN, "Trigger", "SetBool", 'service \'f"{name}/go"\': type Trigger -> SetBool'),
     ],
 )  # fmt: skip
 def test_names_that_are_patterns_are_compared(repository, compare, path, text, old, new, expected):

@@ -566,5 +566,5 @@ def test_messages_of_ros1_have_its_types_and_names(repository, compare):
     result = compare(repository)
     assert sentences(subject(result, "p/msg/Pose.msg")) == ["field 'poseStamp' renamed to 'stamp'"]
     assert sentences(subject(result, "p/msg/New.msg")) == [
-        "interface added: std_msgs/Header header, std_msgs/Header[] headers, builtin_interfaces/Time poseStamp"
+        "interface added: std_msgs/Header header, std_msgs/Header[] headers, time poseStamp"
     ]

@@ -97,7 +97,7 @@ def test_message_of_a_package_of_rosbuild_is_read_as_ros_1_does(repository, comp
     repository.commit({"arm/manifest.xml": MANIFEST})
     repository.commit({"arm/msg/State.msg": "Header header\nduration delay\n"})
     found = subject(compare(repository, "HEAD~1..HEAD"), "arm/msg/State.msg")
-    assert sentences(found) == ["interface added: std_msgs/Header header, builtin_interfaces/Duration delay"]
+    assert sentences(found) == ["interface added: std_msgs/Header header, duration delay"]
 
 
 def test_parameter_files_of_a_rosbuild_package_are_compared(repository, compare):

@@ -226,7 +226,7 @@ def import_hint(name: str) -> Phrase | None:
         return phrase("write 'import {name}' at the top of the file", name=name)
     interfaces = [full_name for kind in ("msg", "srv", "action") for full_name in interface_names(kind)]
     locations = [".".join(full_name.split("/")[:-1]) for full_name in interfaces if full_name.endswith(f"/{name}")]
-    modules = [*_MODULES_BY_NAME.get(name, ()), *locations, *find_modules_providing(name)][:_MAX_SUGGESTED_MODULES]
+    modules = [*_MODULES_BY_NAME.get(name, ()), *find_modules_providing(name), *locations][:_MAX_SUGGESTED_MODULES]
     if not modules:
         return None
     return phrase("import it from {modules}", modules=quoted_names(modules, " or "))
