@@ -5,11 +5,11 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Iterator, Sequence
-from typing import NamedTuple
 
-from linkwright.diagnostics import Phrase, joined, joined_first, phrase
+from linkwright.diagnostics import joined, joined_first, phrase
 from linkwright.review.excerpts import shorten_middle
 from linkwright.review.sources.code import Code, Part
+from linkwright.review.sources.code_changes import CodeChange
 
 _ASSIGNMENT = re.compile(r"[\d ]*self\.(?P<name>\w+) = (?P<value>[-\d.\"'({\[].*)", re.DOTALL)
 _CONSTRUCTOR = "__init__"
@@ -19,23 +19,9 @@ _MAX_ATTRIBUTES = 8
 _MAX_CHARACTERS = 160
 
 
-class AttributeChange(NamedTuple):
-    """The attributes that only one version sets.
-
-    Attributes:
-        text: the attributes with their values.
-        line: the line of the first one.
-        is_old: whether the line is in the old version.
-    """
-
-    text: Phrase
-    line: int
-    is_old: bool
-
-
 def find_attribute_changes(
     old: Code, new: Code, has_word: tuple[Callable[[str], bool], Callable[[str], bool]], reported: Sequence[str]
-) -> Iterator[AttributeChange]:
+) -> Iterator[CodeChange]:
     """Yield the attributes with a number, a text or a collection that only one version of a constructor sets.
 
     Args:
@@ -69,7 +55,7 @@ def find_attribute_changes(
         ]
         if texts:
             first = (sides[1] or sides[0])[0][0].first_line
-            yield AttributeChange(joined(texts, "; "), first, not sides[1])
+            yield CodeChange(joined(texts, "; "), first, not sides[1])
 
 
 def _without_values(

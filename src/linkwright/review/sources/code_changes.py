@@ -38,11 +38,11 @@ _MAX_NAMESPACES = 8
 
 
 class CodeChange(NamedTuple):
-    """The functions of a source whose code changes.
+    """A change of the code of a source.
 
     Attributes:
-        text: the names of the functions.
-        line: the line of the first function.
+        text: the names of functions, or one of them with its changed statements or attributes.
+        line: the first changed line.
         is_old: whether the line is in the old version.
     """
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from difflib import SequenceMatcher
-from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.review.excerpts import shorten
 from linkwright.review.sources.code import Code, Part
-from linkwright.review.sources.code_changes import ReportedLines, format_function
+from linkwright.review.sources.code_changes import CodeChange, ReportedLines, format_function
 from linkwright.review.sources.names import SourceNames
 
 _INDENT = re.compile(r"[\d ]*")
@@ -38,21 +37,7 @@ _MAX_CHANGES = 2
 _MAX_CHARACTERS = 100
 
 
-class SmallChange(NamedTuple):
-    """The changed statements of a function.
-
-    Attributes:
-        text: the function and the statements.
-        line: the line of the first one.
-        is_old: whether the line is in the old version.
-    """
-
-    text: Phrase
-    line: int
-    is_old: bool
-
-
-def find_small_changes(old: Code, new: Code, lines: ReportedLines, names: SourceNames) -> Iterator[SmallChange]:
+def find_small_changes(old: Code, new: Code, lines: ReportedLines, names: SourceNames) -> Iterator[CodeChange]:
     """Yield the functions in which few statements differ, if these are conditions, results or sent messages.
 
     Args:
@@ -69,7 +54,7 @@ def find_small_changes(old: Code, new: Code, lines: ReportedLines, names: Source
         if changes and len(changes) <= _MAX_CHANGES and all(text is not None for text, _, _ in changes):
             texts = joined([text for text, _, _ in changes if text is not None], "; ")
             _, line, is_old = changes[0]
-            yield SmallChange(
+            yield CodeChange(
                 phrase("in {function}: {changes}", function=format_function(name, names), changes=texts), line, is_old
             )
 

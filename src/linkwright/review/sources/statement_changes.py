@@ -13,7 +13,7 @@ from linkwright.review.sources.changed_sources import ChangedSources
 from linkwright.review.sources.changed_texts import find_text_changes
 from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
-from linkwright.review.sources.code_changes import ReportedLines, find_added_code, find_code_change
+from linkwright.review.sources.code_changes import CodeChange, ReportedLines, find_added_code, find_code_change
 from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.frame_changes import find_frame_changes
 from linkwright.review.sources.moved_code import without_functions, without_statements
@@ -78,8 +78,7 @@ def _find_small_changes(
     if before is None or after is None or file.path.endswith(CPP_SUFFIXES):
         return
     for change in find_small_changes(before, after, ReportedLines(reported), new.get_names(file.new_path)):
-        path = (file.old_path if change.is_old else file.new_path) or file.path
-        yield Change(change.text, location=Location(path, change.line, 1, change.is_old))
+        yield _make_code_change(change, file)
 
 
 def _find_attributes(
@@ -91,8 +90,7 @@ def _find_attributes(
         return
     sentences = [str(change.sentence) for change in reported]
     for change in find_attribute_changes(before, after, (old.has_word, new.has_word), sentences):
-        path = (file.old_path if change.is_old else file.new_path) or file.path
-        yield Change(change.text, location=Location(path, change.line, 1, change.is_old))
+        yield _make_code_change(change, file)
 
 
 def _find_renamed_variables(
@@ -208,6 +206,11 @@ def _compare_constants(
     paths = old_file, new.version.file(file.new_path)
     for change in find_constant_changes(paths, (old.has_word, new.has_word), sentences):
         yield _make_change(change, file)
+
+
+def _make_code_change(change: CodeChange, file: ChangedFile) -> Change:
+    path = (file.old_path if change.is_old else file.new_path) or file.path
+    return Change(change.text, location=Location(path, change.line, 1, change.is_old))
 
 
 def _make_change(change: TextsChange, file: ChangedFile) -> Change:
