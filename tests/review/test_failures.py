@@ -144,6 +144,8 @@ def test_a_bug_that_no_single_file_causes_is_a_note(two_messages, compare, monke
         ("arm_description/worlds/broken.sdf", "<sdf version='1.9'><world name='w'></sdf>", "'</sdf>' does not close"),
         ("arm_description/launch/broken.launch.py", "def generate_launch_description(:", "line 1 is not valid Python"),
         ("arm_description/launch/broken.launch.xml", "<launch><node pkg='a'></launch>", "'</launch>' does not close"),
+        ("arm_description/launch/broken.launch.yaml", "launch: [a\n", "line 2 is not valid YAML: expected"),
+        ("arm_description/config/broken.yaml", "a: 'b\n", "line 2 is not valid YAML: found unexpected end"),
     ],
 )
 def test_added_file_that_cannot_be_read_says_so(package, compare, path, text, reason):

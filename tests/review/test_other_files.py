@@ -268,11 +268,11 @@ def test_file_that_can_no_longer_be_read_is_breaking(repository, compare):
     repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
     repository.commit({"a/config/c.yaml": "a: [1"})
     (sentence,) = breaking(compare(repository, "HEAD~1..HEAD"))
-    assert sentence.startswith("can no longer be read: while parsing")
+    assert sentence.startswith("can no longer be read: line 1 is not valid YAML: ")
     repository.commit({"a/config/c.yaml": PARAMETERS})
     result = compare(repository, "HEAD~1..HEAD")
     (sentence,) = sentences(subject(result, "a/config/c.yaml"))
-    assert sentence.startswith("can be read now; in the old version: while parsing")
+    assert sentence.startswith("can be read now; in the old version: line 1 is not valid YAML: ")
     assert breaking(result) == []
 
 

@@ -13,6 +13,7 @@ from linkwright.review.drawings.images import render_unpaired_robot
 from linkwright.review.drawings.scene_images import render_unpaired_world
 from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import Drawings, FilePair, UnreadableFileError
+from linkwright.review.files.yaml_values import compose_yaml, read_yaml_text
 from linkwright.review.folders import without_folder
 from linkwright.review.installed_paths import keeps_installed_path, keeps_type
 from linkwright.review.kinds import KindRule, adapt_rule_to_contents
@@ -102,7 +103,7 @@ def _describe_unpaired_file(
 def _find_unreadable(
     version: Version, kind: SubjectKind, path: str, text: Phrase, contents: Sequence[Change]
 ) -> list[Problem]:
-    """Return the problem that an added description, world or launch file cannot be read; an empty list if it can.
+    """Return the problem that an added file of these kinds cannot be read; an empty list if it can.
 
     A description may need values that only its callers know, so that only XML counts.
     """
@@ -114,6 +115,8 @@ def _find_unreadable(
             read_document(str(file))
         elif kind is SubjectKind.LAUNCH_FILE and "items" not in text.arguments:
             read_outline(file, version.root)
+        elif kind is SubjectKind.PARAMETERS and not text.arguments:
+            compose_yaml(read_yaml_text(file))
     except LinkwrightError as error:
         reason: Phrase = as_phrase(error.diagnostics[0].message)
     except (UnreadableFileError, ValueError) as error:

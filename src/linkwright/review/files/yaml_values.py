@@ -120,6 +120,13 @@ def compose_yaml(text: str) -> yaml.Node | None:
     """
     try:
         return yaml.compose(text, Loader=yaml.SafeLoader)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        problem = foreign(error.problem or error.context or "")
+        line = 1 if mark is None else mark.line + 1
+        raise UnreadableFileError(
+            phrase("line {line} is not valid YAML: {problem}", line=line, problem=problem)
+        ) from None
     except (yaml.YAMLError, RecursionError) as error:
         raise UnreadableFileError(foreign(" ".join(str(error).split()))) from None
 
