@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import expect
 
 from linkwright.learning.course import find_course
 from tests.browser.axe import find_violations
@@ -171,7 +172,7 @@ def test_lesson_texts_fit_and_only_commands_have_copy_button(start, open_page, w
     page.locator(".outline-step", has_text="A package for nodes").click()
     until(page, "lw.panels.lesson.step === '05-nodes/package'")
     output = page.locator(".lesson-code", has=page.locator("code.language-text"))
-    assert output.count() == 1
+    expect(output).to_have_count(1)
     assert output.locator("button").count() == 0
     assert page.locator(".lesson-code", has=page.locator("code.language-bash")).first.locator("button").count() == 1
     page.get_by_role("button", name="中文").click()
