@@ -33,12 +33,24 @@ from linkwright.review.sources.cpp_helpers import Helper, find_helper_uses, find
 from linkwright.review.sources.cpp_lifecycle import LifecycleCallbacks
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.cpp_options import find_options
-from linkwright.review.sources.cpp_parameter_calls import ParameterDefaults, find_table_names, is_required_parameter
+from linkwright.review.sources.cpp_parameter_calls import (
+    ParameterDefaults,
+    find_table_names,
+    find_type_of_default,
+    is_required_parameter,
+)
 from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
 from linkwright.review.sources.cpp_text_functions import TextFunctions
 from linkwright.review.sources.cpp_timers import FoundRate, find_rates
-from linkwright.review.sources.cpp_values import TEXT, VARIABLE, InitialValues, find_constants, parse_literal
+from linkwright.review.sources.cpp_values import (
+    TEXT,
+    VARIABLE,
+    InitialValues,
+    find_assigned_text,
+    find_constants,
+    parse_literal,
+)
 from linkwright.review.sources.cpp_variable_types import VariableTypes
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
@@ -319,7 +331,9 @@ class _Reader:
             namespace = self._handles.find_sub_namespace(call.start)
         if kind is NameKind.PARAMETER:
             if call.function in _ROS2_PARAMETER_CALLS:
-                details += [(Detail.VALUE_TYPE, type_name)] if type_name else []
+                declared = type_name or find_type_of_default(self._text, texts)
+                declared = declared or self._variable_types.find_passed(offsets[1])
+                details += [(Detail.VALUE_TYPE, declared)] if declared else []
             elif read_type := type_name or self._variable_types.find_passed(offsets[1]):
                 details.append((Detail.READ_AS, read_type))
             if is_required_parameter(self._text, call):
@@ -484,8 +498,10 @@ class _Reader:
             return self._text_functions.evaluate(self._text[begin:end])
         if variable["name"] in self._constants:
             return self._constants[variable["name"]]
-        constant = self._shared_constants.get(variable["name"])
-        return self._initial_values.find_text(variable["name"]) if constant is None else constant
+        name = variable["name"]
+        constant = self._shared_constants.get(name)
+        constant = self._initial_values.find_text(name) if constant is None else constant
+        return find_assigned_text(self._text, name, begin) if constant is None else constant
 
     @cached_property
     def _initial_values(self) -> InitialValues:

@@ -103,6 +103,23 @@ def is_required_parameter(text: str, call: Call) -> bool:
     return _EXIT.search(branch) is not None and not _is_in_branch(text, call.start)
 
 
+def find_type_of_default(text: str, arguments: Sequence[str]) -> str:
+    """Return the type that the literal default of a declared parameter has, such as ``int``; empty if it is unknown.
+
+    Args:
+        text: the source without comments.
+        arguments: the arguments behind the name.
+    """
+    value = parse_literal(arguments[0]) if arguments else None
+    if value is None or "dynamic_typing" in text:
+        return ""
+    if value.startswith('"'):
+        return "string"
+    if value in ("true", "false"):
+        return "bool"
+    return "double" if re.search(r"[.ef]", value) else "int"
+
+
 def find_fallback(text: str, call: Call) -> str:
     """Return the literal that a variable gets if a call does not find its parameter; empty if there is none.
 

@@ -94,6 +94,8 @@ def compare_details(
             continue
         if detail is Detail.VALUE_TYPE and _shows_type(old, new) and before is None:
             continue  # the line about the default shows the type
+        if detail is Detail.VALUE_TYPE and new.kind is NameKind.PARAMETER and not _has_other_type(old, new):
+            continue
         if detail is Detail.QOS and normalize_qos(before or "") == normalize_qos(after or ""):
             continue
         if detail is Detail.QUEUE and None in (before, after):  # a depth is a QoS in ROS 2
@@ -121,6 +123,15 @@ def compare_details(
 def _shows_type(old: SourceName, new: SourceName) -> bool:
     """Return whether only the new version of a parameter has a default, which shows its type."""
     return (Detail.DEFAULT, NO) in old.details and (Detail.DEFAULT, NO) not in new.details
+
+
+def _has_other_type(old: SourceName, new: SourceName) -> bool:
+    """Return whether two versions of a parameter certainly have different types."""
+    types = [dict(item.details).get(Detail.VALUE_TYPE) for item in (old, new)]
+    if None in types:  # a declaration without a default has a type only if it says so
+        return (Detail.DEFAULT, NO) in old.details and (Detail.DEFAULT, NO) in new.details
+    kinds = [normalize_read_type(text or "") for text in types]
+    return kinds[0] != kinds[1] or (kinds[0] == "list" and "list" not in types)
 
 
 def _compare_missing_defaults(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None, Detail]]:
