@@ -331,12 +331,13 @@ class _Reader:
             namespace = self._handles.find_sub_namespace(call.start)
         if kind is NameKind.PARAMETER:
             if call.function in _ROS2_PARAMETER_CALLS:
-                declared = type_name or find_type_of_default(self._text, texts)
+                declared = "" if type_name.startswith("decltype") else type_name
+                declared = declared or find_type_of_default(self._text, texts)
                 declared = declared or self._variable_types.find_passed(offsets[1])
                 details += [(Detail.VALUE_TYPE, declared)] if declared else []
             elif read_type := type_name or self._variable_types.find_passed(offsets[1]):
                 details.append((Detail.READ_AS, read_type))
-            if is_required_parameter(self._text, call):
+            if is_required_parameter(self._text, call, texts):
                 details.append((Detail.REQUIRED, YES))
             is_output = call.function in _OUTPUT_CALLS or is_known_to_be_set(self._text, name, call.start)
             type_name = (
@@ -382,7 +383,8 @@ class _Reader:
         """Add the names that helpers of the source or its headers make from the literals of their callers."""
         for helpers, is_own in ((self._own_helpers, True), (self._header_helpers, False)):
             for use in find_helper_uses(self._text, helpers, is_own=is_own):
-                self._add_named_call(use.call, use.name, (use.begin, use.end), use.arguments)
+                call = use.call if is_own else use.call._replace(start=use.begin)
+                self._add_named_call(call, use.name, (use.begin, use.end), use.arguments)
 
     @cached_property
     def _own_helpers(self) -> list[Helper]:
