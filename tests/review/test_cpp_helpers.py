@@ -134,3 +134,13 @@ def test_a_macro_of_another_package_declares_the_parameter_that_it_is_given(
     result = compare(repository)
     assert expected in [line for found in result.subjects for line in sentences(found)]
     assert [str(change.reason)[: len(reason)] for _, change in result.breaking_changes] == ([reason] if reason else [])
+
+
+def test_a_call_may_have_its_arguments_in_the_next_line(repository, compare):
+    source = (
+        'void Arm::listen() {\n  sub_ = create_subscription<Bool>\n                              ("flag", 10, f);\n}\n'
+    )
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": source})
+    repository.write({"arm/src/arm.cpp": source.replace("flag", "stop")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["subscription 'flag' (Bool) renamed to 'stop' (Bool)"]

@@ -21,6 +21,7 @@ from linkwright.review.sources.cpp_calls import (
 from linkwright.review.sources.cpp_conditions import Conditions
 from linkwright.review.sources.cpp_functions import (
     HIDDEN,
+    PRIVATE,
     PROTECTED,
     DeclaredFunction,
     read_base_names,
@@ -237,14 +238,17 @@ class _Reader:
         non_public = (read_declared_functions(self._text, HIDDEN), read_declared_members(self._text, HIDDEN))
         self._names.non_public = frozenset(item.name for items in non_public for item in items)
         protected: dict[str, list[DeclaredFunction]] = {}
-        for function in read_declared_functions(self._text, PROTECTED):
+        private = [function for function in read_declared_functions(self._text, PRIVATE) if function.is_pure]
+        for function in (*read_declared_functions(self._text, PROTECTED), *private):
             if not function.is_override:
                 protected.setdefault(function.name, []).append(function)
         for name, functions in protected.items():
             short = name.rpartition("::")[2]
             start = max(functions[0].start, self._text.find(short, functions[0].start))
             span = self._make_span(start, start + len(short))
-            self._names.protected.append(SourceName(NameKind.FUNCTION, name, _join_overloads(functions), span))
+            details = ((Detail.REQUIRED, YES),) if functions[0] in private else ()
+            types = _join_overloads(functions)
+            self._names.protected.append(SourceName(NameKind.FUNCTION, name, types, span, details))
         for member in read_declared_members(self._text, PROTECTED):
             span = self._make_span(member.start, member.start + len(member.name.rpartition("::")[2]))
             self._names.protected.append(SourceName(NameKind.MEMBER, member.name, member.type, span))

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_same_type
+from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_convertible, is_same_type
 from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
 from linkwright.review.sources.qos import find_depth, find_qos_reason, normalize_qos
@@ -167,7 +167,12 @@ def _compare_types(old: SourceName, new: SourceName, *, is_computed: bool) -> It
         text = phrase(
             "{kind} '{name}': type {old} -> {new}", kind=new.kind.title, name=new.name, old=types[0], new=types[1]
         )
-        yield text, None if new.kind is NameKind.MEMBER else _make_type_reason(new, is_computed=is_computed)
+        if new.kind is not NameKind.MEMBER:
+            yield text, _make_type_reason(new, is_computed=is_computed)
+        elif is_convertible(old.type, new.type):
+            yield text, None
+        else:
+            yield text, phrase("code that uses it as '{type}' does not build", type=old.type)
 
 
 def _make_type_reason(item: SourceName, *, is_computed: bool) -> Phrase:
