@@ -145,6 +145,7 @@ def test_new_program_names_functions_that_no_other_line_names(review_lines):
         ("a/a.py", "A = 1\n", "A = 1\nB = 2\n", "constants added: B = 2"),
         ("a/a.py", "A = 1\nB = 2\n", "A = 1\n", "constants removed: B = 2"),
         ("a/a.py", "A = 1\nB = 2\n", "A = 1\nC = 2\n", "constants renamed: B -> C"),
+        ("a/a.cpp", "int a;\n", "int a;\nconst int Arm::names[COUNT] = {1, 2};\n", "constants added: names = {1, 2}"),
         ("a/a.py", "AB = '/a'\n", "AB = '/a'\nC = AB + '/c'\n", "constants added: C = AB + '/c'"),
         ("a/a.py", "A = 1\nB = 2\n", "A = 1\nC = 3\n", "constants added: C = 3; constants removed: B = 2"),
         ("a/a.cpp", "int a = 1;\n", "int a = 1;\nconst double B = 2.5;\n", "constants added: B = 2.5"),

@@ -92,3 +92,55 @@ def test_a_function_of_another_library_has_the_node_before_the_name(repository, 
     repository.write({"arm/src/arm.cpp": SWRI.replace(old, new)})
     (found,) = compare(repository).subjects
     assert sentences(found) == [expected]
+
+
+MACROS = """#pragma once
+#define COMMON_DECLARE(x)                                          \\
+  do {                                                             \\
+    rcl_interfaces::msg::ParameterDescriptor descriptor;           \\
+    params_.x = declare_parameter<decltype(params_.x)>(#x, descriptor); \\
+  } while (false)
+#define COMMON_DECLARE_OR(x, value) params_.x = declare_parameter(#x, value)
+"""
+DECLARING = """#include <common/parameters.hpp>
+void Arm::declare() {
+  COMMON_DECLARE_OR(port, "/dev/ttyS0");
+  COMMON_DECLARE_OR(rate, 10.0);
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "reason"),
+    [
+        (
+            "rate",
+            "speed",
+            "parameter 'rate' (10.0) renamed to 'speed' (10.0)",
+            "values that launch files and parameter files give to",
+        ),
+        ("10.0", "20.0", "parameter 'rate': default 10.0 -> 20.0", ""),
+        ("10.0", '"fast"', "parameter 'rate': type double -> string", "values of the old type are rejected"),
+        ('_OR(port, "/dev/ttyS0")', "(port)", "parameter 'port': required no -> yes", "the program fails where 'port'"),
+    ],
+)
+def test_a_macro_of_another_package_declares_the_parameter_that_it_is_given(
+    repository, compare, old, new, expected, reason
+):
+    common = {"common/package.xml": PACKAGE_XML.replace("arm_description", "common")}
+    common["common/include/common/parameters.hpp"] = MACROS
+    repository.commit({**MANIFEST, **common, "arm/src/arm.cpp": DECLARING})
+    repository.write({"arm/src/arm.cpp": DECLARING.replace(old, new)})
+    result = compare(repository)
+    assert expected in [line for found in result.subjects for line in sentences(found)]
+    assert [str(change.reason)[: len(reason)] for _, change in result.breaking_changes] == ([reason] if reason else [])
+
+
+def test_a_call_may_have_its_arguments_in_the_next_line(repository, compare):
+    source = (
+        'void Arm::listen() {\n  sub_ = create_subscription<Bool>\n                              ("flag", 10, f);\n}\n'
+    )
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": source})
+    repository.write({"arm/src/arm.cpp": source.replace("flag", "stop")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["subscription 'flag' (Bool) renamed to 'stop' (Bool)"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import sentences, subject
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
 HEADER = """struct Limits { double speed{1.5}; int count = 3; };
@@ -61,3 +61,63 @@ def test_the_initial_value_of_a_member_is_a_default_or_a_name(repository, compar
 def test_a_member_that_the_source_sets_before_its_use_is_only_a_value(repository, compare, old, new):
     (found,) = review_source(repository, compare, old, new).subjects
     assert found.path == "arm/include/arm/arm.hpp"
+
+
+CREATED = """Board::Board() : Node("board") {{
+  std::string topic;
+  topic = "{0}";
+  battery_ = create_publisher<{1}>(topic, 10);
+  {{
+    topic = "~/pwm";
+    pwm_ = create_publisher<Pwm>(topic, 10);
+  }}
+  state_ = create_publisher<State>(topic, 10);
+}}
+"""
+
+
+def test_variable_has_the_text_that_was_assigned_last_in_its_block(repository, compare):
+    repository.commit({**MANIFEST, "arm/a.cpp": CREATED.format("voltage", "Float64")})
+    repository.write({"arm/a.cpp": CREATED.format("battery", "BatteryState").replace("~/pwm", "~/duty")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == [
+        "publisher '~/pwm' (Pwm) renamed to '~/duty' (Pwm)",
+        "publishers added: 'battery' (BatteryState)",
+        "publishers removed: 'voltage' (Float64)",
+    ]
+
+
+DECLARED = "void Board::declare(rclcpp::Node & node) {{\n{}}}\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('node.declare_parameter("mode", 2);', 'node.declare_parameter("mode", "mean");'),
+        (
+            'int mode = MEAN; node.declare_parameter("mode", mode);',
+            'std::string mode("mean"); node.declare_parameter("mode", mode);',
+        ),
+        ('node.declare_parameter("mode", 2);', 'node.declare_parameter("mode", 2.0);'),
+        ('node.declare_parameter<bool>("mode", false);', 'node.declare_parameter("mode", 0);'),
+    ],
+)
+def test_declared_parameter_of_another_type_rejects_the_old_values(repository, compare, old, new):
+    repository.commit({**MANIFEST, "arm/a.cpp": DECLARED.format(old)})
+    repository.write({"arm/a.cpp": DECLARED.format(new)})
+    (line,) = breaking(compare(repository))
+    assert line.startswith("parameter 'mode': type ")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('node.declare_parameter<double>("mode", 2);', 'node.declare_parameter("mode", 2.5);'),
+        ('double mode(2); node.declare_parameter("mode", mode);', 'node.declare_parameter("mode", 2.5);'),
+        ('node.declare_parameter("mode", find_mode());', 'node.declare_parameter("mode", 2.5);'),
+    ],
+)
+def test_declared_parameter_of_the_same_type_breaks_nothing(repository, compare, old, new):
+    repository.commit({**MANIFEST, "arm/a.cpp": DECLARED.format(old)})
+    repository.write({"arm/a.cpp": DECLARED.format(new)})
+    assert breaking(compare(repository)) == []

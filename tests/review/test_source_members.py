@@ -147,6 +147,8 @@ HEADER_PACKAGE = {
          "  double step{0.1};\n  double speed, rate = 2.0;\n  double mass;\n",
          "public members removed: 'Link::center' (double), 'Link::sizes' (std::vector<int>)", True),
         ("double center", "float center", "public member 'Link::center': type double -> float", False),
+        ("double center", "static double center", "public member 'Link::center': type double -> static double", False),
+        ("double center", "std::string center", "public member 'Link::center': type double -> std::string", True),
     ],
 )  # fmt: skip
 def test_public_members_of_installed_classes_are_an_interface(repository, compare, old, new, expected, is_breaking):
@@ -210,6 +212,8 @@ protected:
   void move(double speed);
 private:
   struct Cache { int size; };
+  void clear();
+  virtual double measure(int axis) = 0;
 };
 """
 DERIVED = "classes that derive from the class and use the members do not build"
@@ -225,6 +229,7 @@ DERIVED = "classes that derive from the class and use the members do not build"
          ["protected members removed: 'Arm::count' (int)"]),
         ("  Arm();\nprotected:\n", "  Arm();\n", []),
         ("  struct Cache { int size; };\n", "", []),
+        ("  void clear();\n", "", []),
     ],
 )  # fmt: skip
 def test_classes_that_derive_from_an_installed_class_need_protected_members(repository, compare, old, new, expected):
@@ -236,6 +241,22 @@ def test_classes_that_derive_from_an_installed_class_need_protected_members(repo
     assert [str(change.reason) for item in result.subjects for change in item.changes if change.reason] == (
         [DERIVED] if expected else []
     )
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        ("virtual double read(int axis) = 0;",
+         ["private virtual functions added: 'Arm::read' (int)",
+          "private virtual functions removed: 'Arm::measure' (int)"]),
+        ("virtual double measure(int axis, bool raw) = 0;", ["private function 'Arm::measure': (int) -> (int, bool)"]),
+    ],
+)  # fmt: skip
+def test_classes_that_derive_from_an_installed_class_define_its_private_functions(repository, compare, new, expected):
+    path = "arm/include/arm/arm.hpp"
+    repository.commit({**HEADER_PACKAGE, path: PROTECTED_HEADER})
+    repository.write({path: PROTECTED_HEADER.replace("virtual double measure(int axis) = 0;", new)})
+    assert breaking(compare(repository)) == expected
 
 
 CALLS = "classes that derive from the class and call or define 'Arm::move' do not build"

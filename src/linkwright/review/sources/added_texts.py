@@ -277,7 +277,9 @@ def _find_constant_name(target: Sequence[Token]) -> Token | None:
     if ":" in words:
         target = target[: words.index(":")]
     is_typed = all(token.kind is TokenKind.WORD or token.text in _TYPE_PUNCTUATION for token in target)
-    names = [token for token in target if token.kind is TokenKind.WORD]
+    is_element = "[" in words and ":" not in words
+    named = target[: words.index("[")] if is_element else target
+    names = [token for token in named if token.kind is TokenKind.WORD]
     if not is_typed or not names or names[-1].text.startswith("__") or "using" in words or "namespace" in words:
         return None
-    return None if "[" in words and ":" not in words and len(names) == 1 else names[-1]
+    return None if is_element and len(names) == 1 else names[-1]

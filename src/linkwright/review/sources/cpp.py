@@ -21,6 +21,7 @@ from linkwright.review.sources.cpp_calls import (
 from linkwright.review.sources.cpp_conditions import Conditions
 from linkwright.review.sources.cpp_functions import (
     HIDDEN,
+    PRIVATE,
     PROTECTED,
     DeclaredFunction,
     read_base_names,
@@ -33,12 +34,24 @@ from linkwright.review.sources.cpp_helpers import Helper, find_helper_uses, find
 from linkwright.review.sources.cpp_lifecycle import LifecycleCallbacks
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.cpp_options import find_options
-from linkwright.review.sources.cpp_parameter_calls import ParameterDefaults, find_table_names, is_required_parameter
+from linkwright.review.sources.cpp_parameter_calls import (
+    ParameterDefaults,
+    find_table_names,
+    find_type_of_default,
+    is_required_parameter,
+)
 from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
 from linkwright.review.sources.cpp_text_functions import TextFunctions
 from linkwright.review.sources.cpp_timers import FoundRate, find_rates
-from linkwright.review.sources.cpp_values import TEXT, VARIABLE, InitialValues, find_constants, parse_literal
+from linkwright.review.sources.cpp_values import (
+    TEXT,
+    VARIABLE,
+    InitialValues,
+    find_assigned_text,
+    find_constants,
+    parse_literal,
+)
 from linkwright.review.sources.cpp_variable_types import VariableTypes
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
@@ -225,14 +238,17 @@ class _Reader:
         non_public = (read_declared_functions(self._text, HIDDEN), read_declared_members(self._text, HIDDEN))
         self._names.non_public = frozenset(item.name for items in non_public for item in items)
         protected: dict[str, list[DeclaredFunction]] = {}
-        for function in read_declared_functions(self._text, PROTECTED):
+        private = [function for function in read_declared_functions(self._text, PRIVATE) if function.is_pure]
+        for function in (*read_declared_functions(self._text, PROTECTED), *private):
             if not function.is_override:
                 protected.setdefault(function.name, []).append(function)
         for name, functions in protected.items():
             short = name.rpartition("::")[2]
             start = max(functions[0].start, self._text.find(short, functions[0].start))
             span = self._make_span(start, start + len(short))
-            self._names.protected.append(SourceName(NameKind.FUNCTION, name, _join_overloads(functions), span))
+            details = ((Detail.REQUIRED, YES),) if functions[0] in private else ()
+            types = _join_overloads(functions)
+            self._names.protected.append(SourceName(NameKind.FUNCTION, name, types, span, details))
         for member in read_declared_members(self._text, PROTECTED):
             span = self._make_span(member.start, member.start + len(member.name.rpartition("::")[2]))
             self._names.protected.append(SourceName(NameKind.MEMBER, member.name, member.type, span))
@@ -319,10 +335,13 @@ class _Reader:
             namespace = self._handles.find_sub_namespace(call.start)
         if kind is NameKind.PARAMETER:
             if call.function in _ROS2_PARAMETER_CALLS:
-                details += [(Detail.VALUE_TYPE, type_name)] if type_name else []
+                declared = "" if type_name.startswith("decltype") else type_name
+                declared = declared or find_type_of_default(self._text, texts)
+                declared = declared or self._variable_types.find_passed(offsets[1])
+                details += [(Detail.VALUE_TYPE, declared)] if declared else []
             elif read_type := type_name or self._variable_types.find_passed(offsets[1]):
                 details.append((Detail.READ_AS, read_type))
-            if is_required_parameter(self._text, call):
+            if is_required_parameter(self._text, call, texts):
                 details.append((Detail.REQUIRED, YES))
             is_output = call.function in _OUTPUT_CALLS or is_known_to_be_set(self._text, name, call.start)
             type_name = (
@@ -368,7 +387,8 @@ class _Reader:
         """Add the names that helpers of the source or its headers make from the literals of their callers."""
         for helpers, is_own in ((self._own_helpers, True), (self._header_helpers, False)):
             for use in find_helper_uses(self._text, helpers, is_own=is_own):
-                self._add_named_call(use.call, use.name, (use.begin, use.end), use.arguments)
+                call = use.call if is_own else use.call._replace(start=use.begin)
+                self._add_named_call(call, use.name, (use.begin, use.end), use.arguments)
 
     @cached_property
     def _own_helpers(self) -> list[Helper]:
@@ -484,8 +504,10 @@ class _Reader:
             return self._text_functions.evaluate(self._text[begin:end])
         if variable["name"] in self._constants:
             return self._constants[variable["name"]]
-        constant = self._shared_constants.get(variable["name"])
-        return self._initial_values.find_text(variable["name"]) if constant is None else constant
+        name = variable["name"]
+        constant = self._shared_constants.get(name)
+        constant = self._initial_values.find_text(name) if constant is None else constant
+        return find_assigned_text(self._text, name, begin) if constant is None else constant
 
     @cached_property
     def _initial_values(self) -> InitialValues:

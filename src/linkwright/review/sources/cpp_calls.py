@@ -63,6 +63,7 @@ _NODE = re.compile(
     r"\s*(?:\.get\s*\(\s*\))?"
 )
 """An argument that is a node or its handle, before the name."""
+_OPENING = re.compile(r"\s*\(")
 _GLOBAL_SCOPES = frozenset({"ros::param::", "rclcpp::", "rclcpp_action::"})
 
 
@@ -112,8 +113,9 @@ def _read_call(text: str, match: re.Match[str]) -> Call | None:
             type_name = type_name.partition(",")[0].removesuffix("::Request")
         if kind not in GRAPH_KINDS:
             type_name = type_name.rpartition("::")[2]
-        start = text.find("(", end, end + 20)
-    if start < 0 or text[start : start + 1] != "(":
+        opening = _OPENING.match(text, end + 1)
+        start = len(text) if opening is None else opening.end() - 1
+    if text[start : start + 1] != "(":
         return None
     if function == "param" and not type_name and not scope:
         return None  # a different function with the same name

@@ -34,7 +34,8 @@ _NOT_NAMES = _TYPE_KEYWORDS | {"int", "char", "double", "float", "bool"}
 _KEYWORDS = frozenset({"if", "for", "while", "switch", "return", "sizeof", "decltype", "alignas", "static_assert"})
 PUBLIC = frozenset({"public"})
 PROTECTED = frozenset({"protected"})
-HIDDEN = frozenset({"protected", "private"})
+PRIVATE = frozenset({"private"})
+HIDDEN = PROTECTED | PRIVATE
 
 _LEVELS = ("public", "protected", "private")
 """The levels of access, the most open one first."""

@@ -1,4 +1,4 @@
-"""Find the functions of C++ sources that make a topic, service, action or parameter from a name that they are given."""
+"""Find the functions and macros of C++ sources that make a topic, service, action or parameter from a given name."""
 
 from __future__ import annotations
 
@@ -20,6 +20,9 @@ _STRING = re.compile(
 )
 _PARAMETER = re.compile(r".*?\b(?P<name>\w+)\s*(?:=\s*(?P<default>.*?)\s*)?", re.DOTALL)
 _JOINED = r"(?:\"(?P<before>[^\"\\]*)\"\s*\+\s*)?{name}(?:\.c_str\(\))?(?:\s*\+\s*\"(?P<after>[^\"\\]*)\")?"
+_MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(?P<name>\w+)(?=\()", re.MULTILINE)
+_IDENTIFIER = re.compile(r"\s*(?P<text>[A-Za-z_]\w*)\s*")
+_END_OF_MACRO = re.compile(r"(?<!\\)\n|\Z")
 _TEMPLATE = re.compile(r"\btemplate\s*<(?P<names>[^;{}()]*)>[^;{}()]*\Z")
 _MAX_HEAD_CHARACTERS = 300
 _TEMPLATE_NAMES = re.compile(r"\b(?:typename|class)\s+(\w+)")
@@ -33,11 +36,12 @@ _KINDS_OF_NAMES = frozenset(
 
 
 class Helper(NamedTuple):
-    """A function or lambda that passes one of its parameters as a name.
+    """A function, lambda or macro that passes one of its parameters as a name.
 
     Attributes:
         name: the name of the function.
         is_lambda: whether it is a lambda.
+        is_stringified: whether it is a macro that makes a text of the parameter with the name, as ``#x`` does.
         position: the index of the parameter with the name.
         call: the call inside of it that takes the name.
         before: the text that it puts before the name.
@@ -52,6 +56,7 @@ class Helper(NamedTuple):
 
     name: str
     is_lambda: bool
+    is_stringified: bool
     position: int
     call: Call
     before: str
@@ -93,6 +98,8 @@ def find_helpers(text: str) -> list[Helper]:
         name = match["lambda"] or match["name"]
         if name not in _NO_FUNCTIONS and name not in {call.function for call in calls}:
             found += _read_helper(text, match, name, calls)
+    for match in _MACRO.finditer(text) if calls else ():
+        found += _read_macro(text, match, calls)
     return [
         item for item in found if all(item.position == other.position for other in found if other.name == item.name)
     ]
@@ -124,7 +131,37 @@ def _read_helper(text: str, match: re.Match[str], name: str, calls: Sequence[Cal
                 continue
             before, after = joined["before"] or "", joined["after"] or ""
             is_lambda = match["lambda"] is not None
-            yield Helper(name, is_lambda, index, call, before, after, others, names, defaults, templates, start, end)
+            yield Helper(
+                name, is_lambda, False, index, call, before, after, others, names, defaults, templates, start, end
+            )
+
+
+def _read_macro(text: str, match: re.Match[str], calls: Sequence[Call]) -> Iterator[Helper]:
+    names = tuple(text[slice(*item)].strip() for item in find_arguments(text, match.end()))
+    body = find_closing_bracket(text, match.end()) + 1
+    found = _END_OF_MACRO.search(text, body)
+    end = len(text) if found is None else found.end()
+    for call in calls:
+        if not body <= call.start < end:
+            continue
+        given, *others = (" ".join(text[slice(*item)].replace("\\\n", " ").split()) for item in call.arguments)
+        name = given.removeprefix("#").strip()
+        if name in names:
+            yield Helper(
+                name=match["name"],
+                is_lambda=False,
+                is_stringified=given.startswith("#"),
+                position=names.index(name),
+                call=call,
+                before="",
+                after="",
+                arguments=tuple(others),
+                parameters=names,
+                defaults=("",) * len(names),
+                templates=(),
+                start=match.start("name"),
+                end=end,
+            )
 
 
 def find_helper_uses(text: str, helpers: Sequence[Helper], *, is_own: bool) -> Iterator[HelperUse]:
@@ -147,7 +184,7 @@ def find_helper_uses(text: str, helpers: Sequence[Helper], *, is_own: bool) -> I
             if not helper.position < len(arguments) <= len(helper.parameters):
                 continue
             begin, end = arguments[helper.position]
-            literal = TEXT.fullmatch(text[begin:end])
+            literal = (_IDENTIFIER if helper.is_stringified else TEXT).fullmatch(text[begin:end])
             if literal is not None and literal["text"]:
                 values = dict(zip(helper.parameters, helper.defaults, strict=True))
                 values.update(

@@ -25,6 +25,8 @@ _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<path>[^">\n]+)[">]', 
 _MAX_BYTES = 1 << 20
 _MAX_FOLDERS = 4
 """The maximum number of folders above a source in which its headers are searched."""
+_MAX_LEVELS = 2
+"""The maximum number of folders above a package in which another package of the repository is searched."""
 
 
 class Construction(NamedTuple):
@@ -84,9 +86,9 @@ def _normalize_type(text: str) -> str:
 
 
 def read_included_headers(path: Path) -> list[str]:
-    """Return the texts of the included headers beside a source or in an ``include`` folder.
+    """Return the texts of the included headers: beside a source, or in an ``include`` folder of its package.
 
-    Headers outside of the package are left out, including targets of links and ``..``.
+    Headers of other packages near it count, but not targets of links and ``..`` outside of a package.
 
     Args:
         path: the path of a source. The result is empty for a header.
@@ -102,11 +104,20 @@ def read_included_headers(path: Path) -> list[str]:
     folders = [path.parent, *(folder / "include" for folder in list(path.parents)[:_MAX_FOLDERS])]
     texts = []
     for match in _INCLUDE.finditer(text):
-        files = ((folder / match["path"]).resolve() for folder in folders)
-        file = next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
+        places = [(base, folder) for folder in folders]
+        if package is not None and (other := _find_neighbor(base, match["path"].partition("/")[0])) is not None:
+            places.append((other, other / "include"))
+        files = (((folder / match["path"]).resolve(), root) for root, folder in places)
+        file = next((file for file, root in files if file.is_relative_to(root) and file.is_file()), None)
         if file is not None and file.stat().st_size <= _MAX_BYTES:
             texts.append(blank_disabled(file.read_text("utf-8", errors="replace")))
     return texts
+
+
+def _find_neighbor(package: Path, name: str) -> Path | None:
+    """Return the folder of another package near a package, if it has its name, or None."""
+    folders = (folder / name for folder in list(package.parents)[:_MAX_LEVELS])
+    return next((folder for folder in folders if (folder / "package.xml").is_file()), None)
 
 
 def has_class(function: SourceName, classes: Collection[str]) -> bool:

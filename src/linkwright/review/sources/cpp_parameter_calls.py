@@ -23,6 +23,8 @@ _LITERAL = r"-?[\d.]+(?:e-?\d+)?f?|true|false|\"[^\"\\]*\""
 _BRACE = re.compile(r"[{}]")
 _CONDITIONAL_HEAD = re.compile(r"\b(?:if|else|case|switch|catch)\b")
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2}
+_DESCRIPTOR = re.compile(r"\s*(?:\w+\s*(?:::|\.)\s*)*\w*[dD]escriptor\w*\s*(?:\{.*\}\s*)?\Z", re.DOTALL)
+"""The argument of a declaration that describes the parameter and is no default."""
 _TYPED_CALLS = frozenset({"declare_parameter"})
 _LOOP = r"\bfor\s*\(\s*(?:const\s+)?[\w:<>,\s*]*?[&*\s]+(?:{name}|\[\s*{name}\b[^\]]*\])\s*:\s*(?P<table>\w+)\s*\)"
 _TABLE = r"\b{table}\s*(?:\[\w*\]\s*)?(?:=\s*)?(?=\{{)"
@@ -82,12 +84,12 @@ class ParameterDefaults:
 
     def find_kept(self, call: Call, texts: Sequence[str]) -> str:
         """Return the literal that a variable has if a call does not find its parameter; empty if it is unknown."""
-        if call.function != "getParam" or len(texts) != 1 or is_required_parameter(self._text, call):
+        if call.function != "getParam" or len(texts) != 1 or is_required_parameter(self._text, call, texts):
             return ""
         return find_fallback(self._text, call) or self._initial_values.find_default(texts[0], call.start) or ""
 
 
-def is_required_parameter(text: str, call: Call) -> bool:
+def is_required_parameter(text: str, call: Call, arguments: Sequence[str]) -> bool:
     """Return whether the program fails if a parameter is not set.
 
     A call that declares a type without a default throws an error, and the branch of an ``if`` that a failed call takes
@@ -96,11 +98,29 @@ def is_required_parameter(text: str, call: Call) -> bool:
     Args:
         text: the source without comments.
         call: the call that reads or declares the parameter.
+        arguments: the arguments behind the name.
     """
-    if call.function in _TYPED_CALLS and call.type and len(call.arguments) == 1:
+    if call.function in _TYPED_CALLS and call.type and all(map(_DESCRIPTOR.match, arguments)):
         return re.search(r"\bcatch\b", text) is None and not _is_in_branch(text, call.start)
     branch = _find_branch_of_failure(text, call)
     return _EXIT.search(branch) is not None and not _is_in_branch(text, call.start)
+
+
+def find_type_of_default(text: str, arguments: Sequence[str]) -> str:
+    """Return the type that the literal default of a declared parameter has, such as ``int``; empty if it is unknown.
+
+    Args:
+        text: the source without comments.
+        arguments: the arguments behind the name.
+    """
+    value = parse_literal(arguments[0]) if arguments else None
+    if value is None or "dynamic_typing" in text:
+        return ""
+    if value.startswith('"'):
+        return "string"
+    if value in ("true", "false"):
+        return "bool"
+    return "double" if re.search(r"[.ef]", value) else "int"
 
 
 def find_fallback(text: str, call: Call) -> str:

@@ -14,6 +14,7 @@ _INNER_EAST_CONST = re.compile(r"(?<=[<,(])([\w:]+) const(?=[>,*&)])")
 _ARRAY = re.compile(r"\s*\[\w*\]$")
 _INTEGER = re.compile(r"\b(?:(?:unsigned|signed|short|long|int)\b\s*)+")
 _SHARED = re.compile(r"(?P<pointer>(?:std::|boost::)?shared_ptr)<(?P<const>const )?(?P<type>[^<>]*)>")
+_SPECIFIERS = re.compile(r"\b(?:static|constexpr|inline|mutable|volatile)\b\s*")
 _REFERENCE = re.compile(r"const (?P<type>[^&*]+)&")
 
 
@@ -73,3 +74,13 @@ def can_use_result(old: str, new: str) -> bool:
     """Return whether code that uses a result of an old type builds with a new type. Both types are normalized."""
     is_number = old in _ARITHMETIC and new in _ARITHMETIC
     return is_number or old == "void" or accepts_type(new, old)
+
+
+def is_convertible(old: str, new: str) -> bool:
+    """Return whether code that reads and sets a member of an old type may build with a new type.
+
+    It may if one of the types is deduced, as with ``auto``.
+    """
+    types = [normalize_type(_SPECIFIERS.sub("", text)) for text in (old, new)]
+    is_deduced = any(re.search(r"\b(?:auto|decltype)\b", text) for text in types)
+    return is_deduced or (can_use_result(types[0], types[1]) and can_use_result(types[1], types[0]))

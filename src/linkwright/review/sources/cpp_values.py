@@ -14,11 +14,16 @@ _CONSTANT = re.compile(
     r'\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;)'
     r'|#\s*define\s+(?P<macro>\w+)[ \t]+\(?"(?P<value>[^"\\]*)"'
 )
+_ASSIGNED_TEXT = re.compile(
+    r'\s*(?:=|(?P<open>[({]))\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;'
+)
 _TYPE = r"\b(?:double|float|int|bool|auto|size_t|u?int(?:8|16|32|64)_t|unsigned|long|short|string)"
 _VALUE = r"(?P<value>-?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")"
 _DECLARED = re.compile(rf"{_TYPE}\s+(?P<names>\w+(?:\s*,\s*\w+)*)\s*(?=[;={{])")
 """A declaration of members or variables, with or without a value."""
-_INITIAL = re.compile(rf"{_TYPE}\s+(?P<name>\w+)\s*(?:=\s*|\{{\s*){_VALUE}\s*\}}?\s*;")
+_INITIAL = re.compile(
+    rf"{_TYPE}\s+(?P<name>\w+)\s*(?:=\s*{_VALUE}|[({{]\s*{_VALUE.replace('value', 'made')}\s*[)}}])\s*;"
+)
 _INITIALIZED = re.compile(rf"(?<=[:,])\s*(?P<name>\w+)\s*(?:\(\s*|\{{\s*){_VALUE}\s*[)}}]\s*(?=[,{{])")
 """An entry of the initializer list of a constructor."""
 _MEMBER = re.compile(r"\s*(?:\*?this\s*->\s*)?(?:\w+\s*(?:\.|->)\s*)*(?P<name>[A-Za-z_]\w*)\s*")
@@ -46,6 +51,34 @@ def find_constants(text: str) -> Mapping[str, str]:
     return constants
 
 
+def find_assigned_text(text: str, name: str, position: int) -> str | None:
+    """Return the text that a variable has at a place, or None if it is not certain.
+
+    It is the one that the last statement before the place assigns, in the same block or one around it.
+
+    Args:
+        text: the source without comments.
+        name: the name of the variable.
+        position: the offset of the place.
+    """
+    start = max(0, text.rfind("\n}", 0, position))
+    changes = list(
+        re.finditer(rf"(?<![\w.>\"]){re.escape(name)}\s*(?:[+]?=(?!=)|>>|\(\s*\"|\{{)", text[start:position])
+    )
+    if not changes:
+        return None
+    assigned = _ASSIGNED_TEXT.match(text, start + changes[-1].start() + len(name), position)
+    if assigned is None:
+        return None
+    between = text[assigned.end() : position]
+    depth = 0
+    for bracket in re.findall(r"[{}]", between):
+        depth += 1 if bracket == "{" else -1
+        if depth < 0:
+            return None  # the block of the assignment ends before the place
+    return None if _is_output(between, name) else assigned["text"]
+
+
 def _is_output(text: str, name: str) -> bool:
     """Return whether a call that reads a parameter or another value may write a variable."""
     output = rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b"
@@ -68,7 +101,7 @@ class InitialValues:
         for source in (*headers, text):
             declared |= {name for match in _DECLARED.finditer(source) for name in re.findall(r"\w+", match["names"])}
             for match in _INITIAL.finditer(source):
-                initial.setdefault(match["name"], set()).add(match["value"])
+                initial.setdefault(match["name"], set()).add(match["value"] or match["made"])
             for match in _INITIALIZED.finditer(source):
                 listed.setdefault(match["name"], set()).add(match["value"])
         values = initial | {name: found for name, found in listed.items() if name in declared}
@@ -105,5 +138,5 @@ def read_initial_values(text: str) -> dict[str, str]:
     """Return the literals with which a header initializes members. Names with several values are left out."""
     values: dict[str, set[str]] = {}
     for match in _INITIAL.finditer(text):
-        values.setdefault(match["name"], set()).add(match["value"])
+        values.setdefault(match["name"], set()).add(match["value"] or match["made"])
     return {name: next(iter(found)) for name, found in values.items() if len(found) == 1}

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_same_type
+from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_convertible, is_same_type
 from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
 from linkwright.review.sources.qos import find_depth, find_qos_reason, normalize_qos
@@ -94,6 +94,8 @@ def compare_details(
             continue
         if detail is Detail.VALUE_TYPE and _shows_type(old, new) and before is None:
             continue  # the line about the default shows the type
+        if detail is Detail.VALUE_TYPE and new.kind is NameKind.PARAMETER and not _has_other_type(old, new):
+            continue
         if detail is Detail.QOS and normalize_qos(before or "") == normalize_qos(after or ""):
             continue
         if detail is Detail.QUEUE and None in (before, after):  # a depth is a QoS in ROS 2
@@ -121,6 +123,15 @@ def compare_details(
 def _shows_type(old: SourceName, new: SourceName) -> bool:
     """Return whether only the new version of a parameter has a default, which shows its type."""
     return (Detail.DEFAULT, NO) in old.details and (Detail.DEFAULT, NO) not in new.details
+
+
+def _has_other_type(old: SourceName, new: SourceName) -> bool:
+    """Return whether two versions of a parameter certainly have different types."""
+    types = [dict(item.details).get(Detail.VALUE_TYPE) for item in (old, new)]
+    if None in types:  # a declaration without a default has a type only if it says so
+        return (Detail.DEFAULT, NO) in old.details and (Detail.DEFAULT, NO) in new.details
+    kinds = [normalize_read_type(text or "") for text in types]
+    return kinds[0] != kinds[1] or (kinds[0] == "list" and "list" not in types)
 
 
 def _compare_missing_defaults(old: SourceName, new: SourceName) -> Iterator[tuple[Phrase, Phrase | None, Detail]]:
@@ -156,7 +167,12 @@ def _compare_types(old: SourceName, new: SourceName, *, is_computed: bool) -> It
         text = phrase(
             "{kind} '{name}': type {old} -> {new}", kind=new.kind.title, name=new.name, old=types[0], new=types[1]
         )
-        yield text, None if new.kind is NameKind.MEMBER else _make_type_reason(new, is_computed=is_computed)
+        if new.kind is not NameKind.MEMBER:
+            yield text, _make_type_reason(new, is_computed=is_computed)
+        elif is_convertible(old.type, new.type):
+            yield text, None
+        else:
+            yield text, phrase("code that uses it as '{type}' does not build", type=old.type)
 
 
 def _make_type_reason(item: SourceName, *, is_computed: bool) -> Phrase:

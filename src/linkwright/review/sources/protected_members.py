@@ -1,4 +1,4 @@
-"""Compare the protected members of the classes of a C++ header, which derived classes use."""
+"""Compare the protected members and private virtual functions of a C++ header, which derived classes use or define."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from dataclasses import replace
 
 from linkwright.diagnostics import phrase
 from linkwright.review.sources.details import accepts_all, format_names, format_overload_change
-from linkwright.review.sources.names import NameKind, SourceName, SourceNames
+from linkwright.review.sources.names import YES, Detail, NameKind, SourceName, SourceNames
 from linkwright.review.sources.namespaces import HeaderChange
 
 _OR = " or "
+_VIRTUAL = (Detail.REQUIRED, YES)
+"""What a private function has that derived classes must define."""
 _KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 
 
 def compare_protected(old: SourceNames, new: SourceNames) -> Iterator[HeaderChange]:
     """Yield the changes to protected members of classes that both versions of a header have."""
-    added, lost = _find_lost(new, old), _find_lost(old, new)
-    if added:
-        text = phrase("protected members added: {names}", names=format_names(added))
-        yield HeaderChange(text, added[0].span)
-    if lost:
-        text = phrase("protected members removed: {names}", names=format_names(lost))
-        reason = phrase("classes that derive from the class and use the members do not build")
-        yield HeaderChange(text, lost[0].span, reason, is_old=True)
+    for names, others, is_old in ((new, old, False), (old, new, True)):
+        lost = _find_lost(names, others)
+        for is_virtual in (False, True):
+            items = [item for item in lost if (_VIRTUAL in item.details) is is_virtual]
+            if items:
+                yield _make_list(items, is_virtual=is_virtual, is_old=is_old)
     before = _join_types(old.protected)
     for item in _join_types(new.protected).values():
         other = before.get((item.kind, item.name))
@@ -34,6 +34,20 @@ def compare_protected(old: SourceNames, new: SourceNames) -> Iterator[HeaderChan
             if other.type == item.type:  # the header gives the name to another type
                 other, item = replace(other, type=resolved[0]), replace(item, type=resolved[1])
             yield _compare_types(other, item)
+
+
+def _make_list(items: Sequence[SourceName], *, is_virtual: bool, is_old: bool) -> HeaderChange:
+    """Return the change for members that only one version has."""
+    names = format_names(items)
+    if is_virtual:
+        removed = phrase("private virtual functions removed: {names}", names=names)
+        added = phrase("private virtual functions added: {names}", names=names)
+        reason = phrase("classes that derive from the class do not build")
+        return HeaderChange(removed if is_old else added, items[0].span, reason, is_old=is_old)
+    if not is_old:
+        return HeaderChange(phrase("protected members added: {names}", names=names), items[0].span)
+    reason = phrase("classes that derive from the class and use the members do not build")
+    return HeaderChange(phrase("protected members removed: {names}", names=names), items[0].span, reason, is_old=True)
 
 
 def _join_types(items: Sequence[SourceName]) -> dict[tuple[NameKind, str], SourceName]:
@@ -64,6 +78,8 @@ def _compare_types(old: SourceName, new: SourceName) -> HeaderChange:
     if new.kind is not NameKind.FUNCTION:
         text = phrase("protected member '{name}': type {old} -> {new}", name=new.name, old=old.type, new=new.type)
         return HeaderChange(text, new.span)
-    text = phrase("protected {change}", change=format_overload_change(new.name, old.type, new.type))
+    change = format_overload_change(new.name, old.type, new.type)
+    is_virtual = _VIRTUAL in new.details
+    text = phrase("private {change}", change=change) if is_virtual else phrase("protected {change}", change=change)
     reason = phrase("classes that derive from the class and call or define '{name}' do not build", name=new.name)
     return HeaderChange(text, new.span, None if accepts_all(old.type, new.type) else reason)
