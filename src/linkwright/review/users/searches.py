@@ -9,6 +9,7 @@ from linkwright.review.changes import Change
 from linkwright.review.chosen_robots import find_chosen_robots
 from linkwright.review.launches.left_nodes import find_left_nodes
 from linkwright.review.launches.left_parameters import find_left_parameters
+from linkwright.review.launches.loaded_plugins import find_undeclared_plugins
 from linkwright.review.launches.missing_programs import find_missing_programs, find_old_package_names
 from linkwright.review.launches.passed_arguments import find_passed_arguments
 from linkwright.review.launches.script_callers import find_lost_arguments
@@ -52,5 +53,5 @@ SEARCHES: tuple[Search, ...] = (
     *(find_old_package_names, find_old_dependencies),
     *(find_passed_arguments, find_left_nodes, find_left_parameters, find_lost_interfaces, find_left_types),
     *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),
-    find_unusable_programs,
+    *(find_unusable_programs, find_undeclared_plugins),
 )
