@@ -63,7 +63,7 @@ class PluginPackages:
         return next((reason for reason in reasons if reason is not None), None)
 
     def explain_missing_package(self, package: str) -> Phrase | None:
-        """Return the reason why a plugin of a package is not loaded, or None if the package may be there."""
+        """Return the reason why a plugin of a package is not loaded, or None if the package may exist."""
         if not is_undeclared_and_new(self.versions, self.path, package):
             return None
         return phrase("package.xml does not name '{name}', without which the plugin is not loaded", name=package)
