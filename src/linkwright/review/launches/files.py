@@ -19,6 +19,7 @@ from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.added_nodes import explain_addition
+from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.effects import find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
@@ -114,6 +115,7 @@ def compare_launch_files(pair: FilePair) -> None:
         if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
     ]
     report_repeated_arguments(pair, new)
+    report_changed_kinds(pair, old, new)
     report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)], removed)
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)
