@@ -101,3 +101,51 @@ def test_include_that_another_included_file_makes_with_the_same_arguments_is_not
     reasons = review_caller({**files, caller: old}, {caller: new}, caller)
     (removal,) = [reason for sentence, reason in reasons.items() if "inner.launch.py' removed" in sentence]
     assert removal == reason
+
+
+REMAP = '<remap from="cmd" to="base/cmd"/>'
+CMD_CALLER = '<launch>{}<include file="$(find arm)/launch/part.launch"/></launch>\n'
+CMD_PART = '<launch>{}<node pkg="lamp" type="driver" name="driver">{}</node></launch>\n'
+LOST_CMD = "if the node publishes or serves 'base/cmd', programs that use it do not find it"
+
+
+@pytest.mark.parametrize("part", [CMD_PART.format(REMAP, ""), CMD_PART.format("", REMAP)])
+def test_remapping_that_moves_into_the_included_file_breaks_nothing(review_caller, part):
+    old = {PART: CMD_PART.format("", ""), CALLER: CMD_CALLER.format(REMAP)}
+    reasons = review_caller(old, {PART: part, CALLER: CMD_CALLER.format("")})
+    line = f"remapping of 'cmd' for the nodes that follow removed: base/cmd; {PART} sets it now"
+    assert reasons == {line: None}
+
+
+def test_remapping_to_another_name_in_the_included_file_is_breaking(review_caller):
+    old = {PART: CMD_PART.format("", ""), CALLER: CMD_CALLER.format(REMAP)}
+    new = {PART: CMD_PART.format("", REMAP.replace("base", "arm")), CALLER: CMD_CALLER.format("")}
+    assert list(review_caller(old, new).values()) == [LOST_CMD]
+
+
+@pytest.mark.parametrize(
+    ("part", "caller", "moved", "line", "reason"),
+    [
+        (CMD_PART.format("", "{}"), CMD_CALLER, REMAP, "node 'lamp/driver': remapping cmd base/cmd removed", LOST_CMD),
+        (CMD_PART.format("{}", ""), CMD_CALLER, REMAP,
+         "remapping of 'cmd' for the nodes that follow removed: base/cmd", LOST_CMD),
+        (CMD_PART.format("{}", ""), CMD_CALLER, '<param name="tf_prefix" value="left"/>',
+         "parameter 'tf_prefix' removed: left", LOST_FRAMES),
+    ],
+)  # fmt: skip
+def test_setting_that_moves_to_the_including_file_is_lost_only_without_it(
+    review_caller, part, caller, moved, line, reason
+):
+    old = {PART: part.format(moved), CALLER: caller.format("")}
+    reasons = review_caller(old, {PART: part.format(""), CALLER: caller.format(moved)}, PART)
+    assert reasons == {f"{line}; {CALLER} sets it now": f"where the file is started without {CALLER}, {reason}"}
+
+
+def test_namespace_that_moves_between_an_included_and_an_including_file_changes_only_without_the_latter(review_caller):
+    group = '<launch><group ns="left">'
+    part, caller = CMD_PART.format("", ""), CMD_CALLER.format("")
+    inner = part.replace("<launch>", group).replace("</launch>", "</group></launch>")
+    outer = caller.replace("<launch>", group).replace("</launch>", "</group></launch>")
+    reasons = review_caller({PART: part, CALLER: outer}, {PART: inner, CALLER: caller}, PART)
+    line = f"node 'lamp/driver': namespace left added; {CALLER} no longer sets it"
+    assert reasons == {line: f"where the file is started without {CALLER}, {LOST_NAMES}"}

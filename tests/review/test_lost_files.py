@@ -20,6 +20,13 @@ CATKIN_SETUP = """from distutils.core import setup
 from catkin_pkg.python_setup import generate_distutils_setup
 setup(**generate_distutils_setup(packages=["arm"], package_dir={"": "src"}))
 """
+CATKIN_ITEMS = """from distutils.core import setup
+from catkin_pkg.python_setup import generate_distutils_setup
+settings = generate_distutils_setup()
+settings["packages"] = ["arm"]
+settings["package_dir"] = {"": "src"}
+setup(**settings)
+"""
 HEADER = "namespace arm {\nclass Driver {\n};\n}\n"
 FILES = {
     "a/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
@@ -57,7 +64,7 @@ def test_files_that_are_no_longer_installed_are_reported(repository, compare, ch
     assert bool(breaking(result)) is is_breaking
 
 
-@pytest.mark.parametrize(("setup", "folder"), [(SETUP, "arm"), (CATKIN_SETUP, "src/arm")])
+@pytest.mark.parametrize(("setup", "folder"), [(SETUP, "arm"), (CATKIN_SETUP, "src/arm"), (CATKIN_ITEMS, "src/arm")])
 def test_modules_that_setup_installs_are_compared(repository, compare, setup, folder):
     modules = {f"a/{folder}/__init__.py": "", f"a/{folder}/tools.py": "RATE = 10\n"}
     repository.commit({"a/package.xml": FILES["a/package.xml"], "a/setup.py": setup, **modules})

@@ -57,3 +57,49 @@ def test_messages_with_the_frame_of_something_else_in_python(repository, compare
     assert sentences(subject)[0] == (
         "frame_id of 'marker': image.header.frame_id -> self.frame | self.info.header.frame_id"
     )
+
+
+CPP_SENDER = """void Arm::send(const Image & image)
+{
+  Stamped msg;
+  msg.header.frame_id = frame_;
+  pub_->publish(msg);
+  while (busy_) {
+    auto msg = arm::msg::Stamped();
+    msg.header.frame_id = frame_;
+    msg.speed = image.speed;
+    pub_->publish(msg);
+  }
+}
+"""
+PYTHON_SENDER = """class Arm:
+    def send(self):
+        msg = Stamped()
+        msg.header.frame_id = self.frame
+        self.pub.publish(msg)
+"""
+CPP_FRAME, PYTHON_FRAME = "    msg.header.frame_id = frame_;\n", "        msg.header.frame_id = self.frame\n"
+LOST = "frame_id of 'msg' is no longer set"
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "is_lost"),
+    [
+        (CPP_SENDER, CPP_FRAME, "", True),
+        (CPP_SENDER, CPP_FRAME, "    msg.header.stamp = now();\n", True),
+        (CPP_SENDER, CPP_FRAME, "    msg.header = image.header;\n", False),
+        (CPP_SENDER, CPP_FRAME, "    fill(image, msg);\n", False),
+        (CPP_SENDER, f"arm::msg::Stamped();\n{CPP_FRAME}", "make(image.header);\n", False),
+        (CPP_SENDER, f"{CPP_FRAME}    msg.speed = image.speed;\n    pub_->publish(msg);\n", "", False),
+        (PYTHON_SENDER, PYTHON_FRAME, "", True),
+        (PYTHON_SENDER, PYTHON_FRAME, "        self.fill(msg)\n", False),
+        (PYTHON_SENDER, f"Stamped()\n{PYTHON_FRAME}", "Stamped(header=self.header)\n", False),
+        (PYTHON_SENDER, PYTHON_FRAME, "        msg = self.convert(msg)\n", False),
+    ],
+)
+def test_published_message_without_its_frame_is_breaking(repository, compare, text, old, new, is_lost):
+    path = "arm/arm/arm.py" if text is PYTHON_SENDER else "arm/src/arm.cpp"
+    repository.commit({**MANIFEST, path: text})
+    repository.write({path: text.replace(old, new)})
+    assert text.count(old) == 1
+    assert (LOST in breaking(compare(repository))) is is_lost

@@ -55,3 +55,37 @@ def test_a_package_that_the_old_version_has_or_names(repository, compare, path, 
     repository.commit({"lamp/package.xml": MANIFEST.format(""), "lamp/config/a.yaml": PLANNER, path: text})
     repository.write({"lamp/config/a.yaml": PLANNER.replace("lamp_planner/Lamp", "sun_planner/Sun")})
     assert [change for _, change in compare(repository).breaking_changes] == []
+
+
+LAUNCH = "<launch>\n  <param name='{}' value='{}'/>\n  <node pkg='lamp' type='lamp' name='lamp'/>\n</launch>\n"
+
+
+@pytest.mark.parametrize(
+    ("parameter", "value", "depend", "is_breaking"),
+    [
+        ("moveit_controller_manager", "sun_controllers/Manager", "", True),
+        ("move_base/base_global_planner", "sun_planner/Sun", "", True),
+        ("move_base/base_global_planner", "base_local_planner/Sun", "move_base", False),
+        ("moveit_controller_manager", "sun_controllers/Manager", "sun_controllers", False),
+        ("greeting", "sun_controllers/Manager", "", False),
+    ],
+)
+@pytest.mark.parametrize("old", [None, "<launch>\n</launch>\n"])
+def test_a_launch_file_that_newly_loads_a_plugin_of_an_undeclared_package_is_breaking(
+    repository, compare, parameter, value, depend, is_breaking, old
+):
+    dependency = DEPENDENCY.format(depend) if depend else ""
+    path = "lamp/launch/a.launch"
+    files = {"lamp/package.xml": MANIFEST.format(dependency), path: old}
+    repository.commit({name: text for name, text in files.items() if text is not None})
+    repository.write({path: LAUNCH.format(parameter, value)})
+    changes = [change for _, change in compare(repository).breaking_changes]
+    line = f"loads the plugin '{value}' for the first time", REASON.format(value.partition("/")[0])
+    assert [(str(change.sentence), str(change.reason)) for change in changes] == ([line] if is_breaking else [])
+
+
+def test_a_plugin_that_the_launch_file_loaded_before_is_no_change(repository, compare):
+    path, text = "lamp/launch/a.launch", LAUNCH.format("arm_plugin", "sun_arm/Arm")
+    repository.commit({"lamp/package.xml": MANIFEST.format(""), path: text})
+    repository.write({path: text.replace("name='lamp'", "name='light'")})
+    assert not any("loads the plugin" in str(change.sentence) for _, change in compare(repository).breaking_changes)

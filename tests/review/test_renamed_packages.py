@@ -190,3 +190,29 @@ def test_packages_without_common_files_are_removed_and_added(repository, compare
     files = {"arm/package.xml": manifest.format("arm"), "arm/config/b.yaml": "other:\n  ros__parameters:\n    y: [1]\n"}
     repository.commit({**files, "old/package.xml": None, "old/config/a.yaml": None})
     assert "package removed" in breaking(compare(repository, "HEAD~1..HEAD"))
+
+
+def test_packages_that_still_depend_on_the_old_name_of_a_package_are_named(repository, compare):
+    cmake = "find_package(catkin REQUIRED COMPONENTS rospy arm_tools)\nfind_package(Boost COMPONENTS arm_tools)\n"
+    repository.commit({**FILES, "robot/CMakeLists.txt": cmake})
+    files = rename_package_files("arm_gear", "arm_gear")
+    repository.commit({**files, "robot/package.xml": FILES["robot/package.xml"]})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert breaking(result) == [
+        "package 'arm_tools' renamed to 'arm_gear'",
+        "requires the package 'arm_tools', whose name is 'arm_gear' now",
+        "depends on the package 'arm_tools', whose name is 'arm_gear' now",
+    ]
+    locations = [change.location for change in (*result.subjects[-2].changes, *result.subjects[-1].changes)]
+    assert [(location.file, location.line) for location in locations if location] == [
+        ("robot/CMakeLists.txt", 1),
+        ("robot/package.xml", 8),
+    ]
+
+
+def test_dependency_on_the_old_name_of_a_package_that_another_folder_still_has_breaks_nothing(repository, compare):
+    repository.commit(FILES)
+    files = rename_package_files("arm_gear", "arm_gear")
+    other = {"other/package.xml": MANIFEST, "robot/package.xml": FILES["robot/package.xml"]}
+    repository.commit({**files, **other})
+    assert not [sentence for sentence in breaking(compare(repository, "HEAD~1..HEAD")) if "depends on" in sentence]

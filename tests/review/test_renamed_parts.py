@@ -288,3 +288,25 @@ def test_equal_numbers_alone_do_not_show_that_values_moved(review_changes):
     new = NAMED_BRIDGE.replace("lamp/ping", "2").replace("/ping", "1")
     changed, _ = review_changes(old.format("out"), new.format("out"))
     assert not any(" moved to " in sentence for sentence in sentences(changed))
+
+
+SCAN = """observation_sources: scan
+scan: {data_type: LaserScan, topic: /scan, marking: true, clearing: true}
+"""
+SCAN_LAYER = """obstacles:
+  observation_sources: scan
+  scan: {data_type: LaserScan, topic: scan, marking: true, clearing: true, frame: laser, low: 0, high: 1.0, far: 2.5}
+"""
+
+
+def test_part_that_moves_into_a_group_and_gets_many_new_values_has_moved(review_changes):
+    changed, reasons = review_changes(SCAN, SCAN_LAYER)
+    assert "scan moved to obstacles.scan" in sentences(changed)
+    assert "obstacles.scan.topic /scan -> scan" in sentences(changed)
+    assert reasons == []
+
+
+def test_part_that_shares_few_values_with_one_in_a_group_has_not_moved(review_changes):
+    other = SCAN_LAYER.replace("LaserScan", "PointCloud2").replace("marking", "mark").replace("clearing", "clear")
+    changed, _ = review_changes(SCAN, other)
+    assert any(sentence.startswith("scan removed: ") for sentence in sentences(changed))

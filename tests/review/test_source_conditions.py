@@ -50,3 +50,48 @@ def test_a_name_behind_a_new_condition_is_told(repository, compare, path, old, n
     repository.write({f"arm/{path}": text.format(new)})
     found = [line for line in sentences(compare(repository).subjects[0]) if "only if" in line]
     assert found == expected
+
+
+PARAMETER = "        self.debug = self.declare_parameter('debug', {}).value\n"
+CPP_PARAMETER = '  declare_parameter("debug", {0});\n  get_parameter("debug", debug_);\n'
+REASON = "by default, programs that use the name 'out' do not find it"
+
+
+@pytest.mark.parametrize(
+    ("path", "default", "condition", "is_breaking"),
+    [
+        ("a.py", "False", "self.debug", True),
+        ("a.py", "True", "self.debug", False),
+        ("a.py", "True", "not self.debug", True),
+        ("a.py", "'slow'", "self.debug == 'fast'", True),
+        ("a.py", "'slow'", "self.debug != 'fast'", False),
+        ("a.py", "False", "self.ok and self.debug", True),
+        ("a.py", "False", "self.ok or self.debug", False),
+        ("a.py", "False", "self.get_parameter('debug').value", True),
+        ("a.py", "False", "self.other", False),
+        ("a.cpp", "false", "debug_", True),
+        ("a.cpp", "true", "!debug_", True),
+        ("a.cpp", "3", "ok_ && debug_ == 2", True),
+        ("a.cpp", "2", "debug_ == 2", False),
+    ],
+)
+def test_a_condition_that_a_parameter_does_not_fulfill_by_default_is_breaking(
+    repository, compare, path, default, condition, is_breaking
+):
+    if path.endswith(".py"):
+        head, old = PARAMETER.format(default), OUT
+        new, text = f"        if {condition}:\n    {OUT}", PYTHON
+    else:
+        head, old = CPP_PARAMETER.format(default), CPP_PUBLISHER
+        new, text = f"  if ({condition}) {{\n{CPP_PUBLISHER}  }}\n", CPP
+    repository.commit({**MANIFEST, f"arm/{path}": text.format(head + old)})
+    repository.write({f"arm/{path}": text.format(head + new)})
+    (change,) = [each for each in compare(repository).subjects[0].changes if "only if" in str(each.sentence)]
+    assert (None if change.reason is None else str(change.reason)) == (REASON if is_breaking else None)
+
+
+def test_a_condition_on_a_parameter_that_a_file_of_the_package_sets_is_not_breaking(repository, compare):
+    head, settings = PARAMETER.format("False"), {"arm/config/arm.yaml": "arm:\n  ros__parameters:\n    debug: true\n"}
+    repository.commit({**MANIFEST, **settings, "arm/a.py": PYTHON.format(head + OUT)})
+    repository.write({"arm/a.py": PYTHON.format(head + IF.format(OUT))})
+    assert [str(each.reason) for each in compare(repository).subjects[0].changes if each.reason] == []

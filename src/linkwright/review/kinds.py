@@ -28,7 +28,7 @@ from linkwright.review.files.interfaces import compare_interfaces, interface_con
 from linkwright.review.files.manifests import compare_manifests, manifest_contents
 from linkwright.review.files.maps import compare_map_files, compare_maps, map_contents
 from linkwright.review.files.meshes import compare_meshes, mesh_contents
-from linkwright.review.files.parameter_files import compare_parameter_files, parameter_contents
+from linkwright.review.files.parameter_files import parameter_contents
 from linkwright.review.files.python_settings import (
     PYPROJECT,
     SETUP_CFG,
@@ -42,6 +42,7 @@ from linkwright.review.files.semantics import compare_semantics, semantic_conten
 from linkwright.review.files.setup_files import SETUP_FILE, compare_setup_files, read_setup_facts
 from linkwright.review.files.templates import TEMPLATE_SUFFIXES
 from linkwright.review.files.worlds import compare_worlds, is_model, world_contents
+from linkwright.review.given_names import compare_parameters_with_sources
 from linkwright.review.launches.contents import launch_contents
 from linkwright.review.launches.files import compare_launch_files, compare_launch_tests
 from linkwright.review.robots.descriptions import compare_descriptions
@@ -86,7 +87,7 @@ def _summarize_build_file(read: Callable[[Version, str], BuildFacts], version: V
 
 PARAMETERS = KindRule(
     SubjectKind.PARAMETERS,
-    compare_parameter_files,
+    compare_parameters_with_sources,
     _YAML_SUFFIXES,
     phrase("parameter file added"),
     phrase("parameter file removed"),

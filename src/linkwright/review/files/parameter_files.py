@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Iterator, Mapping
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
 from dataclasses import replace
 
 import yaml
@@ -38,10 +38,17 @@ _MAX_VALUES = 32
 _MIN_VALUES_OF_PART = 3
 _MAX_VALUE_CHARACTERS = 60
 _ITEM_NAME_KEYS = ("name", "id")
+NameRule = Callable[[str, YamlValue, YamlValue], "Phrase | None"]
+"""A function that returns the reason why another value of a parameter is breaking, or None if it is not."""
 
 
-def compare_parameter_files(pair: FilePair) -> None:
-    """Compare two versions of a YAML file, value by value."""
+def compare_parameter_files(pair: FilePair, read_names: Callable[[Mapping[str, YamlValue]], NameRule]) -> None:
+    """Compare two versions of a YAML file, value by value.
+
+    Args:
+        pair: both versions of the file.
+        read_names: a function that takes the new values and returns the rule for values that name topics and frames.
+    """
     texts = pair.read(read_yaml_text)
     if texts is None:
         return
@@ -60,7 +67,7 @@ def compare_parameter_files(pair: FilePair) -> None:
             compare_generated_parameters(pair, old, new)
             return
         old, new = resolve_includes(pair, old, new)
-    pair.changes += merge_values(_find_changes(pair, old, new))
+    pair.changes += merge_values(_find_changes(pair, old, new, read_names))
 
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
@@ -113,7 +120,12 @@ def _compose_root(text: str) -> yaml.Node | None:
     return root
 
 
-def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Node | None) -> Iterator[ValueChange]:
+def _find_changes(
+    pair: FilePair,
+    old_root: yaml.Node | None,
+    new_root: yaml.Node | None,
+    read_names: Callable[[Mapping[str, YamlValue]], NameRule],
+) -> Iterator[ValueChange]:
     labels = find_item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
     old_values, new = ({} if root is None else collect_values(root, labels) for root in (old_root, new_root))
     moveit = MoveItRules(old_values, new, pair.versions)
@@ -121,6 +133,7 @@ def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Nod
     old = _report_renamed(pair, old_values, new, moveit, readers)
     rules = NameRules(old, new, readers)
     plugins = PluginPackages(pair.versions, pair.new_path)
+    find_name_reason = read_names(new)
     new_keys = frozenset(_get_last_key(part) for name in new for part in list_part_paths(name))
     for name, value in new.items():
         old_value = old.get(name)
@@ -136,6 +149,7 @@ def _find_changes(pair: FilePair, old_root: yaml.Node | None, new_root: yaml.Nod
             )
             reason = reason or readers.find_name_reason(name, old_value, value)
             reason = reason or plugins.find_change_reason(name, old_value, value)
+            reason = reason or find_name_reason(name, old_value, value)
             yield ValueChange(name, "changed", value_texts, location, reason)
     for name, values_below in _find_unpaired_parts(new, old):
         first = next(iter(values_below.values()))

@@ -30,6 +30,11 @@ _TRANSFORM_SWITCH = re.compile(
     r"(^|[._])(publish_tf|tf[._]send|enable_odom_tf|broadcast_tf|publish_odom_tf|pub_tf|tf_broadcast)$"
 )
 """The parameters that enable and disable a transform of a node."""
+_OUTPUT_SWITCH = re.compile(
+    r"(^|[./_ ])(publish_(planning_scene|geometry_updates|state_updates|transforms_updates)"
+    r"|publish_robot_description(_semantic)?|publish_voxel_map|publish_cost_grid(_pc)?)$"
+)
+"""The parameters of MoveIt and of navigation that enable and disable a topic."""
 _FILTER_FRAME = re.compile(r"(?P<node>(?:.*\.)?)world_frame")
 """The parameter of robot_localization with the frame whose transform the filter publishes.
 
@@ -106,8 +111,9 @@ class NameRules:
             )
         removed = _find_name_items(old) - _find_name_items(new)
         removed -= {name for name in removed if any(can_evaluate_to(item, name) for item in _find_name_items(new))}
-        if _TRANSFORM_SWITCH.search(parameter) and (old.lower(), new.lower()) == ("true", "false"):
-            return phrase("the node no longer publishes its transform")
+        switch_reason = find_switch_reason(parameter, old, new)
+        if switch_reason is not None:
+            return switch_reason
         if removed and self._is_lost_filter_frame(parameter, old):
             return phrase("the filter no longer publishes the transform of the frame '{name}'", name=old)
         is_offered = offers_frame(parameter) or self._is_frame_of_odometry(parameter)
@@ -224,6 +230,17 @@ def offers_frame(parameter: str) -> bool:
     if _ODOMETRY_FRAME.search(parameter) is not None:
         return True
     return _FRAME_PARAMETER.search(parameter) is not None and not _USED_FRAME_PARAMETER.search(parameter)
+
+
+def find_switch_reason(parameter: str, old: str, new: str) -> Phrase | None:
+    """Return the reason why switching off a parameter is breaking, or None if it switches off no transform or topic."""
+    if (old.lower(), new.lower()) != ("true", "false"):
+        return None
+    if _TRANSFORM_SWITCH.search(parameter):
+        return phrase("the node no longer publishes its transform")
+    match = _OUTPUT_SWITCH.search(parameter)
+    name = "" if match is None else match[0].lstrip("./_ ")
+    return phrase("the data that '{name}' turns on is no longer published", name=name) if name else None
 
 
 def is_parameter(name: str) -> bool:

@@ -16,7 +16,9 @@ _CLASS = re.compile(r"(?P<package>[a-z][a-z0-9]*(?:_[a-z0-9]+)+)(?:/|::)(?:\w+::
 
 The namespace of a class without an underscore is often not the package.
 """
-_CLASS_PARAMETER = re.compile(r"(^|[._])(plugin|type|kinematics_solver|planning_plugin|base_\w+_planner)$")
+_CLASS_PARAMETER = re.compile(
+    r"(^|[._])(plugin|type|kinematics_solver|planning_plugin|base_\w+_planner|\w+_controller_manager)$"
+)
 _PLUGIN = re.compile(r"(^|[._])plugin$")
 _OTHER_NAMES = frozenset(
     {
@@ -45,10 +47,10 @@ class PluginPackages:
 
         A class with the same name may only have moved into a package that replaces the old one.
         """
-        package = _find_package(parameter, new)
+        package = find_plugin_package(parameter, new.text)
         if package is None or package in _split(old.text) or _split(old.text)[-1] == _split(new.text)[-1]:
             return None
-        return self._find_reason(package)
+        return self.explain_missing_package(package)
 
     def find_addition_reason(self, values: Mapping[str, YamlValue]) -> Phrase | None:
         """Return the reason why added values are breaking, or None if they are not.
@@ -56,20 +58,20 @@ class PluginPackages:
         An added controller, which has a type, may not be started.
         """
         plugins = {name: value for name, value in values.items() if _PLUGIN.search(name)}
-        packages = dict.fromkeys(_find_package(name, value) for name, value in plugins.items())
-        reasons = (self._find_reason(package) for package in packages if package is not None)
+        packages = dict.fromkeys(find_plugin_package(name, value.text) for name, value in plugins.items())
+        reasons = (self.explain_missing_package(package) for package in packages if package is not None)
         return next((reason for reason in reasons if reason is not None), None)
 
-    def _find_reason(self, package: str) -> Phrase | None:
-        """Return the reason why a package is missing, or None if it is not certainly missing."""
+    def explain_missing_package(self, package: str) -> Phrase | None:
+        """Return the reason why a plugin of a package is not loaded, or None if the package may exist."""
         if not is_undeclared_and_new(self.versions, self.path, package):
             return None
         return phrase("package.xml does not name '{name}', without which the plugin is not loaded", name=package)
 
 
-def _find_package(parameter: str, value: YamlValue) -> str | None:
-    """Return the package of the plugin that a value names; None for other values."""
-    match = _CLASS.fullmatch(value.text) if _CLASS_PARAMETER.search(parameter) else None
+def find_plugin_package(parameter: str, text: str) -> str | None:
+    """Return the package of the plugin that the value of a parameter names; None for other values."""
+    match = _CLASS.fullmatch(text) if _CLASS_PARAMETER.search(parameter) else None
     return None if match is None or match["package"] in _OTHER_NAMES else match["package"]
 
 

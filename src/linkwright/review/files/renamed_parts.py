@@ -16,6 +16,8 @@ from linkwright.review.merging import name_edit
 _MIN_FACTS = 6
 """The minimum number of parameters and values by which a renamed part is recognized."""
 _MIN_SIMILARITY = 0.6
+_MIN_CONTAINED_SHARE = 0.8
+"""The minimum share of the names and values of an old part that a moved part with many new ones has."""
 _MIN_EQUAL_EDITS = 2
 """The minimum number of sibling parts with the same edit that are recognized without many values."""
 _MAX_PAIRS = 2_500
@@ -201,8 +203,7 @@ def _find_moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterato
                 pair_of_parents = get_parent(old_name), get_parent(new_name)
                 if _get_last_name(new_name) != _get_last_name(old_name) or _is_inside(new_name, moved.values()):
                     continue
-                is_similar = first.total() >= _MIN_FACTS and _compute_similarity(first, second) >= _MIN_SIMILARITY
-                if is_similar if is_by_contents else pair_of_parents in parents:
+                if _has_similar_contents(first, second) if is_by_contents else pair_of_parents in parents:
                     moved[old_name] = new_name
                     parents.add(pair_of_parents)
                     break
@@ -210,6 +211,14 @@ def _find_moved(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterato
         outer_part = next((part for part in list_part_paths(name)[:-1] if part in moved), None)
         if outer_part is None or f"{moved[outer_part]}{name.removeprefix(outer_part)}" != new_name:
             yield name, new_name
+
+
+def _has_similar_contents(old: _Facts, new: _Facts) -> bool:
+    """Return whether two parts of the same name are similar, or the new one has most values of the old one."""
+    if old.total() < _MIN_FACTS:
+        return False
+    is_contained = (old & new).total() >= _MIN_CONTAINED_SHARE * old.total()
+    return is_contained or _compute_similarity(old, new) >= _MIN_SIMILARITY
 
 
 def _find_moved_together(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> Iterator[tuple[str, str]]:

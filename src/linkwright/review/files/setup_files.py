@@ -18,6 +18,7 @@ from linkwright.review.versions import Version
 
 SETUP_FILE = "setup.py"
 _FIND_PACKAGES = "find_packages"
+_CATKIN_SETUP = "generate_distutils_setup"
 _COMPARED_ARGUMENTS = frozenset({"entry_points", "data_files", "packages"})
 _SHOWN_ARGUMENTS = frozenset({"name", "version", "python_requires", "license"})
 """The arguments of ``setup`` whose string values are shown."""
@@ -79,12 +80,25 @@ def _find_other_packages(python: PythonFile, folder: Path) -> Iterator[Fact]:
         for name in _find_packages_below(folder, ""):
             if not any(fnmatchcase(name, pattern) for pattern in excluded if pattern is not None):
                 yield Fact(FactKind.MODULE, name, span=python.span(call))
-    for call in python.calls("generate_distutils_setup"):
-        packages = argument_of(call, "packages")
-        for item in getattr(packages, "elts", ()):
+    for packages in _list_catkin_packages(python):
+        for item in getattr(python.resolved(packages), "elts", ()):
             package = python.text(item)
             if package is not None:
                 yield Fact(FactKind.MODULE, package, span=python.span(item))
+
+
+def _list_catkin_packages(python: PythonFile) -> Iterator[ast.expr]:
+    """Yield the packages that ``generate_distutils_setup`` gets as argument or that its result gets as item."""
+    calls = list(python.calls(_CATKIN_SETUP))
+    yield from (packages for call in calls if (packages := argument_of(call, "packages")) is not None)
+    assignments = [node for node in ast.walk(python.tree) if isinstance(node, ast.Assign)] if calls else []
+    for node in assignments:
+        target = node.targets[0]
+        if not isinstance(target, ast.Subscript) or python.text(target.slice) != "packages":
+            continue
+        settings = python.resolved(target.value)
+        if isinstance(settings, ast.Call) and called_name(settings).rpartition(".")[2] == _CATKIN_SETUP:
+            yield node.value
 
 
 def _find_packages_below(folder: Path, prefix: str) -> Iterator[str]:

@@ -19,17 +19,24 @@ from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.added_nodes import explain_addition
+from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.effects import find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.imports import compare_imports
-from linkwright.review.launches.include_trees import IncludeTree, find_other_include, find_same_parameter
+from linkwright.review.launches.include_trees import (
+    IncludeTree,
+    find_moved_remapping,
+    find_other_include,
+    find_same_parameter,
+)
 from linkwright.review.launches.included import (
     IncludedActions,
     find_callers,
     find_file_with_moved_action,
     find_moved_settings,
 )
+from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
 from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
@@ -108,6 +115,7 @@ def compare_launch_files(pair: FilePair) -> None:
         if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
     ]
     report_repeated_arguments(pair, new)
+    report_changed_kinds(pair, old, new)
     report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)], removed)
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)
@@ -232,13 +240,22 @@ def _report_removed(
         parameter = find_same_parameter(entry, *trees)
         if parameter is not None and parameter.path is not None:
             text, reason = phrase("{change}; {file} sets it now", change=text, file=parameter.path), None
+    if reason is not None and entry.kind == "remapping":
+        file = find_moved_remapping(entry, *trees)
+        if file is not None:
+            text, reason = phrase("{change}; {file} sets it now", change=text, file=file), None
+    if reason is not None and entry.kind in ("remapping", SERVER_PARAMETER):
+        target = trees[0].resolve(entry.settings.get("to", ""))
+        includer = IncludingFiles(pair).find_opposite_change(entry, "", target, None)
+        if includer is not None:
+            text, reason = describe_opposite_change(text, reason, includer, is_removed=True)
     other = None if reason is None or entry.kind != "include" else find_other_include(entry, *trees)
     if other is not None and other[0].includer is not None:
-        file, has_same_namespace = other
-        text = phrase("{change}; {file} includes it with the same arguments", change=text, file=file.includer)
+        other_file, has_same_namespace = other
+        text = phrase("{change}; {file} includes it with the same arguments", change=text, file=other_file.includer)
         reason = None
         if not has_same_namespace:
-            text = phrase("{change}, in the namespace '{name}'", change=text, name=file.namespace)
+            text = phrase("{change}, in the namespace '{name}'", change=text, name=other_file.namespace)
             reason = phrase("programs that use the names of the node, its topics or its services do not find them")
     pair.add(text, pair.location(entry.span, is_old=True), reason)
 

@@ -17,6 +17,7 @@ from linkwright.review.launches.outlines import (
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PROGRAM_KINDS,
+    REMAPPING,
     SERVER_PARAMETER,
     Entry,
     LaunchOutline,
@@ -76,6 +77,10 @@ class IncludeTree:
     def __init__(self, included: IncludedActions) -> None:
         self._included = included
         self._root = TreeFile(included.file, included.path, included.outline, "", frozenset(), {}, None)
+
+    def resolve(self, text: str) -> str:
+        """Return a text of the launch file with values in place of variables."""
+        return self._root.outline.resolve(text)
 
     @cached_property
     def files(self) -> list[TreeFile]:
@@ -162,11 +167,54 @@ def find_same_parameter(entry: Entry, old: IncludeTree, new: IncludeTree) -> Set
         old: the old launch file with its included files.
         new: the new one.
     """
-    name = old.get_parameter_name(entry)
+    return _find_equal_parameter(old.get_parameter_name(entry), old, new)
+
+
+def _find_equal_parameter(name: str, old: IncludeTree, new: IncludeTree) -> SetParameter | None:
+    """Return the parameter with a full name in the new version if it has the old value, or None."""
     before, after = old.find_parameter(name), new.find_parameter(name)
     if before is None or after is None or "$(" in name or "$(" in before.value:
         return None
     return after if after.value == before.value and after.conditions <= before.conditions else None
+
+
+def find_moved_parameter(entry: Entry, path: str, old: IncludeTree, new: IncludeTree) -> SetParameter | None:
+    """Return the parameter that has the full name and the value of one of an old included file, or None.
+
+    Args:
+        entry: an action of the included file that sets a parameter of ROS 1.
+        path: the path of the included file in the old version, relative to the root.
+        old: the old launch file with its included files.
+        new: the new one.
+    """
+    names = {_get_parameter_name(entry, tree_file) for tree_file in old.files[1:] if tree_file.path == path}
+    found = [_find_equal_parameter(name, old, new) for name in names]
+    return found[0] if found and all(found) else None
+
+
+def find_moved_remapping(entry: Entry, old: IncludeTree, new: IncludeTree) -> str | None:
+    """Return the path of an included file that now remaps a name like a removed action, or None.
+
+    Args:
+        entry: an action of the old launch file that remaps a name for the nodes that follow.
+        old: the old launch file with its included files.
+        new: the new one.
+    """
+    target = old.resolve(entry.settings.get("to", ""))
+    had_target = {tree_file.path for tree_file in old.files[1:] if _remaps(tree_file.outline, entry.name, target)}
+    paths = (tree_file.path for tree_file in new.files[1:] if _remaps(tree_file.outline, entry.name, target))
+    return next((path for path in paths if path not in had_target), None)
+
+
+def _remaps(outline: LaunchOutline, source: str, target: str) -> bool:
+    """Return whether a file remaps a name to another one, for one of its nodes or for all that follow."""
+    for entry in outline.entries:
+        value = entry.settings.get("to") if entry.kind == "remapping" and entry.name == source else None
+        if entry.kind in PROGRAM_KINDS:
+            value = entry.settings.get(f"{REMAPPING}{source}")
+        if value is not None and outline.resolve(value) == target:
+            return _find_open_conditions(entry, outline) is not None
+    return False
 
 
 def find_other_include(include: Entry, old: IncludeTree, new: IncludeTree) -> tuple[TreeFile, bool] | None:

@@ -16,6 +16,7 @@ from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
 from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
 from linkwright.review.launches.included import IncludedActions, Program
+from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
 from linkwright.review.launches.lost_values import explain_lost_frames
 from linkwright.review.launches.moved_parameters import follow_moved_parameters
 from linkwright.review.launches.outlines import (
@@ -57,6 +58,7 @@ class _Setting:
         defaults: both values with the defaults of arguments if only one version uses arguments; None if they are
             unknown.
         keeps_names: whether the names of the nodes of an included file stay the same.
+        includer: the path of an including file that changes the setting the other way round; None if there is none.
     """
 
     name: str
@@ -65,6 +67,7 @@ class _Setting:
     reason: Phrase | None
     defaults: tuple[str, str] | None = None
     keeps_names: bool = False
+    includer: str | None = None
 
     @property
     def edit(self) -> Hashable | None:
@@ -82,6 +85,13 @@ class _Setting:
         """The change in one line."""
         text = self._change_text
         return phrase("{change}; their full names stay the same", change=text) if self.keeps_names else text
+
+    def describe_opposite_change(self) -> tuple[Phrase, Phrase]:
+        """Return the line and the reason for a setting that an including file changes the other way round."""
+        assert self.includer is not None
+        assert self.reason is not None
+        is_removed = self.new is None
+        return describe_opposite_change(self._change_text, self.reason, self.includer, is_removed=is_removed)
 
     @property
     def _change_text(self) -> Phrase:
@@ -140,6 +150,7 @@ class SettingChanges:
         self._pair = pair
         self._old_included, self._included = included
         self._trees = IncludeTree(included[0]), IncludeTree(included[1])
+        self._including_files = IncludingFiles(pair)
         self._old = old
         self._new = new
         self._renamed = renamed
@@ -186,12 +197,18 @@ class SettingChanges:
                 self._collect(new, transform, reason)
                 continue
             keeps_names = keeps_names and new.kind == "include"
-            setting = _Setting(pair.name, old_text, pair.new, reason, self._find_defaults(new, pair), keeps_names)
+            includer = self._including_files.find_opposite_change(new, pair.name, *defaults) if reason else None
+            setting = _Setting(
+                pair.name, old_text, pair.new, reason, self._find_defaults(new, pair), keeps_names, includer
+            )
             if setting.edit is None:
                 settings.append(setting)
             else:
                 occurrence = new, self._pair.location(new.span), setting
                 self._remappings.setdefault((setting.edit, reason is None), []).append(occurrence)
+        for setting in [setting for setting in settings if setting.includer is not None]:
+            settings.remove(setting)
+            self._collect(new, *setting.describe_opposite_change())
         for text, reason, name in _group_settings(settings, is_include=new.kind == "include"):
             # A group may give a condition to actions that other programs need and to those of a user interface.
             self._collect(new, text, reason, separates_reasons=name != CONDITION)

@@ -22,11 +22,11 @@ _MAX_CASES = 12
 """The maximum number of argument sets to compare. Launch files of vendors can combine hundreds."""
 
 
-_MAX_SWITCHES = 8
+MAX_SWITCHES = 8
 """The maximum number of boolean arguments whose opposite value is tried."""
 _MISSING_CODES = ("PKG101", "XML101")
 """The codes of packages and files that are not found."""
-_OPPOSITES = {"true": "false", "false": "true", "True": "False", "False": "True"}
+OPPOSITES: Mapping[str, str] = {"true": "false", "false": "true", "True": "False", "False": "True"}
 
 
 @dataclass(frozen=True)
@@ -118,18 +118,13 @@ def find_switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Ca
     if base_case.old.expansion is None or base_case.new.expansion is None:
         return
     arguments, old_arguments = base_case.new.expansion.arguments, base_case.old.expansion.arguments
-    unused = {
-        str(as_phrase(remark.message).arguments.get("name"))
-        for case in (base_case.old, base_case.new)
-        for remark in case.remarks
-        if remark.code == UNUSED_CODE
-    }
+    unused = {*list_unused_arguments(base_case.old), *list_unused_arguments(base_case.new)}
     opposites = {
-        name: _OPPOSITES[value]
+        name: OPPOSITES[value]
         for name, value in arguments.items()
-        if value in _OPPOSITES and name in old_arguments and name not in unused
+        if value in OPPOSITES and name in old_arguments and name not in unused
     }
-    for name, value in list(opposites.items())[:_MAX_SWITCHES]:
+    for name, value in list(opposites.items())[:MAX_SWITCHES]:
         new = {**base_case.models.new.values, name: value}
         values = _ArgumentValues({**base_case.models.old.values, name: value}, new, 1)
         result = _make_case(pair, _format_values(new, pair.versions.new), values)
@@ -137,10 +132,16 @@ def find_switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Ca
             yield result
 
 
+def list_unused_arguments(description: Description) -> set[str]:
+    """Return the arguments that a description gets but does not use."""
+    remarks = (remark for remark in description.remarks if remark.code == UNUSED_CODE)
+    return {str(as_phrase(remark.message).arguments.get("name")) for remark in remarks}
+
+
 def _make_case(pair: FilePair, name: str, values: _ArgumentValues) -> Case | _Failure:
     versions = pair.versions
     models = Pair(versions.old.model(pair.old_path, values.old), versions.new.model(pair.new_path, values.new))
-    old, new = _try_read(models.old), _try_read(models.new)
+    old, new = try_read(models.old), try_read(models.new)
     if isinstance(old, Description) and isinstance(new, Description):
         return Case(name, old, new, models)
     partial = _read_partial_pair(models)
@@ -247,7 +248,8 @@ def _format_values(values: Mapping[str, str], version: Version) -> str:
     return text.replace(str(version.root), ".")
 
 
-def _try_read(model: Model) -> Description | LinkwrightError:
+def try_read(model: Model) -> Description | LinkwrightError:
+    """Return a description with a set of argument values, or the error that makes it unreadable."""
     try:
         return model.read()
     except LinkwrightError as error:

@@ -7,11 +7,12 @@ from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import MAX_NAMES, Change, Location, Subject, SubjectKind
+from linkwright.review.breaking import name_reason
+from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
-from linkwright.review.sources.conditions import compare_conditions
+from linkwright.review.sources.conditions import ConditionChange, compare_conditions
 from linkwright.review.sources.cpp_members import has_class
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import (
@@ -60,6 +61,7 @@ from linkwright.review.sources.renamed_classes import find_renamed_classes
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.unchanged_sources import make_user_reason
+from linkwright.review.sources.unmet_conditions import find_unmet_parameter
 from linkwright.review.sources.whole_sources import WholeSourcePair
 from linkwright.review.versions import Versions
 
@@ -100,7 +102,9 @@ class _SourcePair(WholeSourcePair):
         changes += self.compare_rates(old_names, new_names)
         for change in compare_conditions(old_names, new_names):
             path = (self.file.old_path if change.is_old else self.file.new_path) or self.file.path
-            changes.append(Change(change.text, location=Location(path, change.line, 1, change.is_old)))
+            reason = self._find_condition_reason(change, new_names)
+            effect = Effect.CHANGED if reason is None else Effect.BREAKING
+            changes.append(Change(change.text, effect, reason, Location(path, change.line, 1, change.is_old)))
         changes += self.find_lost_transforms(changes)
         changes += self.compare_imports(old_names, new_names)
         changes += self.find_undefined(old_names, new_names)
@@ -300,6 +304,17 @@ class _SourcePair(WholeSourcePair):
             ),
         )
         return None if reason is None or is_set_in_package(self.new.version, package, item.name) else reason
+
+    def _find_condition_reason(self, change: ConditionChange, new_names: SourceNames) -> Phrase | None:
+        """Return the reason why a new condition is breaking: a parameter does not fulfill it by default, or None."""
+        if change.is_old or change.kind is NameKind.PARAMETER:
+            return None
+        text = self.new.version.text(self.file.new_path or "")
+        parameter = find_unmet_parameter(change.conditions, new_names, text)
+        package = self.new.find_package(self.file.path)
+        if parameter is None or is_set_in_package(self.new.version, package, parameter):
+            return None
+        return phrase("by default, {reason}", reason=name_reason(", ".join(change.names)))
 
     def _report_unpaired(
         self, kind: NameKind, removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames

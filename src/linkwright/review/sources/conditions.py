@@ -37,11 +37,17 @@ class ConditionChange(NamedTuple):
         text: the change in one line.
         line: the line of the ``if`` statement.
         is_old: whether the line is in the old version.
+        kind: the kind of the names.
+        names: the names.
+        conditions: the conditions that only this version has.
     """
 
     text: Phrase
     line: int
     is_old: bool
+    kind: NameKind
+    names: Sequence[str]
+    conditions: Sequence[str]
 
 
 def find_python_conditions(tree: ast.Module) -> Iterator[ConditionalLines]:
@@ -118,7 +124,7 @@ def compare_conditions(old: SourceNames, new: SourceNames) -> Iterator[Condition
     Names that a version makes in several places are left out. So are parameters with a condition that has their names,
     such as whether they are set.
     """
-    found: dict[tuple[bool, str, int, NameKind, bool], list[str]] = {}
+    found: dict[tuple[bool, tuple[str, ...], int, NameKind, bool], list[str]] = {}
     for kind, name, is_read, lines_of_sides in _list_places(old, new):
         sides = [
             [lines for lines in names.conditional_lines if lines.first <= line <= lines.last]
@@ -129,11 +135,12 @@ def compare_conditions(old: SourceNames, new: SourceNames) -> Iterator[Condition
             texts = {lines.condition for lines in others}
             if texts < {lines.condition for lines in own}:
                 lines = [lines for lines in own if lines.condition not in texts]
-                condition = " and ".join(dict.fromkeys(item.condition for item in lines))
-                if kind is not NameKind.PARAMETER or name.lstrip("~") not in condition:
-                    found.setdefault((is_old, condition, lines[0].line, kind, is_read), []).append(name)
-    for (is_old, condition, line, kind, is_read), names in found.items():
-        yield ConditionChange(_format(kind, names, condition, is_old=is_old, is_read=is_read), line, is_old)
+                conditions = tuple(dict.fromkeys(item.condition for item in lines))
+                if kind is not NameKind.PARAMETER or name.lstrip("~") not in " ".join(conditions):
+                    found.setdefault((is_old, conditions, lines[0].line, kind, is_read), []).append(name)
+    for (is_old, conditions, line, kind, is_read), names in found.items():
+        text = _format(kind, names, " and ".join(conditions), is_old=is_old, is_read=is_read)
+        yield ConditionChange(text, line, is_old, kind, names, conditions)
 
 
 def _list_places(old: SourceNames, new: SourceNames) -> Iterator[tuple[NameKind, str, bool, tuple[int, int]]]:

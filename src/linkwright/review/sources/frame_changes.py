@@ -63,11 +63,16 @@ def find_frame_changes(old: Code, new: Code) -> Iterator[FrameChange]:
             yield FrameChange(sentence, min(after[target].line for target in targets))
 
 
+def join_operators(text: str) -> str:
+    """Return a statement without spaces around member operators and in brackets, and without the mark of a branch."""
+    return _JOINER.sub(r"\1", _BRANCH.sub("", text))
+
+
 def _read_assignments(parts: Sequence[Part]) -> dict[str, _Assigned]:
     """Return the expressions that a function assigns to the frames of messages, by message."""
     found: dict[str, _Assigned] = {}
     for part in parts:
-        match = _ASSIGNMENT.search(_JOINER.sub(r"\1", _BRANCH.sub("", part.text)))
+        match = _ASSIGNMENT.search(join_operators(part.text))
         if match is not None:
             known = found.get(match["target"], _Assigned((), part.first_line))
             expressions = tuple(sorted({*known.expressions, match["value"]}))

@@ -90,8 +90,7 @@ class FailureSide:
             for name, parts in code.functions.items()
             if parts
         }
-        found = [match for pattern in (_READ, _ASSIGNED) for match in pattern.finditer(text)]
-        self.parameters: Mapping[str, str] = {match["variable"]: match["name"] for match in found}
+        self.parameters = find_read_parameters(text)
 
     def _find_failures(self, lines: Sequence[str], first: int, last: int) -> Iterator[_Failure]:
         """Yield the failures in the lines of a function that are in branches."""
@@ -107,6 +106,16 @@ class FailureSide:
             branches.sort(key=lambda branch: (branch.first - branch.last, branch.line))
             if branches:
                 yield _Failure(tuple(branch.condition for branch in branches), number, match["exit"] is not None)
+
+
+def find_read_parameters(text: str) -> Mapping[str, str]:
+    """Return the parameters that a source reads into variables, by the name of the variable.
+
+    Args:
+        text: the source without comments.
+    """
+    found = [match for pattern in (_READ, _ASSIGNED) for match in pattern.finditer(text)]
+    return {match["variable"]: match["name"] for match in found}
 
 
 def find_new_failures(old: FailureSide, new: FailureSide) -> Iterator[FailureChange]:

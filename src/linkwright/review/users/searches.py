@@ -9,6 +9,7 @@ from linkwright.review.changes import Change
 from linkwright.review.chosen_robots import find_chosen_robots
 from linkwright.review.launches.left_nodes import find_left_nodes
 from linkwright.review.launches.left_parameters import find_left_parameters
+from linkwright.review.launches.loaded_plugins import find_undeclared_plugins
 from linkwright.review.launches.missing_programs import find_missing_programs, find_old_package_names
 from linkwright.review.launches.passed_arguments import find_passed_arguments
 from linkwright.review.launches.script_callers import find_lost_arguments
@@ -30,6 +31,7 @@ from linkwright.review.users.lost_scripts import find_lost_scripts
 from linkwright.review.users.lost_sources import find_lost_sources
 from linkwright.review.users.lost_states import find_lost_states
 from linkwright.review.users.lost_units import find_lost_units
+from linkwright.review.users.old_dependencies import find_old_dependencies
 from linkwright.review.users.package_lookups import find_new_lookups
 from linkwright.review.users.unusable_programs import find_unusable_programs
 from linkwright.review.versions import Versions
@@ -48,8 +50,8 @@ SEARCHES: tuple[Search, ...] = (
         find_lost_installs,
     ),
     *(find_lost_libraries, find_lost_programs, find_lost_registrations, find_lost_sources, find_missing_programs),
-    find_old_package_names,
+    *(find_old_package_names, find_old_dependencies),
     *(find_passed_arguments, find_left_nodes, find_left_parameters, find_lost_interfaces, find_left_types),
     *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),
-    find_unusable_programs,
+    *(find_unusable_programs, find_undeclared_plugins),
 )

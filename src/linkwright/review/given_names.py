@@ -1,0 +1,92 @@
+"""Decide whether a parameter of a YAML file names a topic, service, action or frame that its node offers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from linkwright.diagnostics import Phrase
+from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.review.breaking import frame_reason, name_reason
+from linkwright.review.file_pair import FilePair
+from linkwright.review.files.parameter_files import compare_parameter_files
+from linkwright.review.files.parameter_names import find_node_name
+from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
+from linkwright.review.sources.reading import read_source_names
+from linkwright.review.sources.reasons import find_message_frame_reason
+from linkwright.review.versions import TEST_FOLDERS, Versions
+
+_OFFERED_KINDS = (NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION, NameKind.FRAME, NameKind.MESSAGE_FRAME)
+_NAME = re.compile(r"[~/\w]*[A-Za-z][/\w]*")
+
+
+def compare_parameters_with_sources(pair: FilePair) -> None:
+    """Compare two versions of a YAML file, and decide by the sources of its nodes which names are breaking."""
+    compare_parameter_files(pair, lambda new: GivenNames(pair.versions, pair.new_path, new).find_change_reason)
+
+
+@dataclass(frozen=True)
+class GivenNames:
+    """The names that a parameter file gives to its nodes.
+
+    Attributes:
+        versions: the repository before and after the change.
+        path: the path of the parameter file in the new version.
+        new: the new values of the file, by path.
+    """
+
+    versions: Versions
+    path: str
+    new: Mapping[str, YamlValue]
+
+    def find_change_reason(self, parameter: str, old: YamlValue, new: YamlValue) -> Phrase | None:
+        """Return the reason why another name is breaking, or None if the value names nothing that the node offers.
+
+        The sources of the package of the file, and those of the node, tell what the parameter names.
+        """
+        node = find_node_name(parameter)
+        is_name = node is not None and not (old.is_list or new.is_list)
+        if not is_name or not _NAME.fullmatch(old.text) or not _NAME.fullmatch(new.text):
+            return None
+        if old.text.strip("~/") == new.text.strip("~/") or self._is_given_elsewhere(parameter, old.text):
+            return None
+        name = parameter.removeprefix(f"{node}.ros__parameters.")
+        for source in self._find_sources(node or "", name):
+            for item in sorted(source.default_names, key=lambda known: _sort_key(known.kind)):
+                if item.parameter.lstrip("~/.") == name and item.kind in _OFFERED_KINDS:
+                    return _explain(item.kind, old.text, source)
+        return None
+
+    def _is_given_elsewhere(self, parameter: str, name: str) -> bool:
+        """Return whether another parameter of the new file has a name as value."""
+        return any(value.text.strip("/") == name.strip("/") for other, value in self.new.items() if other != parameter)
+
+    def _find_sources(self, node: str, parameter: str) -> Iterator[SourceNames]:
+        """Yield the old sources that may read a parameter of a node."""
+        version = self.versions.old
+        package = self.versions.new.package_of(self.path)
+        last_name = re.split(r"[./]", node)[-1]
+        for path in version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX)):
+            is_searched = TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) and parameter in version.text(path)
+            if not is_searched or is_launch_file_name(PurePosixPath(path).name):
+                continue
+            source = read_source_names(version.file(path))
+            is_own = package is not None and version.package_of(path) == package
+            if is_own or any(item.name == last_name for item in source.of_kind(NameKind.NODE)):
+                yield source
+
+
+def _sort_key(kind: NameKind) -> int:
+    return _OFFERED_KINDS.index(kind) if kind in _OFFERED_KINDS else len(_OFFERED_KINDS)
+
+
+def _explain(kind: NameKind, name: str, source: SourceNames) -> Phrase | None:
+    if kind is NameKind.FRAME:
+        return frame_reason(name)
+    if kind is NameKind.MESSAGE_FRAME:
+        span = next((item.span for item in source.names), None)
+        return None if span is None else find_message_frame_reason(SourceName(kind, name, "", span), source)
+    return name_reason(name)

@@ -1,0 +1,61 @@
+"""Removed parts of a robot that an added boolean argument brings back, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import sentences, subject
+
+PATH = "arm_description/urdf/arm.urdf.xacro"
+VISUAL = '<visual><geometry><box size="{} 1 1"/></geometry></visual>'
+HEAD = """<link name="head"/>
+  <joint name="neck" type="fixed"><parent link="base"/><child link="head"/></joint>"""
+ROBOT = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  {argument}
+  <link name="base">
+    <visual><geometry><sphere radius="1"/></geometry></visual>
+    {visual}
+  </link>
+  {head}
+</robot>
+"""
+ARGUMENT = '<xacro:arg name="tower" default="false"/>'
+IF = '<xacro:if value="$(arg tower)">{}</xacro:if>'
+OLD = ROBOT.format(argument="", visual=VISUAL.format(1), head=HEAD)
+SWITCH = "; now only with tower:=true"
+
+
+@pytest.fixture
+def review_robot(repository, compare):
+    def run(visual: str, head: str, argument: str = ARGUMENT) -> list[str]:
+        repository.commit({"arm_description/package.xml": PACKAGE_XML, PATH: OLD})
+        repository.write({PATH: ROBOT.format(argument=argument, visual=visual, head=head)})
+        return [line for line in sentences(subject(compare(repository), PATH)) if "removed" in line]
+
+    return run
+
+
+def test_removed_parts_that_an_added_argument_brings_back_name_it(review_robot):
+    lines = review_robot(IF.format(VISUAL.format(1)), IF.format(HEAD))
+    assert lines == [
+        f"link 'base': visual 2 removed: origin xyz 0 0 0 m, origin rpy 0 0 0 rad, geometry box 1 1 1 m{SWITCH}",
+        f"link 'head' removed{SWITCH}",
+        f"joint 'neck' removed{SWITCH}",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("visual", "argument"),
+    [
+        (IF.format(VISUAL.format(3)), ARGUMENT),  # another part
+        (IF.format(VISUAL.format(1)), ARGUMENT.replace("false", "no")),  # not a boolean
+        ("", ARGUMENT),
+    ],
+)
+def test_removed_part_that_no_added_argument_brings_back_is_removed(review_robot, visual, argument):
+    if "no" in argument:
+        visual = visual.replace("$(arg tower)", "${'$(arg tower)' == 'yes'}")
+    (line,) = review_robot(visual, HEAD, argument)
+    assert line.startswith("link 'base': visual 2 removed")
+    assert "only with" not in line
