@@ -12,7 +12,7 @@ from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.cpp_bases import ClassMethods
 from linkwright.review.sources.moved_code import MovedCode, find_moved_code, without_functions
-from linkwright.review.sources.names import CPP_SUFFIXES, NameKind, SourceName, SourceNames, Timer
+from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.reading import read_source_names, try_read_source
 from linkwright.review.sources.unchanged_sources import UnchangedSources, get_counterpart, is_same_topic
 from linkwright.review.sources.used_packages import UsedPackages
@@ -141,11 +141,16 @@ class ChangedSources:
     def lacks_in_changed(self, item: SourceName, path: str) -> bool:
         """Return whether no other changed source has a name.
 
-        If one has it, the name has moved.
+        If one has it, the name has moved. A parameter of dynamic_reconfigure only moves to another description.
         """
         if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
             return False
-        others = (names for other, names in self._names.items() if other != path)
+        is_description = path.endswith(DYNAMIC_SUFFIX)
+        others = (
+            names
+            for other, names in self._names.items()
+            if other != path and (other.endswith(DYNAMIC_SUFFIX) or not is_description)
+        )
         return not any(
             (known.kind, get_comparison_name(known)) == (item.kind, get_comparison_name(item))
             for names in others

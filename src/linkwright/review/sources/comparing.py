@@ -27,6 +27,7 @@ from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
 from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
 from linkwright.review.sources.names import (
+    DYNAMIC_SUFFIX,
     PYTHON_SUFFIX,
     DefaultName,
     Detail,
@@ -136,7 +137,7 @@ class _SourcePair(WholeSourcePair):
             item for item in only_old.values() if has_only_in_other_nodes(item, self.new, self.old, (path, old_path))
         ]
         removed = [item for item in only_old.values() if item in left or self.new.lacks(item, path)]
-        is_new_node = self.file.old_path is None and new_names.makes_node
+        is_new_node = self.file.old_path is None and (new_names.makes_node or path.endswith(DYNAMIC_SUFFIX))
         lacks = self.old.lacks
         if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
             lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it

@@ -18,6 +18,7 @@ from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.frame_changes import find_frame_changes
 from linkwright.review.sources.moved_code import without_functions, without_statements
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
+from linkwright.review.sources.new_assertions import find_new_assertions
 from linkwright.review.sources.new_failures import FailureSide, find_new_failures
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 from linkwright.review.sources.renamed_variables import find_renamed_variables
@@ -41,6 +42,7 @@ def compare_statements(
     if file.old_path is not None and file.new_path is not None:
         changes += _compare_frames(old, new, file.old_path, file.new_path)
         changes += _find_failures(old, new, file.old_path, file.new_path)
+        changes += _find_assertions(old, new, file.old_path, file.new_path)
         changes += _find_returned_codes(old, new, file.old_path, file.new_path)
         changes += _compare_values(old, new, file, changes)
         changes += _find_small_changes(old, new, file, changes)
@@ -131,6 +133,13 @@ def _find_failures(old: ChangedSources, new: ChangedSources, old_path: str, new_
     for change in find_new_failures(*sides):
         effect = Effect.CHANGED if change.reason is None else Effect.BREAKING
         yield Change(change.sentence, effect, change.reason, Location(new_path, change.line, 1))
+
+
+def _find_assertions(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the conditions that functions newly assert."""
+    before, after = old.codes.get(old_path), new.codes.get(new_path)
+    for item in find_new_assertions(before, after, is_cpp=new_path.endswith(CPP_SUFFIXES)) if before and after else ():
+        yield Change(item.sentence, location=Location(new_path, item.line, 1))
 
 
 def _find_deprecations(old: ChangedSources, new: ChangedSources, file: ChangedFile) -> Iterator[Change]:
