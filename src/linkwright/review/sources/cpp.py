@@ -40,6 +40,7 @@ from linkwright.review.sources.cpp_text_functions import TextFunctions
 from linkwright.review.sources.cpp_timers import FoundRate, find_rates
 from linkwright.review.sources.cpp_values import TEXT, VARIABLE, InitialValues, find_constants, parse_literal
 from linkwright.review.sources.cpp_variable_types import VariableTypes
+from linkwright.review.sources.cpp_wrappers import find_wrapper_uses, find_wrappers, read_sources_of_headers
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
@@ -369,6 +370,19 @@ class _Reader:
         for helpers, is_own in ((self._own_helpers, True), (self._header_helpers, False)):
             for use in find_helper_uses(self._text, helpers, is_own=is_own):
                 self._add_named_call(use.call, use.name, (use.begin, use.end), use.arguments)
+        for use in find_wrapper_uses(self._text, self._headers, [*self._own_wrappers, *self._other_wrappers]):
+            self._add_named_call(use.call, use.name, (use.begin, use.end), use.arguments)
+
+    @cached_property
+    def _own_wrappers(self) -> list[Helper]:
+        return find_wrappers(self._text)
+
+    @cached_property
+    def _other_wrappers(self) -> list[Helper]:
+        """The constructors of included classes that make names which their callers pass."""
+        own = {wrapper.name for wrapper in self._own_wrappers}
+        texts = [*self._headers, *read_sources_of_headers(Path(self._source.name), self._source.text)]
+        return [wrapper for text in texts for wrapper in find_wrappers(text) if wrapper.name not in own]
 
     @cached_property
     def _own_helpers(self) -> list[Helper]:
@@ -382,7 +396,9 @@ class _Reader:
     @cached_property
     def _inner_calls(self) -> frozenset[int]:
         """The offsets of the calls in helpers whose callers give the names."""
-        return frozenset(use.call.start for use in find_helper_uses(self._text, self._own_helpers, is_own=True))
+        uses = find_helper_uses(self._text, self._own_helpers, is_own=True)
+        used = (item for item in self._own_wrappers if any(find_wrapper_uses(self._text, self._headers, [item])))
+        return frozenset([*(use.call.start for use in uses), *(wrapper.call.start for wrapper in used)])
 
     def _add_callback(self, kind: NameKind | None, name: str, texts: Sequence[str]) -> None:
         """Add the member function that messages, requests, goals or a timer call.
