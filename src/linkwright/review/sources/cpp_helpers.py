@@ -188,7 +188,7 @@ def find_helper_uses(text: str, helpers: Sequence[Helper], *, is_own: bool) -> I
 
 
 def make_use(text: str, helper: Helper, arguments: Sequence[tuple[int, int]], types: str) -> HelperUse | None:
-    """Return the use of a helper in a call with the offsets of its arguments; None without a literal name.
+    """Return the use of a helper in a call with the offsets of its arguments; None if no literal gives the name.
 
     Args:
         text: the source that has the call.
