@@ -48,6 +48,7 @@ from linkwright.review.sources.package_imports import (
 from linkwright.review.sources.pairing import (
     compute_similarity,
     drop_replaceable,
+    has_other_class,
     has_same_types,
     is_same_frame,
     pair_similar,
@@ -120,7 +121,11 @@ class _SourcePair(WholeSourcePair):
             NameChange(item, *detail)
             for name, item in after.items()
             if name in before and not has_same_types(before[name], item, old_names, new_names)
-            for detail in compare_details(replace(before[name], type=shown.get(name, before[name].type)), item)
+            for detail in compare_details(
+                replace(before[name], type=shown.get(name, before[name].type)),
+                item,
+                has_other_class=has_other_class(before[name], item, old_names, new_names),
+            )
         ]
         if kind is NameKind.PARAMETER:
             changed += self._compare_moved([item for name, item in before.items() if name not in after])
