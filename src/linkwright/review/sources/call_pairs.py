@@ -27,7 +27,7 @@ def pair_by_call(old: Sequence[Statement], new: Sequence[Statement]) -> Iterator
 
 
 def _read_call(statement: Statement) -> Statement | None:
-    """Return the call whose result a statement assigns, from the name of the function on; None without one."""
+    """Return the call whose result a statement assigns, from the name of the function on; None if there is none."""
     texts = [token.text for token in statement.tokens]
     if "=" not in texts or "(" not in texts[texts.index("=") :]:
         return None
