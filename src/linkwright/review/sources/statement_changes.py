@@ -22,6 +22,7 @@ from linkwright.review.sources.new_assertions import find_new_assertions
 from linkwright.review.sources.new_failures import FailureSide, find_new_failures
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 from linkwright.review.sources.renamed_variables import find_renamed_variables
+from linkwright.review.sources.renamed_words import rename_words
 from linkwright.review.sources.replaced_literals import find_replaced_literals
 from linkwright.review.sources.returned_codes import find_returned_codes
 from linkwright.review.sources.small_changes import find_small_changes
@@ -79,6 +80,7 @@ def _find_small_changes(
     before, after = old.codes.get(file.old_path or ""), new.codes.get(file.new_path or "")
     if before is None or after is None or file.path.endswith(CPP_SUFFIXES):
         return
+    before = rename_words(before, after, new.find_renamed_words(old))
     for change in find_small_changes(before, after, ReportedLines(reported), new.get_names(file.new_path)):
         yield _make_code_change(change, file)
 
@@ -157,7 +159,7 @@ def _compare_code(
     if not before or not after:
         return
     renamed = drop_reported(find_renamed_classes(before, after), [str(change.sentence) for change in reported])
-    before = rename_classes(before, renamed)
+    before = rename_words(rename_classes(before, renamed), after, new.find_renamed_words(old))
 
     def has_moved(name: str, code: Code) -> bool:
         side, path = (new, new_path) if code is before else (old, old_path)
