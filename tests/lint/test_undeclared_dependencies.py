@@ -26,6 +26,8 @@ def find(tmp_path, files, more="<depend>rclcpp</depend>"):
     ("command", "names"),
     [
         ("find_package(rosbag2_cpp REQUIRED)", ["rosbag2_cpp"]),
+        ("find_package(catkin REQUIRED COMPONENTS tf joy)", ["tf", "joy"]),
+        ("find_package(fmt REQUIRED)", []),
         ("find_package(rosbag2_cpp QUIET)", []),
         ("if(WITH_BAG)\n  find_package(rosbag2_cpp REQUIRED)\nendif()", []),
         ("foreach(name cv_bridge rclcpp)\n  find_package(${name} REQUIRED)\nendforeach()", ["cv_bridge"]),

@@ -319,3 +319,21 @@ def test_a_constant_of_mathematics_replaces_a_number(review_lines, old, new, is_
     text = "void Rover::read() {\n  angle_ = a - NUMBER;\n}\n"
     lines = review_lines("rover/src/a.cpp", text.replace("NUMBER", old), old, new)
     assert (f"values in Rover::read: angle_ a - {old} -> a - {new}" in lines) is is_told
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new", "expected"),
+    [
+        ("a.py", 'self.ser = serial.Serial("/dev/a", 9600)', 'self.port = Serial("/dev/b", 9600)\n    self.start()',
+         'values in f: Serial("/dev/a" -> "/dev/b", ...)'),
+        ("a.cpp", 'port_ = new io::Serial("/dev/a");', 'serial_ = std::make(io::Serial("/dev/a")); start(1);', None),
+        ("a.cpp", 'ser_ = open("/dev/a");', 'auto port = io::open("/dev/b"); start(1);',
+         'values in f: open("/dev/a" -> "/dev/b")'),
+        ("a.py", 'a = Serial("x"); b = Serial("y")', 'c = Serial("z")', None),
+    ],
+)  # fmt: skip
+def test_a_call_whose_result_has_another_name(review_lines, path, old, new, expected):
+    form = "def f(self):\n    {}\n    return 1\n" if path == "a.py" else "void f() {{ {}\n  return; }}\n"
+    lines = review_lines(f"rover/{path}", form.format(old), form.format(old), form.format(new))
+    values = [line for line in lines if line.startswith("values")]
+    assert values == ([expected] if expected else [])

@@ -387,3 +387,40 @@ def test_a_folder_of_headers_that_exported_targets_bring_is_not_lost(repository,
     repository.write({"a/CMakeLists.txt": new})
     lost = [line for line in breaking(compare(repository)) if "include folders" in line]
     assert lost == ([] if is_exported else ["exported include folders removed: 'include'"])
+
+
+GUARDED = """project(a)
+find_package({0} QUIET)
+if(NOT {0}_FOUND)
+  message(WARNING "no {0}")
+  {1}
+endif()
+find_package(ament_cmake REQUIRED)
+ament_package()
+"""
+
+
+@pytest.mark.parametrize(
+    ("end", "depend", "reason"),
+    [
+        ("return()", "", "without 'gz-sim8', which package.xml does not name, nothing is built"),
+        ("return()", "<depend>gz-sim8</depend>", None),
+        ("set(WITH_SIM OFF)", "", None),
+    ],
+)
+def test_another_version_of_a_package_without_which_nothing_is_built(repository, compare, end, depend, reason):
+    manifest = PACKAGE_XML.replace("</package>", f"{depend}</package>")
+    repository.commit({"a/package.xml": manifest, "a/CMakeLists.txt": GUARDED.format("gz-sim7", end)})
+    repository.write({"a/CMakeLists.txt": GUARDED.format("gz-sim8", end)})
+    (change,) = subject(compare(repository), "a/CMakeLists.txt").changes
+    assert str(change.sentence) == "calls of find_package: 'gz-sim7' replaced by 'gz-sim8'"
+    assert (change.reason and str(change.reason)) == reason
+
+
+def test_a_new_package_without_which_nothing_is_built(repository, compare):
+    build = "project(a)\nfind_package(ament_cmake REQUIRED)\nament_package()\n"
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/CMakeLists.txt": build})
+    repository.write({"a/CMakeLists.txt": GUARDED.format("gz-sim8", "return()")})
+    (change,) = subject(compare(repository), "a/CMakeLists.txt").changes
+    assert str(change.sentence) == "calls of find_package added: 'gz-sim8 any version, without which nothing is built'"
+    assert change.reason is not None

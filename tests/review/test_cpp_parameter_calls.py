@@ -74,3 +74,18 @@ def test_a_variable_that_a_call_does_not_set_keeps_its_value(repository, compare
     repository.write({"arm/src/arm.cpp": SOURCE.format(code)})
     (found,) = compare(repository).subjects
     assert sentences(found)[0] == "parameters added: 'is_heavy' (false)"
+
+
+@pytest.mark.parametrize(
+    ("code", "shown"),
+    [
+        ('  std::string unit = "M";\n  getParam("unit", unit, unit, "The unit", true);\n', "'unit' (\"M\")"),
+        ('  getParam("rate", 20, rate_, "The rate");\n', "'rate' (20)"),
+        ('  getParam("rate", rate_, other_);\n', "'rate'"),
+    ],
+)
+def test_a_function_of_the_repository_takes_the_default_before_the_variable(repository, compare, code, shown):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": SOURCE.format("")})
+    repository.write({"arm/src/arm.cpp": SOURCE.format(code)})
+    lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
+    assert f"parameters added: {shown}" in lines

@@ -116,3 +116,14 @@ def test_a_parameter_of_another_integer_type_takes_the_old_arguments(old, new):
     assert accepts_type(normalize_type(old), normalize_type(new))
     assert not accepts_type(normalize_type(old), "std::string")
     assert not accepts_type("int&", "long&")
+
+
+@pytest.mark.parametrize(("declaration", "is_breaking"), [("class Pose;\n", True), ("", False)])
+def test_a_class_that_the_header_declared_is_another_one_than_that_of_a_namespace(
+    repository, compare, declaration, is_breaking
+):
+    path, old = "a/include/a/arm.hpp", HEADER.replace("class Arm", declaration + "class Arm")
+    repository.commit({**FILES, path: old})
+    repository.write({path: HEADER.replace("const Pose&", "const robot_msgs::msg::Pose&")})
+    lost = ["function 'Arm::length': (const Pose&, Limits) -> (const robot_msgs::msg::Pose&, Limits)"]
+    assert breaking(compare(repository)) == (lost if is_breaking else [])

@@ -41,3 +41,17 @@ def test_parameter_that_is_edited_otherwise_has_its_own_line(repository, compare
     source, lost = review_source(repository, compare, old, new)
     assert len(sentences(source)) == len(lost) == 2
     assert not any(change.other_names for change in source.changes)
+
+
+def test_functions_with_another_notation_are_one_line(repository, compare):
+    header = "class Arm {{\npublic:\n  void {}(double a);\n  int {}(int b);\n  bool {}(char c);\n}};\n"
+    build = "project(arm)\nfind_package(ament_cmake REQUIRED)\nadd_library(arm src/arm.cpp)\n"
+    build += "install(TARGETS arm)\ninstall(DIRECTORY include/ DESTINATION include)\nament_package()\n"
+    path = "arm/include/arm/arm.hpp"
+    old = header.format("setSpeed", "getHTTPCode", "stop")
+    repository.commit({**MANIFEST, "arm/CMakeLists.txt": build, path: old})
+    repository.write({path: header.format("set_speed", "get_http_code", "stop_now")})
+    changes = [change for change in subject(compare(repository), path).changes if change.reason is not None]
+    assert ["setSpeed" in str(change.sentence) for change in changes] == [True, False]
+    assert changes[0].other_names == ("Arm::getHTTPCode (int) -> Arm::get_http_code (int)",)
+    assert "stop" not in str(changes[0].sentence)

@@ -146,3 +146,27 @@ def test_controller_without_a_joint_that_the_semantic_description_lacks(reposito
     repository.commit({"a/package.xml": PACKAGE_XML, "a/config/a.srdf": semantics, PATH: SETTINGS})
     repository.write({PATH: SETTINGS.replace("[upper, lower]", "[upper, elbow]")})
     assert bool(breaking(compare(repository))) is is_breaking
+
+
+SEMANTICS = "<robot name='a'><group name='{}'><joint name='upper'/></group><group name='arm'/></robot>\n"
+FAKE = "controller_list:\n  - name: fake_leg_controller\n    joints: [upper]\n"
+FAKE += "  - name: fake_arm_controller\n    joints: [upper]\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (LEG, ""),
+        ("leg:\n", "foot:\n"),
+        (FAKE.partition("  - name: fake_arm")[0], "controller_list:\n"),
+    ],
+)
+@pytest.mark.parametrize("is_lost", [True, False])
+def test_settings_of_a_lost_group_break_nothing_more(repository, compare, old, new, is_lost):
+    text = FAKE if "fake" in old else SETTINGS
+    files = {"a/package.xml": PACKAGE_XML, PATH: text, "a/config/a.srdf": SEMANTICS.format("leg")}
+    files["a/config/copy.srdf"] = files["a/config/a.srdf"]
+    repository.commit(files)
+    repository.write({PATH: text.replace(old, new), "a/config/a.srdf": SEMANTICS.format("foot" if is_lost else "leg")})
+    lost = [change for change in subject(compare(repository), PATH).changes if change.reason is not None]
+    assert bool(lost) != is_lost

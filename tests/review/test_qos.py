@@ -51,3 +51,19 @@ def test_only_a_qos_that_certainly_does_not_fit_is_breaking(repository, compare,
 def test_another_notation_of_a_qos_is_no_change(repository, compare, new):
     lines, _ = review_qos(repository, compare, PUBLISHER, "10", new)
     assert all("QoS " not in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("10", "QoSPresetProfiles.SENSOR_DATA.value",
+         ["publisher 'ready': type Bool -> Int8", "publisher 'ready': QoS 10 -> QoSPresetProfiles.SENSOR_DATA.value"]),
+        ("10", "QoSPresetProfiles.DEFAULT.value", ["publisher 'ready': type Bool -> Int8"]),
+    ],
+)  # fmt: skip
+def test_preset_profile_of_a_topic_with_another_type(repository, compare, old, new, expected):
+    source = "from rclpy.node import Node\nclass Arm(Node):\n    def start(self):\n"
+    source += "        self.pub = self.create_publisher({}, 'ready', {})\n"
+    repository.commit({**MANIFEST, "arm/arm/arm.py": source.format("Bool", old)})
+    repository.write({"arm/arm/arm.py": source.format("Int8", new)})
+    assert breaking(compare(repository)) == expected

@@ -327,3 +327,11 @@ def test_code_that_a_line_about_qos_shows_is_not_told_again(repository, compare)
     assert sentences(subject(compare(repository), "rover/rover.py")) == [
         "publisher 'state': QoS QoSProfile(depth=10) -> QoSProfile(depth=10, reliability=BEST_EFFORT)"
     ]
+
+
+def test_an_added_description_of_parameters_tells_them_although_the_node_has_them(repository, compare):
+    source = 'void f(ros::NodeHandle nh) { int rate; nh.param("rate", rate, 10); }\n'
+    repository.commit({**MANIFEST, "arm/src/driver.cpp": source})
+    repository.write({"arm/cfg/Arm.cfg": CFG, "arm/src/driver.cpp": source.replace("10", "20")})
+    lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
+    assert "parameters added: 'rate' (10), 'mode' ('fast')" in lines

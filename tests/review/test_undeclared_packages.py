@@ -18,6 +18,9 @@ GUARDED = "try:\n    import serial\nexcept ImportError:\n    serial = None\n"
     [
         ("CMakeLists.txt", CMAKE.format(""), CMAKE.format(" light_finder"), "", BUILD_REASON.format("light_finder")),
         ("CMakeLists.txt", CMAKE.format(""), CMAKE.format(" light_finder"), "light_finder", None),
+        ("CMakeLists.txt", CMAKE.format(""), CMAKE.format(" tf"), "", BUILD_REASON.format("tf")),
+        ("CMakeLists.txt", CMAKE.format(""), CMAKE.format(" tf"), "tf", None),
+        ("CMakeLists.txt", CMAKE.format(""), CMAKE.format(" rospy"), "catkin", None),
         ("src/a.cpp", "", "#include <light_msgs/Level.h>\n", "", BUILD_REASON.format("light_msgs")),
         ("src/a.cpp", "", '#include "light_msgs/msg/level.hpp"\n', "", BUILD_REASON.format("light_msgs")),
         ("src/a.cpp", "", "#include <light_msgs/Level.h>\n", "light_msgs", None),
@@ -29,6 +32,8 @@ GUARDED = "try:\n    import serial\nexcept ImportError:\n    serial = None\n"
         ("a.py", "", "import serial\n", "python3-serial", None),
         ("a.py", "", GUARDED, "", None),
         ("a.py", "", "import numpy\n", "", None),
+        ("a.py", "", "import tf\n", "", IMPORT_REASON.format("tf")),
+        ("a.py", "", "import tf\n", "light_navigation", None),
     ],
 )
 def test_an_undeclared_package_is_breaking(repository, compare, path, old, new, depend, reason):

@@ -36,6 +36,13 @@ _PYTHON_PROJECTS = {
     )
 } | {"RPi": "rpi", "skimage": "scikit", "sklearn": "scikit", "smbus2": "smbus", "usb": "usb"}
 """Modules that no base package of ROS brings, each with a word in the names of the packages that have it."""
+_ROS_MODULES = frozenset(
+    {
+        *("angles", "cv_bridge", "image_geometry", "laser_geometry", "moveit_commander", "ros_numpy", "tf"),
+        *("sensor_msgs_py", "tf2_geometry_msgs", "tf2_sensor_msgs", "tf_conversions", "tf_transformations"),
+    }
+)
+"""Modules of packages of ROS that its base packages do not bring."""
 _LISTS = ("requirements", "dockerfile", "containerfile", "environment", "setup.", "pyproject", "pipfile", "install")
 """The beginnings of the names of other files that tell what to install."""
 _SCRIPT_SUFFIX = ".sh"
@@ -125,15 +132,17 @@ class _Marker:
         return any(word in name for name in names) or word.lower() in _read_lists(self._version)
 
     def _is_undeclared_package(self, name: str, manifest: Manifest) -> bool:
-        """Return whether another manifest of the repository depends on a package that this one certainly lacks.
+        """Return whether a manifest certainly lacks a package that is known.
 
-        It does not if a dependency that is not in the repository may bring the package.
+        Known are packages of ROS, of the repository, and those on which other manifests of the repository depend. A
+        dependency that is not in the repository may bring the package.
         """
         own = self._version.shares
         others = [other for other in _read_manifests(self._version) if other.name != manifest.name]
-        is_named = name in own or any(dependency.name == name for other in others for dependency in other.dependencies)
+        is_known = name in own or name in _ROS_MODULES
+        is_known = is_known or any(dependency.name == name for other in others for dependency in other.dependencies)
         folder = self._version.file(self._version.package_of(self._path) or "")
-        if not is_named or is_covered(name, manifest, self._version.finder(folder)):
+        if not is_known or is_covered(name, manifest, self._version.finder(folder)):
             return False
         names = {dependency.name for dependency in manifest.dependencies} - own.keys()
         return all(

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 _ROS_NAME = lazy_pattern(r"[a-z][a-z0-9]*(_[a-z0-9]+)+")
 """The form of the names of ROS packages: lower case, with an underscore. Few other projects have such a name."""
+_CATKIN_NAME = lazy_pattern(r"[a-z][a-z0-9_]*")
+"""The form of the names of components of catkin, all of which are packages of ROS."""
 _OTHER_PROJECTS = frozenset(
     {
         *("console_bridge", "nlohmann_json", "yaml_cpp", "orocos_kdl", "range_v3", "fast_float", "magic_enum"),
@@ -33,6 +35,7 @@ _OTHER_PROJECTS = frozenset(
     }
 )
 """Projects of CMake with such a name that package.xml names by another key, or that need none."""
+_CATKIN = "catkin"
 _CATKIN_KEYWORDS = frozenset({"REQUIRED", "COMPONENTS", "QUIET", "EXACT", "CONFIG", "OPTIONAL_COMPONENTS"})
 _IMPORTED_TYPES = lazy_pattern(r"^from[ \t]+(?P<package>[A-Za-z]\w*)\.(?:msg|srv|action)\b")
 _MAX_CHARACTERS = 1 << 20
@@ -120,7 +123,8 @@ class UndeclaredBuildDependency(_DependencyRule):
             if command.is_conditional:
                 continue
             for argument in _list_required_packages(command):
-                is_ros = _ROS_NAME.fullmatch(argument.text) is not None and argument.text not in _OTHER_PROJECTS
+                form = _CATKIN_NAME if command.name == "find_package" and command.words[0] == _CATKIN else _ROS_NAME
+                is_ros = form.fullmatch(argument.text) is not None and argument.text not in _OTHER_PROJECTS
                 if is_ros or subject.finder.find(argument.text) is not None:
                     span = argument.source.span(argument.start, argument.end)
                     yield _Use(argument.text, span, argument.source)
@@ -137,7 +141,7 @@ def _list_required_packages(command: Command) -> list[Argument]:
         return [argument for argument in command.arguments[1:] if not argument.text.isupper()]
     if command.name != "find_package" or not words:
         return []
-    if words[0] == "catkin":
+    if words[0] == _CATKIN:
         return [argument for argument in command.arguments[1:] if argument.text not in _CATKIN_KEYWORDS]
     return [command.arguments[0]] if "REQUIRED" in words else []
 

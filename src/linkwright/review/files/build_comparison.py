@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import TypeAlias
 
 from linkwright.diagnostics import Phrase, Span, joined, phrase
+from linkwright.packages.manifest import MANIFEST
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_commands import compare_other_commands
 from linkwright.review.files.build_facts import (
     ANY_VERSION,
     BUILT_KINDS,
     INSTALLED_KINDS,
+    WITHOUT_NOTHING,
     BuildFacts,
     Fact,
     FactKind,
@@ -26,6 +29,8 @@ from linkwright.review.files.installed_files import compare_installed_files
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
+_NUMBER = re.compile(r"-?\d+\Z")
+"""The number of the version at the end of the name of a package."""
 _PATH_FOLDER = "bin"
 """The folder below the prefix that is in ``PATH``."""
 _PROGRAM_FOLDER_PREFIX = "lib/"
@@ -79,6 +84,8 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             removed = [fact for fact in removed if fact.name not in installed | _find_test_programs(new)]
         private = old.private_libraries if kind is FactKind.BUILT_LIBRARY else frozenset()
         _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new), private)
+        if kind is FactKind.PACKAGE:
+            _report_other_versions(pair, removed, added)
         if kind is FactKind.STOP:
             _report_reworded_errors(pair, removed, added)
         unused = [fact for fact in removed if fact.name in private]
@@ -171,6 +178,8 @@ def _report_unpaired(
         reason = None
         if kind is FactKind.STOP:
             reason = phrase("the build fails under a condition under which it did not fail before")
+        elif kind is FactKind.PACKAGE:
+            reason = next((found for found in (_find_guard_reason(pair, fact) for fact in added) if found), None)
         pair.add(_format_facts(kind, added, is_added=True), pair.location(added[0].span), reason)
     if removed:
         location = pair.location(removed[0].span, is_old=True)
@@ -226,6 +235,31 @@ def _report_renamed(
             text = phrase("{kind}: '{old}' renamed to '{new}'", kind=kind.title, old=old.name, new=new.name)
             is_harmless = old.name in private or is_test_condition(old.condition)
             pair.add(text, pair.location(new.span), None if is_harmless else kind.reason)
+
+
+def _report_other_versions(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:
+    """Report packages whose name ends with another number, such as ``gz-sim8``, and remove them from both lists."""
+    for old in list(removed):
+        base = _NUMBER.sub("", old.name)
+        new = next((fact for fact in added if base != old.name and _NUMBER.sub("", fact.name) == base), None)
+        if new is not None:
+            removed.remove(old)
+            added.remove(new)
+            title = FactKind.PACKAGE.title
+            text = phrase("{kind}: '{old}' replaced by '{new}'", kind=title, old=old.name, new=new.name)
+            pair.add(text, pair.location(new.span), _find_guard_reason(pair, new))
+
+
+def _find_guard_reason(pair: FilePair, fact: Fact) -> Phrase | None:
+    """Return the reason why a new package is breaking, because nothing is built without it; None if it is not.
+
+    A package that the manifest names is installed.
+    """
+    folder = pair.versions.new.package_of(pair.new_path) or ""
+    manifest = pair.versions.new.text((PurePosixPath(folder) / MANIFEST).as_posix())
+    if not fact.value.endswith(WITHOUT_NOTHING) or fact.name in manifest:
+        return None
+    return phrase("without '{name}', which package.xml does not name, nothing is built", name=fact.name)
 
 
 def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:

@@ -82,6 +82,9 @@ BUILT_KINDS = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT
 ANY_VERSION = "any version"
 """The value for a package without a required version."""
 
+WITHOUT_NOTHING = ", without which nothing is built"
+"""The end of the value for a package without which the build file returns."""
+
 
 @dataclass(frozen=True)
 class Fact:

@@ -17,6 +17,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_comparison import compare_build_files
 from linkwright.review.files.build_facts import (
     ANY_VERSION,
+    WITHOUT_NOTHING,
     BuildFacts,
     EnvironmentVariables,
     Fact,
@@ -56,6 +57,11 @@ _ROS1_INTERFACE_COMMANDS = {
 }
 """The commands of ROS 1 that build interfaces: the default folder, and the suffix."""
 _COMPONENT_KEYWORDS = {"PLUGIN": FactKind.COMPONENT, "EXECUTABLE": FactKind.EXECUTABLE}
+_GUARD = (
+    r"\bif\s*\(\s*NOT\s+\"?(?:\$\{{)?{name}_FOUND\}}?\"?\s*\)"
+    r"(?:(?!\bif\s*\(|\b(?:end|else)\w*\s*\()[^#])*?\breturn\s*\("
+)
+"""A branch that ends the build if a package is not found."""
 _VERSION = re.compile(r"\d+(\.\d+)*")
 _INSTALL_KEYWORDS = frozenset(
     {"EXPORT", "ARCHIVE", "LIBRARY", "RUNTIME", "OBJECTS", "INCLUDES", "DESTINATION", "COMPONENT", "OPTIONAL"}
@@ -430,6 +436,8 @@ def _read_packages(commands: Sequence[Command]) -> Iterator[Fact]:
             package, *options = command.arguments
             version = next((other.text for other in options[:1] if _VERSION.fullmatch(other.text)), ANY_VERSION)
             value = version if "REQUIRED" in command.words or package.text == "catkin" else f"{version}, optional"
+            if value != version and _is_guarded(package):
+                value = f"{version}{WITHOUT_NOTHING}"
             yield _make_fact(FactKind.PACKAGE, package, value)
             start = command.words.index("COMPONENTS") if "COMPONENTS" in command.words else len(options)
             if package.text == "catkin":
@@ -439,6 +447,13 @@ def _read_packages(commands: Sequence[Command]) -> Iterator[Fact]:
                     name = component.text if package.text == "catkin" else f"{package.text} {component.text}"
                     required = ANY_VERSION if package.text == "catkin" else ""
                     yield _make_fact(FactKind.PACKAGE, component, required, name)
+
+
+def _is_guarded(package: Argument) -> bool:
+    """Return whether the build file of a package returns if it does not find another package."""
+    text = package.source.text
+    guard = re.search(_GUARD.format(name=re.escape(package.text)), text)
+    return guard is not None and re.search(r"^\s*project\s*\(", text, re.MULTILINE) is not None
 
 
 def _read_tests(commands: Sequence[Command]) -> Iterator[Fact]:

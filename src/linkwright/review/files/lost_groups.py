@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.lost_plan_groups import is_of_lost_group
 from linkwright.review.files.parameter_names import is_parameter
 
 _MIN_GROUP_SIZE = 2
@@ -26,6 +27,8 @@ def find_group_reason(pair: FilePair, name: str, values: Collection[str]) -> Phr
         values: the paths of its values.
     """
     if len(values) < _MIN_GROUP_SIZE or "." in name or any("[" in value or is_parameter(value) for value in values):
+        return None
+    if is_of_lost_group(pair.versions, pair.new_path, name):
         return None
     keys = {value.removeprefix(f"{name}.").partition(".")[0] for value in values}
     if any(path != pair.new_path and _has_group(pair, path, name, keys) for path in _list_changed_files(pair)):

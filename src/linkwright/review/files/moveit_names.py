@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.breaking import joint_name_reason
+from linkwright.review.files.lost_plan_groups import is_of_lost_group
 from linkwright.review.files.parameter_names import can_evaluate_to, list_part_paths, make_controller_reason
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.joint_limits import LOWER, UPPER, find_narrower_reason
@@ -44,10 +45,15 @@ class MoveItRules:
         old: the old values by their original paths.
         new: the new values by path.
         versions: the repository before and after the change.
+        path: the path of the file in the new version.
     """
 
-    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], versions: Versions) -> None:
+    def __init__(
+        self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], versions: Versions, path: str
+    ) -> None:
         self._old = old
+        self._versions = versions
+        self._path = path
         self._version = versions.new
         self._names = {
             pattern: {match["name"] for part in parts if (match := pattern.fullmatch(part))}
@@ -88,7 +94,8 @@ class MoveItRules:
             for pattern, reason in _REMOVAL_REASONS:
                 match = pattern.fullmatch(part)
                 if match is not None and self._is_removed(pattern, match["name"]):
-                    return reason(match["name"])
+                    is_lost = pattern is not _PLANNER and is_of_lost_group(self._versions, self._path, part)
+                    return None if is_lost else reason(match["name"])
         return None
 
     def find_renaming_reason(self, part: str) -> Phrase | None:

@@ -128,7 +128,7 @@ def _find_changes(
 ) -> Iterator[ValueChange]:
     labels = find_item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
     old_values, new = ({} if root is None else collect_values(root, labels) for root in (old_root, new_root))
-    moveit = MoveItRules(old_values, new, pair.versions)
+    moveit = MoveItRules(old_values, new, pair.versions, pair.new_path)
     readers = KeyReaders(pair.versions, pair.new_path)
     old = _report_renamed(pair, old_values, new, moveit, readers)
     rules = NameRules(old, new, readers)

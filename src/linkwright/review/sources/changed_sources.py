@@ -12,8 +12,9 @@ from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.cpp_bases import ClassMethods
 from linkwright.review.sources.moved_code import MovedCode, find_moved_code, without_functions
-from linkwright.review.sources.names import CPP_SUFFIXES, NameKind, SourceName, SourceNames, Timer
+from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.reading import read_source_names, try_read_source
+from linkwright.review.sources.renamed_words import find_renamed_words
 from linkwright.review.sources.unchanged_sources import UnchangedSources, get_counterpart, is_same_topic
 from linkwright.review.sources.used_packages import UsedPackages
 from linkwright.review.versions import Version
@@ -44,6 +45,7 @@ class ChangedSources:
         self._unchanged_by_package: dict[str, UnchangedSources] = {}
         self._used_by_package: dict[str, UsedPackages] = {}
         self._moved_code: dict[str, MovedCode] | None = None
+        self._renamed_words: dict[str, str] | None = None
 
     def get_names(self, path: str | None) -> SourceNames:
         """Return the names in a changed source."""
@@ -80,6 +82,16 @@ class ChangedSources:
             }
             self._moved_code = {path: moved for path, moved in found.items() if moved is not None}
         return self._moved_code
+
+    def find_renamed_words(self, old: ChangedSources) -> Mapping[str, str]:
+        """Return the new names of variables, members and functions that only have another name, by their old names.
+
+        Args:
+            old: the changed sources of the old version.
+        """
+        if self._renamed_words is None:
+            self._renamed_words = find_renamed_words(old.codes, self.codes)
+        return self._renamed_words
 
     @cached_property
     def _texts(self) -> Sequence[str]:
@@ -141,11 +153,16 @@ class ChangedSources:
     def lacks_in_changed(self, item: SourceName, path: str) -> bool:
         """Return whether no other changed source has a name.
 
-        If one has it, the name has moved.
+        If one has it, the name has moved. A parameter of dynamic_reconfigure only moves to another description.
         """
         if item.kind is NameKind.PARAMETER and self._generates(item.name, path):
             return False
-        others = (names for other, names in self._names.items() if other != path)
+        is_description = path.endswith(DYNAMIC_SUFFIX)
+        others = (
+            names
+            for other, names in self._names.items()
+            if other != path and (other.endswith(DYNAMIC_SUFFIX) or not is_description)
+        )
         return not any(
             (known.kind, get_comparison_name(known)) == (item.kind, get_comparison_name(item))
             for names in others

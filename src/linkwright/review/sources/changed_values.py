@@ -10,6 +10,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.argument_changes import find_argument_difference
+from linkwright.review.sources.call_pairs import pair_by_call
 from linkwright.review.sources.cpp_statements import read_cpp_statements
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.operator_changes import find_operator_change
@@ -135,7 +136,9 @@ def _pair_statements(
         )
         if len(unpaired[0]) == len(unpaired[1]):
             yield from zip(*unpaired, strict=True)
-        elif len(before) != len(after):
+        else:
+            yield from pair_by_call(*unpaired)
+        if len(unpaired[0]) != len(unpaired[1]) and len(before) != len(after):
             yield from _pair_by_argument(unpaired[0], after)
         settled = {key for key in keys[1] if keys[0].count(key) == keys[1].count(key)}
         if len(before) == len(after) and len(unpaired[0]) != len(unpaired[1]):  # statement by statement

@@ -27,6 +27,8 @@ _OUTPUT_FUNCTION = re.compile(
 )
 """The functions that only print or log."""
 _FUNCTION_NAME = re.compile(r"(?:\w+(?:\.|::))*(?:~?\w+|operator\W+)")
+_ASSERTIONS = frozenset({"assert", "ROS_ASSERT", "ROS_ASSERT_MSG"})
+"""The first words of statements that stop the program if a condition does not hold."""
 _CONTROL_KEYWORDS = frozenset({"if", "for", "while", "switch", "catch"})
 _BRANCH_KEYWORDS = frozenset({"else", "do", "try"})
 
@@ -174,7 +176,7 @@ def _read_cpp(source: SourceText) -> Code:
             _make_cpp_part(tokens, starts, conditions)
             for statement in statements
             for tokens in _split_unbraced(statement)
-            if not is_output(tokens) or _has_throw(tokens)
+            if not is_output(tokens) or _may_fail(tokens)
         ]
         (code.functions if name in functions else code.outside)[name] = parts
     return code
@@ -199,13 +201,14 @@ def _split_unbraced(tokens: Sequence[Token]) -> Iterator[Sequence[Token]]:
         yield tokens
 
 
-def _has_throw(tokens: Sequence[Token]) -> bool:
-    return any(token.text == "throw" for token in tokens)
+def _may_fail(tokens: Sequence[Token]) -> bool:
+    """Return whether a statement throws an error or asserts a condition."""
+    return any(token.text == "throw" or token.text in _ASSERTIONS for token in tokens)
 
 
 def _make_cpp_part(tokens: Sequence[Token], starts: Sequence[int], conditions: Conditions) -> Part:
     """Return a statement with the conditions of the preprocessor."""
-    has_message, texts, condition = _has_throw(tokens), [], ""
+    has_message, texts, condition = _may_fail(tokens), [], ""
     for token in tokens:
         if token.text != "override":
             if conditions.find(token.start) != condition:

@@ -28,6 +28,7 @@ from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
 from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
 from linkwright.review.sources.names import (
+    DYNAMIC_SUFFIX,
     PYTHON_SUFFIX,
     DefaultName,
     Detail,
@@ -48,6 +49,7 @@ from linkwright.review.sources.package_imports import (
 from linkwright.review.sources.pairing import (
     compute_similarity,
     drop_replaceable,
+    has_other_class,
     has_same_types,
     is_same_frame,
     pair_similar,
@@ -123,7 +125,11 @@ class _SourcePair(WholeSourcePair):
             NameChange(item, *detail)
             for name, item in after.items()
             if name in before and not has_same_types(before[name], item, old_names, new_names)
-            for detail in compare_details(replace(before[name], type=shown.get(name, before[name].type)), item)
+            for detail in compare_details(
+                replace(before[name], type=shown.get(name, before[name].type)),
+                item,
+                has_other_class=has_other_class(before[name], item, old_names, new_names),
+            )
         ]
         if kind is NameKind.PARAMETER:
             changed += self._compare_moved([item for name, item in before.items() if name not in after])
@@ -140,7 +146,7 @@ class _SourcePair(WholeSourcePair):
             item for item in only_old.values() if has_only_in_other_nodes(item, self.new, self.old, (path, old_path))
         ]
         removed = [item for item in only_old.values() if item in left or self.new.lacks(item, path)]
-        is_new_node = self.file.old_path is None and new_names.makes_node
+        is_new_node = self.file.old_path is None and (new_names.makes_node or path.endswith(DYNAMIC_SUFFIX))
         lacks = self.old.lacks
         if is_new_node and kind in (*COMMUNICATION_KINDS, NameKind.PARAMETER):
             lacks = self.old.lacks_in_changed  # report everything that a new node uses, even if another node uses it

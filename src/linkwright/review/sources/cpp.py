@@ -10,6 +10,7 @@ from pathlib import Path, PurePosixPath
 from linkwright.diagnostics import SourceText, Span
 from linkwright.review.sources.conditions import find_cpp_conditions
 from linkwright.review.sources.cpp_callbacks import find_message_type, find_service_type
+from linkwright.review.sources.cpp_callers import CallerNames
 from linkwright.review.sources.cpp_calls import (
     COMMUNICATION_KINDS,
     GRAPH_KINDS,
@@ -30,7 +31,6 @@ from linkwright.review.sources.cpp_functions import (
     read_scopes,
 )
 from linkwright.review.sources.cpp_handles import Handles, add_namespace
-from linkwright.review.sources.cpp_helpers import Helper, find_helper_uses, find_helpers
 from linkwright.review.sources.cpp_lifecycle import LifecycleCallbacks
 from linkwright.review.sources.cpp_members import find_constructions, read_included_headers
 from linkwright.review.sources.cpp_options import find_options
@@ -133,7 +133,8 @@ class _Reader:
         text = self._text
         for call in find_calls(text):
             self._read_call(call)
-        self._read_helper_uses()
+        for use in self._caller_names.find_uses():
+            self._add_named_call(use.call, use.name, (use.begin, use.end), use.arguments)
         for pattern, kind, index in ((_NODE, NameKind.NODE, 0), (_INIT, NameKind.NODE, 2)):
             for match in pattern.finditer(text):
                 self._names.makes_node = True
@@ -270,7 +271,7 @@ class _Reader:
             self._add_named_call(call, self._get_literal(*offsets) or "", offsets, texts)
             return
         begin, end = candidates[0] if not call.is_action else candidates[min(1, len(candidates) - 1)]
-        if call.start in self._inner_calls:
+        if call.start in self._caller_names.inner_calls:
             return  # the callers give the names
         name, type_name = " ".join(text[begin:end].split()), call.type
         listed = list(find_table_names(text, name, call.start)) if kind is NameKind.PARAMETER else []
@@ -383,26 +384,9 @@ class _Reader:
             index = _SERVICE_QOS_INDEX[call.function]
             yield from read_service_qos(" ".join(texts[index].split()) if index < len(texts) else None)
 
-    def _read_helper_uses(self) -> None:
-        """Add the names that helpers of the source or its headers make from the literals of their callers."""
-        for helpers, is_own in ((self._own_helpers, True), (self._header_helpers, False)):
-            for use in find_helper_uses(self._text, helpers, is_own=is_own):
-                call = use.call if is_own else use.call._replace(start=use.begin)
-                self._add_named_call(call, use.name, (use.begin, use.end), use.arguments)
-
     @cached_property
-    def _own_helpers(self) -> list[Helper]:
-        return find_helpers(self._text)
-
-    @cached_property
-    def _header_helpers(self) -> list[Helper]:
-        own = {helper.name for helper in self._own_helpers}
-        return [helper for text in self._headers for helper in find_helpers(text) if helper.name not in own]
-
-    @cached_property
-    def _inner_calls(self) -> frozenset[int]:
-        """The offsets of the calls in helpers whose callers give the names."""
-        return frozenset(use.call.start for use in find_helper_uses(self._text, self._own_helpers, is_own=True))
+    def _caller_names(self) -> CallerNames:
+        return CallerNames(self._source, self._text, self._headers)
 
     def _add_callback(self, kind: NameKind | None, name: str, texts: Sequence[str]) -> None:
         """Add the member function that messages, requests, goals or a timer call.
@@ -467,7 +451,7 @@ class _Reader:
 
         The name is one of the first two arguments. Elements of SDF at the given offsets are left out.
         """
-        own = {helper.name for helper in (*self._own_helpers, *self._header_helpers)}
+        own = self._caller_names.helper_names
         for call in find_helper_calls(self._text):
             if call.function in KINDS or call.function in own:
                 continue

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from linkwright.review.sources.cpp_calls import Call, find_calls
@@ -26,8 +26,9 @@ _END_OF_MACRO = re.compile(r"(?<!\\)\n|\Z")
 _TEMPLATE = re.compile(r"\btemplate\s*<(?P<names>[^;{}()]*)>[^;{}()]*\Z")
 _MAX_HEAD_CHARACTERS = 300
 _TEMPLATE_NAMES = re.compile(r"\b(?:typename|class)\s+(\w+)")
+_RECEIVER = re.compile(r"(?P<name>\w+)\s*(?:\.|->)\s*(?:template\s+)?\Z")
 _NO_FUNCTIONS = frozenset({"if", "for", "while", "switch", "return", "catch", "else", "new", "delete", "throw"})
-_KINDS_OF_NAMES = frozenset(
+KINDS_OF_NAMES = frozenset(
     {
         *(NameKind.PUBLISHER, NameKind.SUBSCRIPTION, NameKind.SERVICE, NameKind.CLIENT),
         *(NameKind.ACTION, NameKind.ACTION_CLIENT, NameKind.PARAMETER),
@@ -52,6 +53,7 @@ class Helper(NamedTuple):
         templates: the names of its template parameters.
         start: the offset of its name in its definition.
         end: the offset of the end of its body.
+        receiver: the variable on which it makes the call; empty if there is none.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Helper(NamedTuple):
     templates: tuple[str, ...]
     start: int
     end: int
+    receiver: str = ""
 
 
 class HelperUse(NamedTuple):
@@ -92,7 +95,7 @@ def find_helpers(text: str) -> list[Helper]:
 
     Functions that share their name but take the name elsewhere, and parameters that the body sets, are left out.
     """
-    calls = [call for call in find_calls(text) if call.kind in _KINDS_OF_NAMES and call.arguments]
+    calls = [call for call in find_calls(text) if call.kind in KINDS_OF_NAMES and call.arguments]
     found: list[Helper] = []
     for match in _DEFINITION.finditer(text) if calls else ():
         name = match["lambda"] or match["name"]
@@ -106,33 +109,68 @@ def find_helpers(text: str) -> list[Helper]:
 
 
 def _read_helper(text: str, match: re.Match[str], name: str, calls: Sequence[Call]) -> Iterator[Helper]:
-    texts = [text[begin:end] for begin, end in find_arguments(text, match.end())]
-    strings = {index: found["name"] for index, item in enumerate(texts) if (found := _STRING.fullmatch(item))}
-    if not strings:
-        return
     opening = re.compile(_SUFFIX).match(text, find_closing_bracket(text, match.end()) + 1)
     if opening is None:
         return
-    end = find_closing_bracket(text, opening.end() - 1)
-    parameters = [_PARAMETER.fullmatch(item) for item in texts]
-    names = tuple("" if item is None else item["name"] for item in parameters)
-    defaults = tuple("" if item is None else item["default"] or "" for item in parameters)
-    template = _TEMPLATE.search(text, max(0, match.start() - _MAX_HEAD_CHARACTERS), match.start())
-    templates = () if template is None else tuple(_TEMPLATE_NAMES.findall(template["names"]))
+    body = opening.end(), find_closing_bracket(text, opening.end() - 1)
     start = match.start("lambda" if match["lambda"] else "name")
+    own = [call for call in calls if body[0] <= call.start < body[1]]
+    for helper in make_helpers(text, name, (start, match.end()), own, body):
+        yield helper._replace(is_lambda=match["lambda"] is not None)
+
+
+def make_helpers(
+    text: str,
+    name: str,
+    offsets: tuple[int, int],
+    calls: Sequence[Call],
+    body: tuple[int, int],
+    names: Mapping[str, str] | None = None,
+) -> Iterator[Helper]:
+    """Yield a helper for each call that takes a text parameter of a function as its name.
+
+    Args:
+        text: the source without comments.
+        name: the name of the function.
+        offsets: the offsets of its definition and of its parameters.
+        calls: the calls that the function makes.
+        body: the offsets of its body.
+        names: the variables that keep the parameters, by these; None for the parameters themselves.
+    """
+    start, position = offsets
+    texts = [text[begin:end] for begin, end in find_arguments(text, position)]
+    strings = {index: found["name"] for index, item in enumerate(texts) if (found := _STRING.fullmatch(item))}
+    if not strings:
+        return
+    parameters = [_PARAMETER.fullmatch(item) for item in texts]
+    all_names = tuple("" if item is None else item["name"] for item in parameters)
+    defaults = tuple("" if item is None else item["default"] or "" for item in parameters)
+    template = _TEMPLATE.search(text, max(0, start - _MAX_HEAD_CHARACTERS), start)
+    templates = () if template is None else tuple(_TEMPLATE_NAMES.findall(template["names"]))
     for call in calls:
-        if not opening.end() <= call.start < end:
-            continue
         given = text[slice(*call.arguments[0])].strip()
         others = tuple(text[slice(*argument)].strip() for argument in call.arguments[1:])
+        receiver = _RECEIVER.search(text[max(0, call.start - _MAX_HEAD_CHARACTERS) : call.start])
         for index, string in strings.items():
-            joined = re.fullmatch(_JOINED.format(name=re.escape(string)), given)
-            if joined is None or re.search(rf"\b{string}\s*\+?=(?!=)", text[opening.end() : end]):
+            variable = string if names is None else names.get(string, "")
+            joined = re.fullmatch(_JOINED.format(name=re.escape(variable)), given) if variable else None
+            if joined is None or re.search(rf"\b{string}\s*\+?=(?!=)", text[slice(*body)]):
                 continue
-            before, after = joined["before"] or "", joined["after"] or ""
-            is_lambda = match["lambda"] is not None
             yield Helper(
-                name, is_lambda, False, index, call, before, after, others, names, defaults, templates, start, end
+                name,
+                is_lambda=False,
+                is_stringified=False,
+                position=index,
+                call=call,
+                before=joined["before"] or "",
+                after=joined["after"] or "",
+                arguments=others,
+                parameters=all_names,
+                defaults=defaults,
+                templates=templates,
+                start=start,
+                end=body[1],
+                receiver="" if receiver is None else receiver["name"],
             )
 
 
@@ -180,22 +218,32 @@ def find_helper_uses(text: str, helpers: Sequence[Helper], *, is_own: bool) -> I
             is_of_other = match["receiver"] and not re.search(r"\bthis\s*$", text[: match.start()][-20:])
             if is_of_other or (is_own and helper.start == match.start()):
                 continue
-            arguments = list(find_arguments(text, match.end()))
-            if not helper.position < len(arguments) <= len(helper.parameters):
-                continue
-            begin, end = arguments[helper.position]
-            literal = (_IDENTIFIER if helper.is_stringified else TEXT).fullmatch(text[begin:end])
-            if literal is not None and literal["text"]:
-                values = dict(zip(helper.parameters, helper.defaults, strict=True))
-                values.update(
-                    (name, text[slice(*argument)].strip())
-                    for name, argument in zip(helper.parameters, arguments, strict=False)
-                )
-                types = [item.strip() for item in (match["types"] or "").strip()[1:-1].split(",")]
-                given = dict(zip(helper.templates, types, strict=False))
-                type_name = given.get(
-                    helper.call.type, "" if helper.call.type in helper.templates else helper.call.type
-                )
-                texts = [values.get(item, item) for item in helper.arguments]
-                name = f"{helper.before}{literal['text']}{helper.after}"
-                yield HelperUse(helper.call._replace(type=type_name), name, begin, end, texts)
+            use = make_use(text, helper, list(find_arguments(text, match.end())), match["types"] or "")
+            if use is not None:
+                yield use
+
+
+def make_use(text: str, helper: Helper, arguments: Sequence[tuple[int, int]], types: str) -> HelperUse | None:
+    """Return the use of a helper in a call with the offsets of its arguments; None if no literal gives the name.
+
+    Args:
+        text: the source that has the call.
+        helper: the helper.
+        arguments: the offsets of the arguments.
+        types: the template arguments in angle brackets; empty if there are none.
+    """
+    if not helper.position < len(arguments) <= len(helper.parameters):
+        return None
+    begin, end = arguments[helper.position]
+    literal = (_IDENTIFIER if helper.is_stringified else TEXT).fullmatch(text[begin:end])
+    if literal is None or not literal["text"]:
+        return None
+    values = dict(zip(helper.parameters, helper.defaults, strict=True))
+    values.update(
+        (name, text[slice(*argument)].strip()) for name, argument in zip(helper.parameters, arguments, strict=False)
+    )
+    given = dict(zip(helper.templates, [item.strip() for item in types.strip()[1:-1].split(",")], strict=False))
+    type_name = given.get(helper.call.type, "" if helper.call.type in helper.templates else helper.call.type)
+    texts = [values.get(item, item) for item in helper.arguments]
+    name = f"{helper.before}{literal['text']}{helper.after}"
+    return HelperUse(helper.call._replace(type=type_name), name, begin, end, texts)

@@ -83,7 +83,14 @@ class ParameterDefaults:
         return self._initial_values.find_default(texts[index], call.start) or ""
 
     def find_kept(self, call: Call, texts: Sequence[str]) -> str:
-        """Return the literal that a variable has if a call does not find its parameter; empty if it is unknown."""
+        """Return the literal that a variable has if a call does not find its parameter; empty if it is unknown.
+
+        A function of the repository with this name may take the default before the variable.
+        """
+        if call.function == "getParam" and len(texts) > 1:
+            value = parse_literal(texts[0])
+            is_kept = value is None and texts[0] == texts[1]
+            return value or (is_kept and self._initial_values.find_default(texts[0], call.start)) or ""
         if call.function != "getParam" or len(texts) != 1 or is_required_parameter(self._text, call, texts):
             return ""
         return find_fallback(self._text, call) or self._initial_values.find_default(texts[0], call.start) or ""

@@ -69,7 +69,7 @@ def compare_computed(
 
 
 def compare_details(
-    old: SourceName, new: SourceName, *, is_computed: bool = False
+    old: SourceName, new: SourceName, *, is_computed: bool = False, has_other_class: bool = False
 ) -> Iterator[tuple[Phrase, Phrase | None, Detail | None]]:
     """Yield the changes to a name, each with the reason why it is breaking or None, and the property that changed.
 
@@ -79,9 +79,10 @@ def compare_details(
         old: the old name.
         new: the new name.
         is_computed: whether the name is the text of an expression, which others do not know.
+        has_other_class: whether a type is another class with the same name.
     """
     if not new.has_type_of(old):
-        for text, reason in _compare_types(old, new, is_computed=is_computed):
+        for text, reason in _compare_types(old, new, is_computed=is_computed, has_other_class=has_other_class):
             yield text, reason, None
     old_details, new_details = dict(old.details), dict(new.details)
     for detail in Detail:
@@ -144,12 +145,14 @@ def _compare_missing_defaults(old: SourceName, new: SourceName) -> Iterator[tupl
         yield text, None, Detail.DEFAULT
 
 
-def _compare_types(old: SourceName, new: SourceName, *, is_computed: bool) -> Iterator[tuple[Phrase, Phrase | None]]:
+def _compare_types(
+    old: SourceName, new: SourceName, *, is_computed: bool, has_other_class: bool
+) -> Iterator[tuple[Phrase, Phrase | None]]:
     if new.kind is NameKind.FUNCTION:
         reason: Phrase | None = phrase("code that calls '{name}' with the old arguments does not build", name=new.name)
         if (Detail.REQUIRED, YES) in old.details:
             reason = phrase("classes that derive from the class and do not define it do not build")
-        elif accepts_all(old.type, new.type):
+        elif accepts_all(old.type, new.type) and not has_other_class:
             reason = None
         yield format_overload_change(new.name, old.type, new.type), reason
     elif new.kind in (NameKind.PARAMETER, NameKind.OPTION, NameKind.ELEMENT):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Hashable, Sequence
 from dataclasses import replace
 
@@ -15,6 +16,10 @@ _SEPARATE_KINDS = tuple(
 )
 """The kinds of names that keep a line each, because other files are searched for them."""
 
+_QUOTED = re.compile(r"'([^']+)'")
+_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+_NOTATION = "notation"
+
 
 def merge_renames(changes: Sequence[Change]) -> list[Change]:
     """Return the changes to a source, with one line for the names of a kind that are edited alike."""
@@ -25,12 +30,20 @@ def merge_renames(changes: Sequence[Change]) -> list[Change]:
 
 
 def _make_key(change: Change) -> Hashable | None:
-    """Return a key that is equal for renames by the same edit; None for other changes."""
+    """Return a key that is equal for renames by the same edit or to the same notation; None for other changes."""
     arguments = change.sentence.arguments
     if not is_rename(change.sentence) or str(arguments["kind"]) in _SEPARATE_KINDS:
         return None
     reason = None if change.reason is None else change.reason.template
-    return str(arguments["kind"]), reason, name_edit(str(arguments["old"]), str(arguments["new"]))
+    names = str(arguments["old"]), str(arguments["new"])
+    return str(arguments["kind"]), reason, _NOTATION if _have_same_words(*names) else name_edit(*names)
+
+
+def _have_same_words(old: str, new: str) -> bool:
+    """Return whether two names differ only in their notation, such as ``setSpeed`` and ``set_speed``."""
+    matches = _QUOTED.match(old), _QUOTED.match(new)
+    words = [[word.lower() for word in _WORD.findall(match[1])] for match in matches if match is not None]
+    return len(words) == len(matches) and words[0] == words[1]
 
 
 def _join(changes: Sequence[Change]) -> Change:

@@ -108,9 +108,14 @@ def has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, new
     """Return whether a function or member only has other names for the same types."""
     is_member = old.kind in (NameKind.FUNCTION, NameKind.MEMBER) and old.type != new.type
     types = old_names.resolve_aliases(old.type), new_names.resolve_aliases(new.type)
+    return is_member and not has_other_class(old, new, old_names, new_names) and has_same_parameters(*types)
+
+
+def has_other_class(old: SourceName, new: SourceName, old_names: SourceNames, new_names: SourceNames) -> bool:
+    """Return whether a type of a function or member is a class that only one version of the header declares."""
+    types = old_names.resolve_aliases(old.type), new_names.resolve_aliases(new.type)
     own = old_names.forward_classes ^ new_names.forward_classes
-    has_other_class = any(re.search(rf"(?<!::)\b{name}\b", text) for name in own for text in types)
-    return is_member and not has_other_class and has_same_parameters(*types)
+    return any(re.search(rf"(?<!::)\b{name}\b", text) for name in own for text in types)
 
 
 def is_same_frame(old: SourceName, new: SourceName) -> bool:

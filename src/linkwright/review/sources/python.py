@@ -71,7 +71,7 @@ _DICTIONARY_METHODS = ("items", "iteritems", "keys", "iterkeys")
 _FRAME_FIELDS = {"frame_id": NameKind.MESSAGE_FRAME, "child_frame_id": NameKind.FRAME}
 _CLICK_OPTION = "click.option"
 _SHORT_OPTION = re.compile(r"-\w")
-_QOS = re.compile(r"\d+|[\w.]*(QoS|qos_profile|QOS)\w*(\(.*\))?", re.DOTALL)
+_QOS = re.compile(r"\d+|[\w.]*(QoS|qos_profile|QOS)\w*(?:\.\w+)*(\(.*\))?", re.DOTALL)
 
 
 def read_python(source: SourceText, names: SourceNames) -> None:

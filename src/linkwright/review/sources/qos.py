@@ -41,12 +41,16 @@ _SECONDS = {
     "seconds": 1.0,
 }
 _DEPTH = re.compile(r"(?:QoS[({])?(?:KeepLast[({])?(?P<depth>\d+)[)}]*(?P<rest>(?:\.\w+\(\w*\))*)")
+_DEFAULT_PROFILE = re.compile(
+    r"\A(?:(?:\w+\.)*QoSPresetProfiles\.DEFAULT\.value|(?:\w+\.)*(?:rmw_)?qos_profile_default)\Z"
+)
+"""The profile that keeps ten messages, and is reliable and volatile."""
 _DEFAULTS = re.compile(r"\.(?:reliable|durability_volatile)\(\)")
 
 
 def normalize_qos(text: str) -> str:
     """Return a QoS in one notation: ``10``, ``rclcpp::QoS(10)`` and ``QoS(KeepLast(10)).reliable()`` are equal."""
-    compact = re.sub(r"\s+|\b(?:rclcpp|rmw)::", "", text)
+    compact = _DEFAULT_PROFILE.sub("10", re.sub(r"\s+|\b(?:rclcpp|rmw)::", "", text))
     match = _DEPTH.fullmatch(compact)
     return compact if match is None else f"{match['depth']}{_DEFAULTS.sub('', match['rest'])}"
 

@@ -19,9 +19,11 @@ from linkwright.review.sources.frame_changes import find_frame_changes
 from linkwright.review.sources.lost_message_frames import explain_lost_message_frame, find_lost_message_frames
 from linkwright.review.sources.moved_code import without_functions, without_statements
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
+from linkwright.review.sources.new_assertions import find_new_assertions
 from linkwright.review.sources.new_failures import FailureSide, find_new_failures
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 from linkwright.review.sources.renamed_variables import find_renamed_variables
+from linkwright.review.sources.renamed_words import rename_words
 from linkwright.review.sources.replaced_literals import find_replaced_literals
 from linkwright.review.sources.returned_codes import find_returned_codes
 from linkwright.review.sources.small_changes import find_small_changes
@@ -42,6 +44,7 @@ def compare_statements(
     if file.old_path is not None and file.new_path is not None:
         changes += _compare_frames(old, new, file.old_path, file.new_path)
         changes += _find_failures(old, new, file.old_path, file.new_path)
+        changes += _find_assertions(old, new, file.old_path, file.new_path)
         changes += _find_returned_codes(old, new, file.old_path, file.new_path)
         changes += _compare_values(old, new, file, changes)
         changes += _find_small_changes(old, new, file, changes)
@@ -78,6 +81,7 @@ def _find_small_changes(
     before, after = old.codes.get(file.old_path or ""), new.codes.get(file.new_path or "")
     if before is None or after is None or file.path.endswith(CPP_SUFFIXES):
         return
+    before = rename_words(before, after, new.find_renamed_words(old))
     for change in find_small_changes(before, after, ReportedLines(reported), new.get_names(file.new_path)):
         yield _make_code_change(change, file)
 
@@ -139,6 +143,13 @@ def _find_failures(old: ChangedSources, new: ChangedSources, old_path: str, new_
         yield Change(change.sentence, effect, change.reason, Location(new_path, change.line, 1))
 
 
+def _find_assertions(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the conditions that functions newly assert."""
+    before, after = old.codes.get(old_path), new.codes.get(new_path)
+    for item in find_new_assertions(before, after, is_cpp=new_path.endswith(CPP_SUFFIXES)) if before and after else ():
+        yield Change(item.sentence, location=Location(new_path, item.line, 1))
+
+
 def _find_deprecations(old: ChangedSources, new: ChangedSources, file: ChangedFile) -> Iterator[Change]:
     """Yield the new texts that say that something is deprecated."""
     texts = old.version.text(file.old_path or ""), new.version.text(file.new_path or "")
@@ -154,7 +165,7 @@ def _compare_code(
     if not before or not after:
         return
     renamed = drop_reported(find_renamed_classes(before, after), [str(change.sentence) for change in reported])
-    before = rename_classes(before, renamed)
+    before = rename_words(rename_classes(before, renamed), after, new.find_renamed_words(old))
 
     def has_moved(name: str, code: Code) -> bool:
         side, path = (new, new_path) if code is before else (old, old_path)
