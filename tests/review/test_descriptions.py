@@ -158,6 +158,18 @@ def test_link_below_another_parent_has_the_distance_by_which_it_moved(package, c
     assert sentences(subject(compare(package), PATH)) == expected
 
 
+def test_joints_that_exchange_their_names_have_no_distances(package, compare):
+    joint = """<joint name="{}" type="fixed"><origin xyz="0 0 {}"/><parent link="{}"/><child link="{}"/></joint>"""
+    links = '<link name="pan"/><link name="tilt"/>'
+    old = joint.format("a", 1, "base_link", "pan") + joint.format("b", 2, "pan", "tilt")
+    new = joint.format("b", 1, "base_link", "pan") + joint.format("a", 2, "pan", "tilt")
+    package.commit({PATH: ARM.replace("</robot>", f"{links}{old}</robot>")})
+    package.write({PATH: ARM.replace("</robot>", f"{links}{new}</robot>")})
+    result = sentences(subject(compare(package), PATH))
+    assert "joint 'a': origin xyz 0 0 1 -> 0 0 2 m" in result
+    assert not any("moved by" in sentence or "pose" in sentence for sentence in result)
+
+
 def test_added_joint_that_replaces_another_one_is_told_with_its_place(package, compare):
     old = HEAD.format(joint="head_joint", type="fixed", at="base_link", xyz="0 0 1.25")
     package.commit({PATH: ARM.replace("</robot>", old)})

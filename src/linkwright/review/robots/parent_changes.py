@@ -24,7 +24,10 @@ class ParentChanges:
     """
 
     def __init__(self, comparison: Comparison, new: Robot, frames: SharedFrames | None) -> None:
-        self._joints = {difference.name for difference in comparison.differences if _is_parent(difference)}
+        self._joints = {item.name for item in comparison.differences if _is_change_of_link(item, "parent")}
+        self._joints_of_other_links = {
+            item.name for item in comparison.differences if _is_change_of_link(item, "child")
+        }
         self._old_links = {new_name: old_name for old_name, new_name in comparison.links.items()}
         self._new = new
         self._frames = frames
@@ -35,7 +38,8 @@ class ParentChanges:
             return None
         if difference.property.startswith("origin "):
             return sentence(difference)
-        if not _is_parent(difference) or self._frames is None:
+        is_of_other_link = difference.name in self._joints_of_other_links
+        if not _is_change_of_link(difference, "parent") or is_of_other_link or self._frames is None:
             return None
         child = self._new.joints[difference.name].child
         motion = self._frames.motion_seen_from(difference.old or "", self._old_links.get(child, ""))
@@ -44,5 +48,6 @@ class ParentChanges:
         return sentence(difference).with_arguments(new=add_motion(as_phrase(difference.new or ""), *motion))
 
 
-def _is_parent(difference: Difference) -> bool:
-    return (difference.subject, difference.kind, difference.property) == ("joint", "changed", "parent")
+def _is_change_of_link(difference: Difference, end: str) -> bool:
+    """Return whether a joint has another link at an end, ``parent`` or ``child``."""
+    return (difference.subject, difference.kind, difference.property) == ("joint", "changed", end)
