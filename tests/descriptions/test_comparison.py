@@ -208,7 +208,7 @@ MESH, OTHER_MESH, BOX = '<mesh filename="a.stl"/>', '<mesh filename="b.stl"/>', 
         pytest.param(
             (link("pole"), joint("base", "pole"), link("arm", MESH, 2), joint("pole", "arm")),
             (link("pole"), joint("base", "pole"), link("boom", MESH, 2), joint("base", "boom")),
-            {"arm": "boom"},
+            {"arm": "boom", "arm_joint": "boom_joint"},
             id="same mesh and inertial below another link",
         ),
         pytest.param(
@@ -300,6 +300,16 @@ def test_renamed_joint_between_the_same_links_is_recognized():
     assert [difference[:4] for difference in differences_between(ROBOT, new)] == [
         ("joint", "flange", "renamed", "name"),
         ("joint", "flange", "changed", "origin xyz"),
+    ]
+
+
+def test_renamed_joint_that_attaches_the_same_link_to_another_parent_is_recognized():
+    old = robot_text(link("pole"), joint("base", "pole"), link("imu"), joint("base", "imu", "imu_joint"))
+    new = robot_text(link("pole"), joint("base", "pole"), link("imu"), joint("pole", "imu", "imu_mount", "0 0 1"))
+    assert [difference[:4] for difference in differences_between(old, new)] == [
+        ("joint", "imu_mount", "renamed", "name"),
+        ("joint", "imu_mount", "changed", "parent"),
+        ("joint", "imu_mount", "changed", "origin xyz"),
     ]
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.picture.bodies import Color
+from linkwright.geometry.shapes import IDENTITY, Placement
+from linkwright.picture.bodies import Axes, Color
 from linkwright.picture.camera import VIEWS, View
 from linkwright.picture.rendering import Style, render
 from linkwright.picture.robots import GHOST_COLOR, OUTLINE_COLOR
@@ -156,6 +157,39 @@ def test_outline_is_faint_behind_other_links() -> None:
     hidden, in_front = (count_outline_pixels("front", **{name: OUTLINE_COLOR}) for name in ("other", "base"))
     assert hidden == 0
     assert in_front > 150
+
+
+def test_outlined_bodies_that_touch_have_a_line_between_them() -> None:
+    text = urdf(link("base", BOX, RED, "0 -0.5 0"), link("other", BOX, BLUE, "0 0.5 0"), joint("j", "base", "other"))
+
+    def middle(**outlined: Color) -> list[int]:
+        image = render(make_scene(text, outlined=outlined), VIEWS["front"], (241, 181), Style(transparent=True))
+        return image[90, 120, :3].astype(int).tolist()
+
+    expected = np.rint(np.array(OUTLINE_COLOR) * 255)
+    assert np.abs(middle(base=OUTLINE_COLOR, other=OUTLINE_COLOR) - expected).max() < 6
+    assert np.abs(middle() - expected).max() > 60
+
+
+@pytest.mark.parametrize("color", ["0.05 0.05 0.05 1", "0.95 0.95 0.95 1"])
+def test_tint_of_outlined_bodies_keeps_their_brightness(color: str) -> None:
+    text = urdf(link("base", '<box size="1 1 1"/>', color))
+    plain, tinted = (
+        render(make_scene(text, outlined=outlined), VIEWS["front"], (120, 90))[45, 60, :3].astype(int)
+        for outlined in ({}, {"base": OUTLINE_COLOR})
+    )
+    assert 5 < np.abs(plain - tinted).max() < 60
+
+
+def test_axes_are_drawn_over_bodies() -> None:
+    scene = make_scene(urdf(link("base", '<box size="1 1 1"/>', "0.5 0.5 0.5 1")))
+    with_axes = Scene(scene.bodies, axes=[Axes(Placement(IDENTITY, (0.0, 0.0, 0.0)), 0.4)])
+    camera = camera_for(VIEWS["iso"], (240, 180), scene)
+    plain, shown = (render(each, camera=camera).astype(int) for each in (scene, with_axes))
+    differences = shown[:, :, :3] - plain[:, :, :3]
+    for channel in range(3):
+        others = np.delete(differences, channel, axis=2).max(axis=2)
+        assert (differences[:, :, channel] - others > 40).any()
 
 
 def test_view_from_above_has_no_shadow_on_the_ground() -> None:

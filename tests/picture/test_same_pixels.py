@@ -17,9 +17,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from linkwright.picture.bodies import Axes
 from linkwright.picture.camera import VIEWS
 from linkwright.picture.rendering import Style, render
 from linkwright.picture.robots import GHOST_COLOR, OUTLINE_COLOR
+from linkwright.picture.scene import Scene
 from tests.picture.robots import BLUE, GREEN, RED, joint, link, make_scene, urdf
 from tests.places import REPOSITORY
 
@@ -46,7 +48,8 @@ DIGESTS = {
     "arm iso": "82e2e64309f770b6854b721a813c99b4e446d9246ad875a9abea48697190401c",
     "arm front": "be709f879b9513486e11503349c0331fdba560ca1c2a97e62176dcf2297116c8",
     "arm from below": "77eaefe4f90a3559e702c93abedb09e1b7db27026dc01ec69f3b695bb4f80c87",
-    "arm compared": "c43fe1274af6c800558a97b0c4f3e517f893a4649395d5890872b2797723f1e1",
+    "arm compared": "e577409808bc4cf360406b131cc67446639a08a31bc8aca8a98a591d90b6982a",
+    "arm parts": "66de04a84011596333bdf455ddcd4812cd51cde72aafda53197feae7488ddbad",
     "mbot iso": "56e2b901f5958d37f39426e94db76f428922486f8c4ae0270aa6e067876fd1d2",
     "mbot top": "6ac9d75571f905ee9e058b4b29a7f9d550d803bd4b42806617eb9568421c20d4",
 }
@@ -65,11 +68,16 @@ def compute_digests() -> dict[str, str]:
     mbot = robot_scene(load(MBOT, packages=finder), finder, {})
     old = make_scene(ARM, {"turn": -0.4, "bend": 1.9}, ghost=GHOST_COLOR)
     new = make_scene(ARM, {"turn": 0.7}, outlined={"fore": OUTLINE_COLOR})
+    parts = make_scene(ARM, {"turn": 0.7}, outlined=dict.fromkeys(("upper", "fore"), OUTLINE_COLOR))
+    axes = [Axes(body.frame, 0.3) for body in parts.bodies if body.name == "tip"]
     images = {
         "arm iso": render(arm, VIEWS["iso"], size, Style(transparent=True, labels="links")),
         "arm front": render(arm, VIEWS["front"], size, Style(labels="joints")),
         "arm from below": render(arm, View(-133.3, -21.7), size),
         "arm compared": render(new + old, View(201.5, 33.0), size, Style(grid=True)),
+        "arm parts": render(
+            Scene(parts.bodies, labels=parts.labels, axes=axes), VIEWS["iso"], size, Style(labels="links")
+        ),
         "mbot iso": render(mbot, VIEWS["iso"], size, Style(grid=True)),
         "mbot top": render(mbot, VIEWS["top"], size),
     }

@@ -128,6 +128,59 @@ def test_renamed_link_that_rotated_has_the_angle(package, compare):
     assert breaking(compare(package)) == ["link 'camera' renamed to 'head' (rotated by 90°)"]
 
 
+HEAD = """<link name="mast"/>
+  <joint name="mast_joint" type="fixed"><origin xyz="0 0 1"/><parent link="base_link"/><child link="mast"/></joint>
+  <link name="head"/>
+  <joint name="{joint}" type="{type}"><origin xyz="{xyz}"/><parent link="{at}"/><child link="head"/></joint>
+</robot>"""
+
+
+@pytest.mark.parametrize(
+    ("joint", "xyz", "expected"),
+    [
+        ("head_joint", "0 0 0.25",
+         ["joint 'head_joint': parent base_link -> mast (the same pose)",
+          "joint 'head_joint': origin xyz 0 0 1.25 -> 0 0 0.25 m"]),
+        ("head_mount", "0 0 0.5",
+         ["joint 'head_joint' renamed to 'head_mount'",
+          "joint 'head_mount': parent base_link -> mast (moved by 0.25 m)",
+          "joint 'head_mount': origin xyz 0 0 1.25 -> 0 0 0.5 m"]),
+        ("head_mount", "0 0 1.25",
+         ["joint 'head_joint' renamed to 'head_mount'",
+          "joint 'head_mount': parent base_link -> mast (moved by 1 m)"]),
+    ],
+)  # fmt: skip
+def test_link_below_another_parent_has_the_distance_by_which_it_moved(package, compare, joint, xyz, expected):
+    old = HEAD.format(joint="head_joint", type="fixed", at="base_link", xyz="0 0 1.25")
+    package.commit({PATH: ARM.replace("</robot>", old)})
+    new = HEAD.format(joint=joint, type="fixed", at="mast", xyz=xyz)
+    package.write({PATH: ARM.replace("</robot>", new)})
+    assert sentences(subject(compare(package), PATH)) == expected
+
+
+def test_joints_that_exchange_their_names_have_no_distances(package, compare):
+    joint = """<joint name="{}" type="fixed"><origin xyz="0 0 {}"/><parent link="{}"/><child link="{}"/></joint>"""
+    links = '<link name="pan"/><link name="tilt"/>'
+    old = joint.format("a", 1, "base_link", "pan") + joint.format("b", 2, "pan", "tilt")
+    new = joint.format("b", 1, "base_link", "pan") + joint.format("a", 2, "pan", "tilt")
+    package.commit({PATH: ARM.replace("</robot>", f"{links}{old}</robot>")})
+    package.write({PATH: ARM.replace("</robot>", f"{links}{new}</robot>")})
+    result = sentences(subject(compare(package), PATH))
+    assert "joint 'a': origin xyz 0 0 1 -> 0 0 2 m" in result
+    assert not any("moved by" in sentence or "pose" in sentence for sentence in result)
+
+
+def test_added_joint_that_replaces_another_one_is_told_with_its_place(package, compare):
+    old = HEAD.format(joint="head_joint", type="fixed", at="base_link", xyz="0 0 1.25")
+    package.commit({PATH: ARM.replace("</robot>", old)})
+    new = HEAD.format(joint="head_tilt", type="floating", at="mast", xyz="0 0 0.5")
+    package.write({PATH: ARM.replace("</robot>", new)})
+    assert sentences(subject(compare(package), PATH)) == [
+        "joint 'head_tilt' added: floating, link 'head' at 'mast', xyz 0 0 0.5 m",
+        "joint 'head_joint' removed",
+    ]
+
+
 def test_renamed_moving_joint_that_moved_is_breaking(package, compare):
     text = MACRO.replace('"${name}_joint"', "\"${name + '_axis' if name == 'lower' else name + '_joint'}\"")
     package.write({"arm_description/urdf/segment.xacro": text.replace("length:=0.5", "length:=0.6")})

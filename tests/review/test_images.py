@@ -10,6 +10,7 @@ import io
 import numpy as np
 import pytest
 
+from linkwright.picture import OUTLINE_COLOR
 from linkwright.review import open_versions, review
 from linkwright.review.reports import as_html
 from tests.repositories import ARM, MACRO
@@ -40,12 +41,12 @@ def render_images(package):
     return run
 
 
-def count_orange_pixels(image: bytes) -> int:
+def count_outline_pixels(image: bytes) -> int:
     """Return the number of pixels with the color of outlines."""
     pil = pytest.importorskip("PIL.Image")
     pixels = np.asarray(pil.open(io.BytesIO(image)).convert("RGB")).astype(int)
-    red, green, blue = pixels[..., 0], pixels[..., 1], pixels[..., 2]
-    return int(np.count_nonzero((red > 200) & (green > 60) & (green < 140) & (blue < 60)))
+    differences = np.abs(pixels - np.rint(np.array(OUTLINE_COLOR) * 255.0)).max(axis=-1)
+    return int(np.count_nonzero(differences < 20))
 
 
 def share_of_differing_pixels(first: bytes, second: bytes) -> float:
@@ -57,7 +58,7 @@ def share_of_differing_pixels(first: bytes, second: bytes) -> float:
 def test_moved_link_is_outlined_in_both_versions(render_images):
     result, images = render_images({SEGMENT: MACRO.replace("length:=0.5", "length:=0.6")})
     assert [view.name for view in images] == ["iso", "front", "left", "top"]
-    assert all(count_orange_pixels(image) > 50 for view in images[:3] for image in (view.old, view.new))
+    assert all(count_outline_pixels(image) > 50 for view in images[:3] for image in (view.old, view.new))
     assert images[1].old != images[1].new
     page = as_html(result)
     assert page.count("data:image/png;base64,") == 8
@@ -76,7 +77,69 @@ def test_added_link_is_outlined_only_in_new_version(render_images):
     sensor = """<link name="sensor"><visual><geometry><sphere radius="0.2"/></geometry></visual></link>
   <joint name="sensor_joint" type="fixed"><parent link="lower"/><child link="sensor"/></joint></robot>"""
     _, images = render_images({PATH: ARM.replace("</robot>", sensor)})
-    assert (count_orange_pixels(images[1].old), count_orange_pixels(images[1].new) > 50) == (0, True)
+    assert (count_outline_pixels(images[1].old), count_outline_pixels(images[1].new) > 50) == (0, True)
+
+
+def share_of_axis_pixels(image: bytes) -> float:
+    """Return the share of green and blue pixels, such as those of the axes y and z. The robot is red."""
+    pil = pytest.importorskip("PIL.Image")
+    pixels = np.asarray(pil.open(io.BytesIO(image)).convert("RGB")).astype(int)
+    return float((pixels[..., 1:].max(axis=-1) - pixels[..., 0] > 80).mean())
+
+
+FRAME = """<link name="{name}"/>
+  <joint name="{name}_joint" type="fixed"><origin xyz="0.1 0 {height}"/><parent link="base_link"/><child link="{name}"/>
+  </joint></robot>"""
+
+
+def with_frame(**values: object) -> str:
+    return ARM.replace("</robot>", FRAME.format(**values))
+
+
+def test_added_frame_without_visuals_is_shown_as_axes(render_images):
+    _, images = render_images({PATH: with_frame(name="sensor", height=0.5)})
+    assert [view.name for view in images] == ["iso", "front", "left", "top", "changed parts"]
+    assert [share_of_axis_pixels(view.old) for view in images] == [0.0] * 5
+    assert all(share_of_axis_pixels(view.new) > 0 for view in images)
+
+
+def test_moved_frame_without_visuals_is_shown_in_both_places(package, render_images):
+    package.commit({PATH: with_frame(name="sensor", height=0.5)})
+    _, images = render_images({PATH: with_frame(name="sensor", height=0.7)})
+    assert all(share_of_axis_pixels(image) > 0 for view in images for image in (view.old, view.new))
+    assert images[1].old != images[1].new
+
+
+def test_frame_below_another_parent_in_the_same_place_has_no_images(package, render_images):
+    mast = FRAME.format(name="mast", height=0.5).replace("</robot>", "")
+    package.commit({PATH: ARM.replace("</robot>", mast + FRAME.format(name="sensor", height=0.75))})
+    below = FRAME.format(name="sensor", height=0.25).replace("base_link", "mast").replace("0.1 0 ", "0 0 ")
+    assert render_images({PATH: ARM.replace("</robot>", mast + below)})[1] == []
+
+
+def test_many_added_frames_are_not_shown(render_images):
+    frames = "".join(FRAME.format(name=f"frame_{number}", height=0.1 * number) for number in range(20))
+    assert render_images({PATH: ARM.replace("</robot>", frames.replace("</robot>", "") + "</robot>")})[1] == []
+
+
+def test_small_part_has_an_image_of_its_own_from_a_side_where_it_is_visible(render_images):
+    knob = """<link name="knob"><visual><geometry><sphere radius="0.02"/></geometry></visual></link>
+  <joint name="knob_joint" type="fixed"><origin xyz="-0.06 0 0.3"/><parent link="upper"/><child link="knob"/></joint>
+</robot>"""
+    _, images = render_images({PATH: ARM.replace("</robot>", knob)})
+    assert images[-1].name == "changed parts"
+    assert count_outline_pixels(images[-1].new) > 5 * count_outline_pixels(images[0].new)
+
+
+def test_visual_that_moves_to_another_link_in_the_same_place_is_not_outlined(render_images):
+    moved = MACRO.replace("<visual>", "<!--").replace("</visual>", "-->")
+    shell = """<link name="${name}_shell"><visual>{}</visual></link>
+    <joint name="${name}_shell_joint" type="fixed"><parent link="${name}"/><child link="${name}_shell"/></joint>
+    """
+    visual = MACRO.partition("<visual>")[2].partition("</visual>")[0]
+    text = moved.replace("<link ", shell.replace("{}", visual) + "<link ", 1)
+    _, images = render_images({SEGMENT: text})
+    assert sum(count_outline_pixels(image) for view in images for image in (view.old, view.new)) == 0
 
 
 def test_new_root_link_has_no_images(render_images):
@@ -95,14 +158,14 @@ def test_robots_with_other_root_links_are_in_the_same_place(render_images, packa
   <joint name="ball_joint" type="fixed"><parent link="base_link"/><child link="ball"/><origin xyz="0 0.1 1"/>
   </joint></robot>"""
     _, images = render_images({PATH: (with_foot if is_added else ARM).replace("</robot>", ball)})
-    assert [count_orange_pixels(view.old) for view in images] == [0, 0, 0, 0]
-    for view in images:
+    assert [count_outline_pixels(view.old) for view in images] == [0, 0, 0, 0, 0]
+    for view in images[:4]:
         assert 0.0 < share_of_differing_pixels(view.old, view.new) < 0.05
 
 
 def test_joint_limits_that_exclude_zero_move_link(render_images):
     _, images = render_images({SEGMENT: MACRO.replace('lower="-1.5"', 'lower="0.5"')})
-    assert count_orange_pixels(images[2].old) > 50
+    assert count_outline_pixels(images[2].old) > 50
     assert images[2].old != images[2].new
 
 

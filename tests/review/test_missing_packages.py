@@ -48,6 +48,26 @@ def test_rest_of_robot_is_compared_with_one_note(sensor_package, compare):
     ]
 
 
+@pytest.mark.parametrize("is_added", [True, False])
+def test_values_that_a_call_of_a_missing_macro_may_define_are_not_compared(package, compare, is_added):
+    include = '<xacro:include filename="$(find lidar_description)/urdf/lidar.xacro"/>'
+    joint = '<joint name="mast_joint" type="fixed"><parent link="lower"/><child link="mast"/></joint>'
+    link = f'<link name="mast">{{}}</link>{joint}'
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+    texts = [
+        ARM.replace("</robot>", include + link.format(content) + "</robot>")
+        for content in (inertial, '<xacro:box_inertia mass="1"/>')
+    ]
+    old, new = texts if is_added else reversed(texts)
+    package.commit({PATH: old})
+    package.write({PATH: new, "arm_description/urdf/segment.xacro": MACRO.replace('effort="10"', 'effort="20"')})
+    review_subject = subject(compare(package), PATH)
+    assert ["limit effort" in sentence for sentence in sentences(review_subject)] == [True]
+    assert [str(problem.text) for problem in review_subject.problems] == [
+        "values that need definitions of missing files are not compared: 'mast'"
+    ]
+
+
 def test_note_does_not_call_a_file_missing_that_both_versions_have(package, compare):
     right = '<xacro:include filename="$(find arm_description)/urdf/colors.xacro"/>'
     text = ARM.replace("</robot>", right + "</robot>")

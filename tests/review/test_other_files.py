@@ -364,9 +364,24 @@ def _make_stl(height: float) -> bytes:
 def test_mesh_size_changes_are_reported(repository, compare):
     repository.commit({"a/meshes/m.stl": _make_stl(1.0)})
     repository.write({"a/meshes/m.stl": _make_stl(2.0)})
-    (figure,) = subject(compare(repository), "a/meshes/m.stl").figures
+    result = compare(repository)
+    (figure,) = subject(result, "a/meshes/m.stl").figures
     assert (figure.old, figure.new) == ("1 1 1", "1 1 2")
     assert "highest corner" in figure.name
+    assert as_text(result).splitlines()[-1] == "0 breaking changes, 1 change, 0 new findings, 0 fixed"
+
+
+@pytest.mark.parametrize("uri", ["package://a/meshes/m.stl", "file://$(find a)/meshes/m.stl", "../meshes/m.stl"])
+def test_mesh_with_other_contents_changes_the_robot(repository, compare, uri):
+    robot = f'''<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base"><visual><geometry>
+  <mesh filename="{uri}"/></geometry></visual></link></robot>'''
+    manifest = PACKAGE_XML.replace("arm_description", "a")
+    files = {"a/package.xml": manifest, "a/urdf/r.urdf.xacro": robot, "a/meshes/m.stl": _make_stl(1.0)}
+    repository.commit(files)
+    repository.write({"a/meshes/m.stl": _make_stl(2.0)})
+    robot_subject = subject(compare(repository), "a/urdf/r.urdf.xacro")
+    assert [change.location.file for change in robot_subject.changes] == ["a/meshes/m.stl"]
+    assert [str(figure.name) for figure in robot_subject.figures] == ["size"]
 
 
 def test_mesh_in_git_lfs_is_not_downloaded(repository, compare):

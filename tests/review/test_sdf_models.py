@@ -61,6 +61,14 @@ SCALED = (
 )
 
 
+@pytest.mark.parametrize("replacement", [("<mass>2<", "<mass>3<"), ("<pose>0.1 0 0 0 0 0</pose>", "")])
+def test_other_inertial_of_a_link_with_the_name_of_a_tag_is_not_breaking(repository, compare, replacement):
+    text = MODEL.replace("base", "link").replace("arm", "frame")
+    result = review_model(repository, compare, replacement, text=text)
+    assert len(subject(result, PATH).changes) == 1
+    assert breaking(result) == []
+
+
 @pytest.mark.parametrize(
     ("replacements", "expected"),
     [

@@ -133,6 +133,19 @@ class Body:
 
 
 @dataclass(frozen=True, slots=True)
+class Axes:
+    """The axes of a frame, which are drawn over all bodies.
+
+    Attributes:
+        frame: the frame in the scene.
+        length: the length of each axis in m.
+    """
+
+    frame: Placement
+    length: float
+
+
+@dataclass(frozen=True, slots=True)
 class Anchor:
     """A point of a scene that can be labeled.
 

@@ -10,6 +10,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.picture.bodies import Anchor
 from linkwright.picture.camera import Camera
+from linkwright.picture.lines import draw_lines
 from linkwright.picture.stroke_font import LINE_HEIGHT, make_text_lines
 from linkwright.picture.vectors import Floats
 
@@ -20,8 +21,6 @@ _LINE_RADIUS_PX, _HALO_RADIUS_PX, _DOT_RADIUS_PX = 0.75, 2.6, 2.4
 """Half the width of lines, the radius of the bright area around them, and the radius of the dots."""
 _TEXT_OFFSET_PX, _SPACING_PX, _BORDER_PX = 14.0, 2.0, 4.0
 """The distances from a text to its anchor, to other texts, and to the border of the image."""
-_TEXT_BRIGHTNESS, _HALO_BRIGHTNESS = 0.008, 0.96
-"""The brightness of the text and of the area around it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,11 +60,11 @@ def draw_labels(colors: Floats, alpha: Floats, anchors: Sequence[Anchor], camera
     for index in sorted(range(len(anchors)), key=lambda index: (float(y[index]), index)):
         labels.append(_place_label(anchors[index].text, (float(x[index]), float(y[index])), labels, camera.size, scale))
     for label in labels:
-        _draw_lines(
+        draw_lines(
             colors, alpha, _make_leader_line(label), _LINE_RADIUS_PX * 0.7 * scale, _HALO_RADIUS_PX * 0.5 * scale
         )
     for label in labels:
-        _draw_lines(
+        draw_lines(
             colors,
             alpha,
             np.array([(label.anchor, label.anchor)]),
@@ -73,7 +72,7 @@ def draw_labels(colors: Floats, alpha: Floats, anchors: Sequence[Anchor], camera
             (_DOT_RADIUS_PX + 1.0) * scale,
         )
     for label in labels:
-        _draw_lines(colors, alpha, _make_letter_lines(label), _LINE_RADIUS_PX * scale, _HALO_RADIUS_PX * scale)
+        draw_lines(colors, alpha, _make_letter_lines(label), _LINE_RADIUS_PX * scale, _HALO_RADIUS_PX * scale)
 
 
 def _place_label(
@@ -111,38 +110,3 @@ def _make_letter_lines(label: _PlacedLabel) -> Array:
     lines[:, :, 0] += label.corner[0]
     lines[:, :, 1] = label.corner[1] + label.extent[1] - lines[:, :, 1]
     return lines
-
-
-def _draw_lines(colors: Floats, alpha: Floats, lines: Array, pen: float, halo: float) -> None:
-    """Draw lines, shape (n, 2, 2) in pixels, with a bright area around them."""
-    if not len(lines):
-        return
-    height, width = alpha.shape
-    margin = halo + 1.0
-    left, top = (int(max(0.0, np.floor(lines[:, :, axis].min() - margin))) for axis in (0, 1))
-    right, bottom = (
-        int(min(float(limit), np.ceil(lines[:, :, axis].max() + margin))) for axis, limit in ((0, width), (1, height))
-    )
-    if right <= left or bottom <= top:
-        return
-    distances = _compute_distances(lines, left, top, right, bottom)
-    window = (slice(top, bottom), slice(left, right))
-    for radius, shade, strength in ((halo, _HALO_BRIGHTNESS, 0.8), (pen, _TEXT_BRIGHTNESS, 1.0)):
-        coverage = (np.clip(radius + 0.5 - distances, 0.0, 1.0) * strength).astype(np.float32)
-        colors[window] = colors[window] * (1.0 - coverage)[:, :, None] + (coverage * shade)[:, :, None]
-        alpha[window] = alpha[window] * (1.0 - coverage) + coverage
-
-
-def _compute_distances(lines: Array, left: int, top: int, right: int, bottom: int) -> Array:
-    """Return the distance from each pixel of a window to the nearest line."""
-    x, y = (np.arange(left, right) + 0.5)[None, :], (np.arange(top, bottom) + 0.5)[:, None]
-    nearest = np.full((bottom - top, right - left), 1e12)
-    for (x0, y0), (x1, y1) in lines.tolist():
-        across, down = x1 - x0, y1 - y0
-        squared_length = across * across + down * down
-        ratio = ((x - x0) * across + (y - y0) * down) / squared_length if squared_length > 0 else np.zeros_like(nearest)
-        ratio = np.clip(ratio, 0.0, 1.0)
-        dx, dy = x - (x0 + ratio * across), y - (y0 + ratio * down)
-        np.minimum(nearest, dx * dx + dy * dy, out=nearest)
-    distances: Array = np.sqrt(nearest)
-    return distances

@@ -12,38 +12,71 @@ from linkwright.picture.vectors import Floats
 
 _WIDTH_PIXELS = 2.2
 """The width of an outline in pixels."""
-_TINT = np.float32(0.20)
-"""The strength with which the outline's color tints the visible parts of the body."""
+_BORDER_WIDTH_PIXELS = 1.2
+"""The width of the line between two outlined bodies in pixels."""
+_TINT = np.float32(0.16)
+"""The strength with which the outline's color tints the visible parts of the body, as displayed."""
 _HIDDEN_STRENGTH = np.float32(0.40)
 """The opacity of the line around parts that other bodies hide."""
 
 
-def draw_outline(
-    light: Floats, alpha: Floats, mask: NDArray[np.bool_], is_visible: NDArray[np.bool_], color: Color, per_pixel: int
+def draw_outlines(
+    light: Floats,
+    alpha: Floats,
+    bodies: NDArray[np.int32],
+    is_visible: NDArray[np.bool_],
+    color: Color,
+    per_pixel: int,
 ) -> None:
-    """Draw a line around a body, and tint the area inside.
+    """Draw a line around bodies and between them, and tint the area inside.
 
-    Where other bodies hide it, the line is faint, and nothing is tinted, so that it does not look like a part in front.
+    Where other bodies hide them, the line is faint, and nothing is tinted: they must not look like parts in front.
 
     Args:
         light: the light of samples multiplied by their opacity, shape (rows, width, 3), which is changed.
         alpha: the opacity of samples, shape (rows, width), which is changed.
-        mask: the samples of the body, shape (rows, width).
+        bodies: the number of the nearest outlined body at each sample, or -1, shape (rows, width).
         is_visible: the samples at which nothing hides the body, shape (rows, width).
-        color: the color of the line.
+        color: the color of the lines.
         per_pixel: the samples per pixel along a row.
     """
+    mask = bodies >= 0
     reach = max(1, round(_WIDTH_PIXELS * per_pixel))
     line = _dilate(mask, reach) & ~mask
     visible_line = line & _dilate(is_visible, reach)
     hidden_line = line & ~visible_line
-    paint = np.array(color, np.float32)
-    paint *= paint
-    light[is_visible] = light[is_visible] * (1 - _TINT) + paint * (alpha[is_visible] * _TINT)[:, None]
+    border = _find_borders(bodies, is_visible)
+    if border.any():
+        visible_line |= _dilate(border, round(_BORDER_WIDTH_PIXELS * per_pixel / 2)) & mask
+    displayed = np.array(color, np.float32)
+    paint = displayed * displayed
+    _tint(light, alpha, is_visible, displayed)
     light[visible_line] = paint
     alpha[visible_line] = 1.0
     light[hidden_line] = light[hidden_line] * (1 - _HIDDEN_STRENGTH) + paint * _HIDDEN_STRENGTH
     alpha[hidden_line] = alpha[hidden_line] * (1 - _HIDDEN_STRENGTH) + _HIDDEN_STRENGTH
+
+
+def _tint(light: Floats, alpha: Floats, mask: NDArray[np.bool_], displayed: Floats) -> None:
+    """Mix a color into samples as it is displayed, so that dark and bright surfaces change alike."""
+    opacity = alpha[mask][:, None]
+    shown = np.sqrt(light[mask] / np.maximum(opacity, np.float32(1e-6)))
+    mixed = shown * (1 - _TINT) + displayed * _TINT
+    light[mask] = mixed * mixed * opacity
+
+
+def _find_borders(bodies: NDArray[np.int32], is_visible: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the samples next to a sample of another outlined body, one of them visible."""
+    border = np.zeros_like(is_visible)
+    for first, second in (
+        ((slice(None), slice(None, -1)), (slice(None), slice(1, None))),
+        ((slice(None, -1), slice(None)), (slice(1, None), slice(None))),
+    ):
+        is_border = (bodies[first] != bodies[second]) & (bodies[first] >= 0) & (bodies[second] >= 0)
+        is_border &= is_visible[first] | is_visible[second]
+        border[first] |= is_border
+        border[second] |= is_border
+    return border
 
 
 def _dilate(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:

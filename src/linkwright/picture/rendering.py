@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from linkwright.picture.axes import draw_axes
 from linkwright.picture.camera import VIEWS, Camera, View
 from linkwright.picture.cast_shadows import CastShadows
 from linkwright.picture.edges import compute_edge_strength
@@ -20,8 +21,8 @@ from linkwright.picture.ground import (
 )
 from linkwright.picture.labels import draw_labels
 from linkwright.picture.occlusion import compute_ambient_light, compute_occlusion_reach
-from linkwright.picture.outlines import draw_outline
-from linkwright.picture.rasterizer import NOTHING, DepthBuffer, ScreenTriangles, VisibleTriangles
+from linkwright.picture.outlines import draw_outlines
+from linkwright.picture.rasterizer import MAX_TRIANGLES, NOTHING, DepthBuffer, ScreenTriangles, VisibleTriangles
 from linkwright.picture.scene import Scene, camera_for
 from linkwright.picture.shading import Lights, Shader
 from linkwright.picture.vectors import Floats, Indices, along
@@ -102,6 +103,7 @@ class _Renderer:
         self._shadow = None if not is_on_ground or is_from_above(camera) else compute_shadow_map(mesh, lights.key)
         self._grid = GroundGrid.around(scene.points) if style.grid and is_on_ground else None
         self._anchors = {None: (), "links": scene.labels.links, "joints": scene.labels.joints}[style.labels]
+        self._axes = scene.axes
         numbers = {id(body): index for index, body in enumerate(dict.fromkeys(mesh.bodies))}
         self._body_numbers = np.array([numbers[id(body)] for body in mesh.bodies], np.int32)
 
@@ -109,6 +111,7 @@ class _Renderer:
         rows = max(1, _BAND_SAMPLES // (self._width * self._per_pixel**2))
         bands = [self._render_band(first, min(first + rows, self._height)) for first in range(0, self._height, rows)]
         light, alpha = (np.concatenate(arrays) for arrays in zip(*bands, strict=True))
+        draw_axes(light, alpha, self._axes, self._camera)
         draw_labels(light, alpha, self._anchors, self._camera)
         return _quantize(light, alpha)
 
@@ -150,9 +153,11 @@ class _Renderer:
         for color, triangles in mesh.outlined_triangles().items():
             layer = opaque.make_empty_copy()
             layer.add(self._screen, triangles)
-            mask = (layer.keys != NOTHING).reshape(alpha.shape)
-            is_visible = mask & (layer.keys <= opaque.keys).reshape(alpha.shape)
-            draw_outline(light, alpha, mask, is_visible, color, scale)
+            mask = layer.keys != NOTHING
+            bodies = np.full(len(mask), -1, np.int32)
+            bodies[mask] = self._body_numbers[mesh.parts[layer.keys[mask] & (MAX_TRIANGLES - 1)]]
+            is_visible = mask & (layer.keys <= opaque.keys)
+            draw_outlines(light, alpha, bodies.reshape(alpha.shape), is_visible.reshape(alpha.shape), color, scale)
         return _filter_samples(light, scale), _filter_samples(alpha, scale)
 
     def _peel(self, transparent: Indices, opaque: DepthBuffer) -> list[DepthBuffer]:

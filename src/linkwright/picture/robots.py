@@ -17,8 +17,8 @@ from linkwright.urdf import Link, Material, Mesh, Robot, Visual
 
 GHOST_COLOR: Color = (0.25, 0.45, 0.85)
 """The default color of ghosts."""
-OUTLINE_COLOR: Color = (0.93, 0.36, 0.05)
-"""The default color of outlines."""
+OUTLINE_COLOR: Color = (0.90, 0.08, 0.56)
+"""The default color of outlines: magenta, because robots are often orange, red or yellow."""
 
 
 def robot_scene(

@@ -24,6 +24,7 @@ from linkwright.diagnostics import (
 from linkwright.files.git_repository import SHALLOW_HINT, GitRepository
 from linkwright.review.frames import SharedFrames
 from linkwright.review.robots.descriptions import format_difference
+from linkwright.review.robots.parent_changes import ParentChanges
 from linkwright.urdf import Robot
 
 _SKIPPED_STATUS = 125
@@ -249,13 +250,15 @@ class PartCheck:
             files.close()
 
     def _select_relevant(self, comparison: Comparison, old: Robot) -> Iterator[Difference | Phrase]:
+        frames = SharedFrames(old, self._robot, comparison.links)
+        parents = ParentChanges(comparison, self._robot, frames)
         for difference in comparison.differences:
             is_renamed = difference.kind == "renamed" and difference.old == self._name
             if difference.subject in ("link", "joint") and (difference.name == self._name or is_renamed):
-                yield difference
+                yield parents.sentence(difference) or difference
         old_name = next((before for before, after in comparison.links.items() if after == self._name), None)
         if old_name is not None:
-            motion = SharedFrames(old, self._robot, comparison.links).motion(old_name)
+            motion = frames.motion(old_name)
             if motion is not None and motion[0]:
                 yield phrase("link '{name}': moved by {distance:.4g} m", name=self._name, distance=motion[0])
             elif motion is not None:

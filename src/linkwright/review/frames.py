@@ -62,14 +62,33 @@ class SharedFrames:
         new_name = self._links.get(old_name, "")
         if old_name not in self.old or new_name not in self.new:
             return None
-        before, after = to_matrix(self.old[old_name]), to_matrix(self.new[new_name])
-        if np.allclose(before, after, rtol=0.0, atol=_TOLERANCE):
-            return None
-        cosine = (np.trace(before[:3, :3].T @ after[:3, :3]) - 1.0) / 2.0
-        angle = math.degrees(math.acos(min(1.0, max(-1.0, float(cosine)))))
-        distance = float(np.linalg.norm(before[:3, 3] - after[:3, 3]))
-        motion = distance if distance > _TOLERANCE else 0.0, angle if angle > _MIN_ANGLE_DEG else 0.0
+        motion = _compute_motion(self.old[old_name], self.new[new_name])
         return motion if any(motion) else None
+
+    def motion_seen_from(self, old_observer: str, old_name: str) -> tuple[float, float] | None:
+        """Return the distance in m and the angle in degrees by which a link has moved in the frame of another link.
+
+        If only the old robot has the other link, it is the frame of the reference link. The result is None if the poses
+        cannot be compared.
+        """
+        new_name, observer = self._links.get(old_name, ""), self._links.get(old_observer, "")
+        if old_name not in self.old or new_name not in self.new:
+            return None
+        if old_observer not in self.old or observer not in self.new:
+            return _compute_motion(self.old[old_name], self.new[new_name]) if self.reference else None
+        before = self.old[old_name].seen_from(self.old[old_observer])
+        return _compute_motion(before, self.new[new_name].seen_from(self.new[observer]))
+
+
+def _compute_motion(old: Placement, new: Placement) -> tuple[float, float]:
+    """Return the distance in m and the angle in degrees between two frames; 0 for errors of rounding."""
+    before, after = to_matrix(old), to_matrix(new)
+    if np.allclose(before, after, rtol=0.0, atol=_TOLERANCE):
+        return 0.0, 0.0
+    cosine = (np.trace(before[:3, :3].T @ after[:3, :3]) - 1.0) / 2.0
+    angle = math.degrees(math.acos(min(1.0, max(-1.0, float(cosine)))))
+    distance = float(np.linalg.norm(before[:3, 3] - after[:3, 3]))
+    return distance if distance > _TOLERANCE else 0.0, angle if angle > _MIN_ANGLE_DEG else 0.0
 
 
 def to_matrix(placement: Placement) -> Array:

@@ -244,12 +244,14 @@ class _Comparer:
             ("visual", old.visuals, new.visuals),
             ("collision", old.collisions, new.collisions),
         ):
+            old_uris = {self.old.normalize(uri): uri for uri in _find_mesh_elements(old_shapes)}
             old_meshes, new_meshes = _find_mesh_elements(old_shapes), _find_mesh_elements(new_shapes)
-            for name in (uri for uri in new_meshes if uri in old_meshes):
-                old_file, new_file = self.old.mesh(name), self.new.mesh(name)
-                if old_file and new_file and not has_same_bytes(old_file, new_file):
+            for name, new_element in new_meshes.items():
+                old_name = old_uris.get(self.new.normalize(name))
+                old_file, new_file = None if old_name is None else self.old.mesh(old_name), self.new.mesh(name)
+                if old_name and old_file and new_file and not has_same_bytes(old_file, new_file):
                     values = _compare_contents(old_file, new_file)
-                    locations = location_of(old_meshes[name]), location_of(new_meshes[name])
+                    locations = location_of(old_meshes[old_name]), location_of(new_element)
                     yield Difference("link", new.name, "changed", f"{tag} mesh {name}", *values, *locations)
 
     # --- blocks of facts ------------------------------------------------------------------------------------------

@@ -112,17 +112,14 @@ class RenameSearch:
         self._match_joints()
 
     def _match_joints(self) -> None:
-        """Match the renamed joints of the same type that connect the same two links."""
+        """Match the renamed joints of the same type that attach the same link, also to another parent."""
         matched = set(self._joints.values())
         for joint in self._old.robot.joints.values():
             if joint.name in self._joints or self._old.parents.get(joint.child) is not joint:
                 continue
             other = self._new.parents.get(self._links.get(joint.child, ""))
-            if other is not None and other.name not in matched and self._connects_the_same(joint, other):
+            if other is not None and other.name not in matched and joint.type == other.type:
                 self._joints[joint.name] = other.name
-
-    def _connects_the_same(self, old: Joint, new: Joint) -> bool:
-        return old.type == new.type and self._links.get(old.parent) == new.parent
 
     # --- pairs of links -----------------------------------------------------------------------------------------
 

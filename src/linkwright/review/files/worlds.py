@@ -312,7 +312,10 @@ def _find_lost_name(difference: Difference, path: str) -> tuple[str, str] | None
         tag = old_path.removesuffix(name).split()[-1]
         return (tag, name) if tag in _NAMED_TAGS else None
     match = _NAMED_ELEMENT.fullmatch(old_path)
-    return None if match is None else (match["tag"], match["name"])
+    element = difference.element
+    if match is None or isinstance(difference, InertialDifference):
+        return None  # in the path of an inertial, a link that is named "link" looks like a tag
+    return None if element is not None and element.tag != match["tag"] else (match["tag"], match["name"])
 
 
 def _make_name_reason(tag: str, name: str) -> Phrase:

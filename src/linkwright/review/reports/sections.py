@@ -256,12 +256,16 @@ def _join_values(changes: Sequence[Change]) -> Change:
 
 
 def format_summary(review: Review) -> Phrase:
-    """Return the number of changes and findings in one line."""
+    """Return the number of changes and findings in one line.
+
+    Other quantities of a file without other changes, such as the size of a mesh, count as one change.
+    """
     breaking = total = 0
     for section in _divide_unfolded(review):
         count = 1 + len(section.alike)
         repeated = sum(repeat.change_count for repeat in section.repeated if not repeat.is_shared)
-        total += count * (len(section.changes) + repeated)
+        has_only_figures = bool(section.subject.figures) and not section.subject.changes
+        total += count * (len(section.changes) + repeated + has_only_figures)
         breaking += count * sum(change.effect is Effect.BREAKING for change in section.changes)
     if not (total or review.new_findings or review.fixed_findings):
         if review.file_states:

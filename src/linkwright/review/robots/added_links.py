@@ -1,4 +1,4 @@
-"""Write the lines about added links, with the joints that attach them."""
+"""Write the lines about added links, with the joints that attach them, and about other added joints."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined, phrase, term
-from linkwright.urdf import Box, Geometry, Link, Mesh, Robot, Sphere
+from linkwright.urdf import Box, Geometry, Joint, Link, Mesh, Robot, Sphere
 
 _MAX_LINKS = 4
 """The maximum number of added links that each have a line of their own."""
@@ -31,6 +31,11 @@ class AddedLinks:
             for joint in new.joints.values()
             if joint.child in self._links and ("joint", joint.name) in added
         }
+        self._joints_of_old_links = {
+            joint.name: joint
+            for joint in new.joints.values()
+            if ("joint", joint.name) in added and ("link", joint.child) not in added
+        }
 
     def is_in_line_of_link(self, difference: Difference) -> bool:
         """Return whether the line about an added link already names an added joint."""
@@ -38,7 +43,10 @@ class AddedLinks:
         return is_joint and any(joint.name == difference.name for joint in self._joints.values())
 
     def sentence(self, difference: Difference) -> Phrase | None:
-        """Return the line about an added link with its contents; None for other differences."""
+        """Return the line about an added link or joint with its contents; None for other differences."""
+        if difference.subject == "joint" and difference.kind == "added":
+            joint = self._joints_of_old_links.get(difference.name)
+            return None if joint is None else _format_joint_of_old_link(joint)
         link = self._links.get(difference.name)
         if link is None or (difference.subject, difference.kind) != ("link", "added"):
             return None
@@ -54,11 +62,32 @@ class AddedLinks:
                 type=joint.type,
                 joint=joint.name,
                 parent=joint.parent,
-                xyz=" ".join(f"{number:.6g}" for number in joint.origin.xyz),
+                xyz=_format_position(joint),
             )
-            if any(joint.origin.rpy):
-                angles = " ".join(f"{_to_degrees(angle):g}" for angle in joint.origin.rpy)
-                yield phrase("rpy {angles}°", angles=angles)
+            yield from _format_rotation(joint)
+
+
+def _format_joint_of_old_link(joint: Joint) -> Phrase:
+    """Return the line about an added joint that attaches a link of both versions."""
+    text = phrase("{subject} '{name}' added", subject=term("joint"), name=joint.name)
+    contents = phrase(
+        "{type}, link '{child}' at '{parent}', xyz {xyz} m",
+        type=joint.type,
+        child=joint.child,
+        parent=joint.parent,
+        xyz=_format_position(joint),
+    )
+    return phrase("{change}: {contents}", change=text, contents=joined([contents, *_format_rotation(joint)]))
+
+
+def _format_position(joint: Joint) -> str:
+    return " ".join(f"{number:.6g}" for number in joint.origin.xyz)
+
+
+def _format_rotation(joint: Joint) -> Iterator[Phrase]:
+    if any(joint.origin.rpy):
+        angles = " ".join(f"{_to_degrees(angle):g}" for angle in joint.origin.rpy)
+        yield phrase("rpy {angles}°", angles=angles)
 
 
 def _format_link(link: Link) -> Iterator[Phrase]:

@@ -40,6 +40,7 @@ from linkwright.review.robots.figures import RobotMeasures, compare_figures
 from linkwright.review.robots.joined_values import JoinedDifferences, join_value_differences
 from linkwright.review.robots.omitted_calls import find_lost_call_reason, find_passed_name_reason, find_title
 from linkwright.review.robots.switched_parts import SwitchedParts
+from linkwright.review.robots.parent_changes import ParentChanges
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
@@ -141,6 +142,8 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
     differences = merge_replaced_plugins(comparison.differences)
     added_links = AddedLinks(differences, new)
     switched_parts = SwitchedParts(pair, case)
+    has_known_poses = partial is None or not partial.has_stand_ins
+    parents = ParentChanges(comparison, new, frames if has_known_poses else None)
     for difference in join_value_differences(differences):
         if added_links.is_in_line_of_link(difference):
             continue
@@ -161,9 +164,8 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             )
         )
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
-        text = added_links.sentence(difference) or format_difference(difference)
+        text = added_links.sentence(difference) or parents.sentence(difference) or format_difference(difference)
         if difference.subject == "link" and difference.kind == "renamed":
-            has_known_poses = partial is None or not partial.has_stand_ins
             motion = frames.motion(difference.old or "") if has_known_poses else None
             text = text if motion is None else add_motion(text, *motion)
         yield Change(

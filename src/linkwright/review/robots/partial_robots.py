@@ -31,12 +31,14 @@ class PartialRobot:
         omissions: the missing packages and files, and the parts that need them.
         stand_ins: the names of links and joints that replace missing links and joints to connect the tree.
         unevaluated: the tags and names of links, joints and materials with values that could not be evaluated.
+        incomplete: the tags and names of links and joints that contain a call of a missing macro.
     """
 
     description: Description
     omissions: Omissions
     stand_ins: frozenset[str]
     unevaluated: frozenset[tuple[str, str]]
+    incomplete: frozenset[tuple[str, str]]
 
     @property
     def error(self) -> Diagnostic | None:
@@ -62,7 +64,8 @@ class PartialPair:
     @property
     def unevaluated_names(self) -> list[str]:
         """The names of links, joints and materials with values that are not compared."""
-        return sorted({name for _, name in self.old.unevaluated | self.new.unevaluated})
+        incomplete = self.old.incomplete ^ self.new.incomplete
+        return sorted({name for _, name in self.old.unevaluated | self.new.unevaluated | incomplete})
 
     def has_certain_roots(self) -> bool:
         """Return whether the roots of both robots are not due to missing files."""
@@ -83,7 +86,11 @@ class PartialPair:
             return not _has_more_omissions(self.old, self.new)
         if difference.kind in ("removed", "renamed"):
             return not _has_more_omissions(self.new, self.old)
-        return (difference.subject, difference.name) not in self.old.unevaluated | self.new.unevaluated
+        part = difference.subject, difference.name
+        may_be_in_call = (difference.old is None and part in self.old.incomplete) or (
+            difference.new is None and part in self.new.incomplete
+        )
+        return not may_be_in_call and part not in self.old.unevaluated | self.new.unevaluated
 
 
 def read_partial_robot(model: Model) -> PartialRobot | None:
@@ -99,8 +106,14 @@ def read_partial_robot(model: Model) -> PartialRobot | None:
         return None
     root = expansion.document.root
     unevaluated = frozenset(_drop_unevaluated(root))
+    incomplete = frozenset(
+        (element.tag, element.attributes.get("name", ""))
+        for element in root.elements()
+        if element.tag in ("link", "joint")
+        and any(part.tag.startswith(_XACRO_PREFIX) for part in element.walk())
+    )
     stand_ins = frozenset(_connect_links(root))
-    return PartialRobot(Description.of_expansion(str(model.path), expansion), omissions, stand_ins, unevaluated)
+    return PartialRobot(Description.of_expansion(str(model.path), expansion), omissions, stand_ins, unevaluated, incomplete)
 
 
 def _has_more_omissions(one: PartialRobot, other: PartialRobot) -> bool:

@@ -1,0 +1,210 @@
+"""Find the parts of two robots that images highlight: links that look different or moved, and changed frames."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linkwright.descriptions.comparison import Comparison, Difference
+from linkwright.descriptions.pairs import Model, Pair
+from linkwright.diagnostics import LinkwrightError
+from linkwright.geometry.mesh_content import surface_key
+from linkwright.geometry.shapes import Placement
+from linkwright.picture.link_frames import placement_from_pose
+from linkwright.review.frames import SharedFrames
+from linkwright.urdf import Mesh, Robot, Visual
+
+Array = NDArray[np.float64]
+
+_POSE_PROPERTIES = ("origin xyz", "origin rpy")
+"""The name endings of pose properties. Poses are compared as seen in the image."""
+_ATTACHMENT_PROPERTIES = (*_POSE_PROPERTIES, "parent")
+"""The properties of a joint that move its link."""
+_MOTION_TOLERANCE = 1e-5
+"""The maximum difference, in m and between entries of rotation matrices, of a part that has not moved."""
+_MAX_FRAMES = 8
+"""The maximum number of frames that are shown in an image. More would hide each other."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The highlighted parts of one robot.
+
+    Attributes:
+        links: the links with visuals that look different or moved.
+        frames: the links without visuals that were added, removed or attached elsewhere.
+    """
+
+    links: Collection[str] = ()
+    frames: Collection[str] = ()
+
+
+def find_changed_parts(
+    models: Pair, old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames
+) -> tuple[Parts, Parts]:
+    """Return the highlighted parts of the old and of the new robot."""
+    changed = {*_find_changed_surfaces(models, old, new, comparison), *_find_moved_links(old, new, comparison, frames)}
+    old_links = _select_links_with_visuals(
+        old, {*set(old.links) - set(comparison.links), *(name for name, _ in changed)}
+    )
+    new_links = _select_links_with_visuals(
+        new, {*set(new.links) - set(comparison.links.values()), *(name for _, name in changed)}
+    )
+    old_side = _Side(models.old, old, frames.old, old_links)
+    new_side = _Side(models.new, new, frames.new, new_links)
+    old_frames, new_frames = _find_changed_frames(old, new, comparison, frames)
+    old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
+    return (
+        Parts(_drop_equal_links(old_side, new_side, comparison.links), old_frames),
+        Parts(_drop_equal_links(new_side, old_side, old_names), new_frames),
+    )
+
+
+# --- frames ----------------------------------------------------------------------------------------------------------
+
+
+def _find_changed_frames(
+    old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames
+) -> tuple[list[str], list[str]]:
+    """Return the links without visuals of each robot that its joint places elsewhere; none if there are many."""
+    old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
+    old_found: dict[str, None] = {}
+    new_found: dict[str, None] = {}
+    for difference in comparison.differences:
+        if difference.subject != "joint" or not _places_link(difference):
+            continue
+        if difference.kind == "removed":
+            child = old.joints[difference.name].child
+            if child not in comparison.links:
+                old_found[child] = None
+            continue
+        child = new.joints[difference.name].child
+        old_child = old_names.get(child)
+        if old_child is None:
+            new_found[child] = None
+        elif frames.motion(old_child) is not None:
+            old_found[old_child] = None
+            new_found[child] = None
+    found = (
+        [name for name in names if name in placed and name in robot.links and not robot.links[name].visuals]
+        for robot, names, placed in ((old, old_found, frames.old), (new, new_found, frames.new))
+    )
+    old_frames, new_frames = found
+    return ([], []) if max(len(old_frames), len(new_frames)) > _MAX_FRAMES else (old_frames, new_frames)
+
+
+def _places_link(difference: Difference) -> bool:
+    return difference.kind in ("added", "removed") or difference.property in _ATTACHMENT_PROPERTIES
+
+
+# --- links -----------------------------------------------------------------------------------------------------------
+
+
+def _select_links_with_visuals(robot: Robot, links: Iterable[str]) -> set[str]:
+    """Return the links of a robot that have visuals."""
+    return {name for name in links if name in robot.links and robot.links[name].visuals}
+
+
+def _find_changed_surfaces(models: Pair, old: Robot, new: Robot, comparison: Comparison) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of links whose shapes, colors or textures differ."""
+    old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
+    for difference in comparison.differences:
+        is_visual = difference.subject == "link" and difference.property.startswith("visual")
+        if not is_visual or difference.property.endswith(_POSE_PROPERTIES) or difference.name not in old_names:
+            continue
+        names = old_names[difference.name], difference.name
+        if not difference.property.endswith("geometry") or _make_shape_keys(
+            models.old, old, names[0]
+        ) != _make_shape_keys(models.new, new, names[1]):
+            yield names
+
+
+def _make_shape_keys(model: Model, robot: Robot, link: str) -> list[Hashable]:
+    """Return comparable keys of the visuals of a link.
+
+    Equal meshes under different paths have equal keys.
+    """
+    return [_make_shape_key(model, visual) for visual in robot.links[link].visuals]
+
+
+def _make_shape_key(model: Model, visual: Visual) -> Hashable:
+    shape = visual.geometry
+    if not isinstance(shape, Mesh):
+        return repr(shape)
+    try:
+        key = surface_key(model.resolve(shape.filename))
+    except LinkwrightError:
+        key = None
+    return (key or shape.filename), shape.scale
+
+
+def _find_moved_links(
+    old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames
+) -> Iterator[tuple[str, str]]:
+    """Yield the old and new names of links whose visuals moved relative to the shared link."""
+    for old_name, new_name in comparison.links.items():
+        if old_name in frames.old and new_name in frames.new:
+            old_poses = _compute_visual_poses(old, old_name, frames.old[old_name])
+            new_poses = _compute_visual_poses(new, new_name, frames.new[new_name])
+            if old_poses.shape != new_poses.shape or not _are_equal_poses(old_poses, new_poses):
+                yield old_name, new_name
+
+
+def _compute_visual_poses(robot: Robot, link: str, frame: Placement) -> Array:
+    """Return the rotations and positions of a link's visuals in the frame of the images.
+
+    The shape of the result is (visuals, 4, 3).
+    """
+    poses = [placement_from_pose(visual.origin).inside(frame) for visual in robot.links[link].visuals]
+    return np.array([[*pose.rotation, pose.position] for pose in poses])
+
+
+def _are_equal_poses(old: Array, new: Array) -> bool:
+    return np.allclose(old, new, rtol=0.0, atol=_MOTION_TOLERANCE)
+
+
+@dataclass(frozen=True)
+class _Side:
+    """One robot, the frames of its links, and its links that may look different."""
+
+    model: Model
+    robot: Robot
+    frames: Mapping[str, Placement]
+    links: Collection[str]
+
+    def make_appearances(self, link: str) -> list[tuple[Hashable, Array]]:
+        """Return the shape with its material, and the pose, of each visual of a link."""
+        poses = _compute_visual_poses(self.robot, link, self.frames[link])
+        return [
+            ((_make_shape_key(self.model, visual), _make_material_key(visual)), pose)
+            for visual, pose in zip(self.robot.links[link].visuals, poses, strict=True)
+        ]
+
+
+def _make_material_key(visual: Visual) -> Hashable:
+    material = visual.material
+    return None if material is None else (material.rgba, material.texture)
+
+
+def _drop_equal_links(side: _Side, other: _Side, matches: Mapping[str, str]) -> set[str]:
+    """Return the links of a robot, without those whose visuals only belong to another link of the other robot."""
+    appearances = [
+        appearance for name in other.links if name in other.frames for appearance in other.make_appearances(name)
+    ]
+
+    def is_elsewhere(link: str) -> bool:
+        match = matches.get(link)
+        has_own_visuals = match is not None and bool(other.robot.links[match].visuals)
+        return (
+            not has_own_visuals
+            and link in side.frames
+            and all(
+                any(key == other_key and _are_equal_poses(pose, other_pose) for other_key, other_pose in appearances)
+                for key, pose in side.make_appearances(link)
+            )
+        )
+
+    return {link for link in side.links if not is_elsewhere(link)}
