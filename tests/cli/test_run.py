@@ -76,6 +76,21 @@ def test_entry_point_receives_arguments_and_returns_exit_status(run_node: Run) -
     assert process.returncode == 6
 
 
+def test_package_whose_name_is_not_an_identifier_has_entry_points(run_node: Run, workspace: Path) -> None:
+    package = workspace / "src" / "3d_arm"
+    (package / "3d_arm").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>3d_arm</name></package>")
+    (package / "setup.py").write_text(
+        "from setuptools import setup\n"
+        "setup(name='3d_arm', packages=['3d_arm'], entry_points={'console_scripts': ['wave = 3d_arm.wave:main']})\n"
+    )
+    (package / "3d_arm" / "__init__.py").write_text("")
+    (package / "3d_arm" / "wave.py").write_text(NODE)
+    process = run_node("3d_arm", "wave", "a")
+    out, err = process.communicate(timeout=60)
+    assert (out, process.returncode) == ("['a']\n", 6), err
+
+
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 4), (signal.SIGTERM, 9)])
 def test_executable_receives_signals(run_node: Run, number: int, status: int) -> None:
     process = run_node("arm", "wave", "wait")

@@ -269,6 +269,21 @@ async def test_gz_joint_state_publisher_uses_gz_topic():
         assert recording.last.name == ["left_joint", "right_joint"]
 
 
+@pytest.mark.parametrize("library", ["libgazebo_ros_joint_state_publisher.so", "gz-sim-joint-state-publisher-system"])
+async def test_named_joint_without_axis_is_at_zero(library: str) -> None:
+    names = ("left_joint", "anchor")
+    parameters = "".join(f"<joint_name>{name}</joint_name>" for name in names) + "<topic>joint_states</topic>"
+    anchor = '<joint name="anchor" type="fixed"><parent>world</parent><child>base_link</child></joint>'
+    plugin = f'<plugin name="joints" filename="{library}">{parameters}</plugin>'
+    async with running_server(GROUND, robot(anchor, plugin)) as (server, graph, log):
+        recording = Recording(graph, server.node, "/joint_states")
+        server.advance(SECOND_NS // 10)
+        await graph.settle()
+        assert tuple(recording.last.name) == names
+        assert (recording.last.position[1], recording.last.velocity[1]) == (0.0, 0.0)
+        assert not [record for record in log if record.level is LogLevel.ERROR]
+
+
 async def test_magnetometer_measures_field_in_its_axes():
     sensor = (
         '<sensor name="compass" type="magnetometer"><pose>0 0 0 0 0 1.5707963267948966</pose><topic>mag</topic>'

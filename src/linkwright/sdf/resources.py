@@ -164,6 +164,29 @@ class ResourceFinder:
         folders ``worlds`` in these folders and in packages.
         """
         files: dict[str, Path] = {}
+        for file in self._world_files():
+            files.setdefault(file.stem, file)
+        return files
+
+    def world(self, name: str) -> Path | None:
+        """Return the file of a world, or None if there is none.
+
+        The name is a path, a ``file://`` address or a name on the search path. For a name with a suffix, such as
+        ``empty.sdf``, a file of this name is preferred to one with another suffix.
+        """
+        file = name.removeprefix("file://")
+        path = Path(file if file == name else parse_absolute_path(f"//{file}") or file).expanduser()
+        if path.is_file():
+            return path
+        if "/" in name:
+            return None
+        files = tuple(self._world_files())
+        stem = name.partition(".")[0]
+        matches = (file for known in (name, stem) for file in files if known in (file.name, file.stem))
+        return next(matches, None)
+
+    def _world_files(self) -> Iterator[Path]:
+        """Yield the files of worlds on the search path, in the order of the search."""
         shares = self._packages.packages().values()
         for folder in dict.fromkeys(
             (
@@ -174,20 +197,7 @@ class ResourceFinder:
             with suppress(OSError):
                 for file in sorted(folder.iterdir()):
                     if file.suffix in _WORLD_SUFFIXES and file.is_file() and _contains_world(file):
-                        files.setdefault(file.stem, file)
-        return files
-
-    def world(self, name: str) -> Path | None:
-        """Return the file of a world, or None if there is none.
-
-        The name is a path, a ``file://`` address or a name on the search path.
-        """
-        file = name.removeprefix("file://")
-        path = Path(file if file == name else parse_absolute_path(f"//{file}") or file).expanduser()
-        if path.is_file():
-            return path
-        known_worlds = {} if "/" in name else self.worlds()
-        return known_worlds.get(name) or known_worlds.get(name.partition(".")[0])
+                        yield file
 
     @cached_property
     def _folders(self) -> tuple[Path, ...]:

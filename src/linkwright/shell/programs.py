@@ -15,17 +15,19 @@ from linkwright.files.user_folders import cache_folder
 from linkwright.hosting.rqt_programs import PANEL_PROGRAMS
 from linkwright.messages.distribution import ASSUMED_DISTRIBUTION_VARIABLE
 from linkwright.packages.ament import ROS_VARIABLES
+from linkwright.process.own_programs import PROGRAMS_MODULE
 
 PROGRAMS = {
-    "ros2": ("linkwright.cli.tools", "ros2"),
-    "xacro": ("linkwright.cli.tools", "xacro"),
-    "check_urdf": ("linkwright.cli.tools", "check_urdf"),
-    "urdf_to_graphviz": ("linkwright.cli.tools", "urdf_to_graphviz"),
-    "urdf_to_graphiz": ("linkwright.cli.tools", "urdf_to_graphviz"),
-    "rviz2": ("linkwright.cli.tools", "rviz2"),
-    **{name: ("linkwright.cli.tools", name) for _, name in PANEL_PROGRAMS},
-    "launch_test": ("linkwright.cli.tools", "launch_test"),
-    "colcon": ("linkwright.cli.tools", "colcon"),
+    "ros2": (PROGRAMS_MODULE, "ros2"),
+    "xacro": (PROGRAMS_MODULE, "xacro"),
+    "check_urdf": (PROGRAMS_MODULE, "check_urdf"),
+    "urdf_to_graphviz": (PROGRAMS_MODULE, "urdf_to_graphviz"),
+    "urdf_to_graphiz": (PROGRAMS_MODULE, "urdf_to_graphviz"),
+    "rviz2": (PROGRAMS_MODULE, "rviz2"),
+    **{name: (PROGRAMS_MODULE, name) for name in ("gz", "ign", "gazebo", "gzserver", "gzclient")},
+    **{name: (PROGRAMS_MODULE, name) for _, name in PANEL_PROGRAMS},
+    "launch_test": (PROGRAMS_MODULE, "launch_test"),
+    "colcon": (PROGRAMS_MODULE, "colcon"),
     "linkwright": ("linkwright", None),
 }
 """The Python module of each command, with the first argument of the module or None.

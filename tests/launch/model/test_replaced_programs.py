@@ -14,6 +14,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.launch.model.replaced_programs import find_replacing_node, load_replaced_programs
 from linkwright.loading import extensions
 from linkwright.nodes.node_command import NodeCommand
+from linkwright.shell import write_programs
 
 NOWHERE = {"PATH": "/nowhere"}
 
@@ -54,6 +55,15 @@ def test_installed_program_is_not_replaced(installed_package: None, tmp_path: Pa
     program.touch(mode=0o755)
     assert find_replacing_node(["sea", "sail", "3"], {"PATH": str(tmp_path)}) is None
     assert find_replacing_node([str(program), "sail", "3"], NOWHERE) is None
+
+
+def test_own_program_of_the_name_is_replaced(tmp_path: Path) -> None:
+    write_programs(tmp_path)
+    for program in ("gz", str(tmp_path / "gz")):
+        replacement = find_replacing_node([program, "sim", "-r", "empty.sdf"], {"PATH": str(tmp_path)})
+        assert replacement is not None
+        assert (replacement.package, replacement.parameters["world"]) == ("ros_gz_sim", "empty.sdf")
+    assert find_replacing_node(["gz", "service", "-l"], {"PATH": str(tmp_path)}) is None
 
 
 def test_failed_import_names_the_package(installed_package: None) -> None:

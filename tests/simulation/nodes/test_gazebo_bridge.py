@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DurabilityPolicy, QoSProfile
-from linkwright.messages import get_message
+from linkwright.messages import get_message, get_service
 from linkwright.nodes import NodeOptions
 from linkwright.simulation.nodes.bridge import (
     BridgedTopic,
@@ -49,6 +49,10 @@ def create_publisher(harness, message_type, topic):
         (
             "/a@std_msgs/msg/String@gz.msgs.StringMsg",
             BridgedTopic("/a", "/a", "std_msgs/msg/String", "gz.msgs.StringMsg", "BIDIRECTIONAL"),
+        ),
+        (
+            "/a@std_msgs/msg/String[gz.msgs.StringMsg@/gz/b",
+            BridgedTopic("/a", "/gz/b", "std_msgs/msg/String", "gz.msgs.StringMsg", "GZ_TO_ROS"),
         ),
     ],
 )
@@ -105,12 +109,35 @@ async def test_topics_exist_before_simulation(harness):
     assert [counts[name] for name in ("/scan", "/cmd_vel", "/both")] == [(1, 0), (0, 1), (1, 1)]
 
 
+CONTROL, CONTROL_TYPE = "/world/empty/control", "ros_gz_interfaces/srv/ControlWorld"
+
+
 @pytest.mark.parametrize("types", ["", "@gz.msgs.WorldControl@gz.msgs.Boolean"])
-async def test_service_is_reported_and_topics_are_bridged(harness, logged, types):
-    arguments = [f"/world/empty/control@ros_gz_interfaces/srv/ControlWorld{types}", SCAN]
-    ParameterBridge(harness.graph, NodeOptions(arguments=arguments))
+async def test_service_is_offered_under_remapped_name(harness, logged, types):
+    def handle(request, response):
+        response.success = request.world_control.multi_step == 3
+        return response
+
+    harness.node.create_service(CONTROL_TYPE, CONTROL, handle)
+    options = NodeOptions(arguments=[f"{CONTROL}@{CONTROL_TYPE}{types}", SCAN], remappings=[(CONTROL, "/steps")])
+    ParameterBridge(harness.graph, options)
+    request = get_service(CONTROL_TYPE).Request()
+    request.world_control.multi_step = 3
+    assert (await harness.node.create_client(CONTROL_TYPE, "/steps").call_async(request)).success
     assert "/scan" in harness.graph.topics()
-    assert logged("WARN") == ["/world/empty/control is not bridged: services of gz are not supported"]
+    assert not logged("WARN")
+
+
+async def test_service_of_same_name_is_left_to_simulator(harness, logged):
+    ParameterBridge(harness.graph, NodeOptions(arguments=[f"{CONTROL}@{CONTROL_TYPE}"]))
+    assert CONTROL not in dict(harness.graph.get_service_names_and_types())
+    assert not logged("WARN")
+
+
+async def test_unsupported_service_is_reported_and_topics_are_bridged(harness, logged):
+    ParameterBridge(harness.graph, NodeOptions(arguments=["/gui/camera@std_srvs/srv/Empty", SCAN]))
+    assert "/scan" in harness.graph.topics()
+    assert logged("WARN") == ["/gui/camera is not bridged: services of type std_srvs/srv/Empty are not supported"]
 
 
 async def test_remapped_topic_is_bridged(harness):

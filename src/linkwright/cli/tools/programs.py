@@ -9,6 +9,7 @@ from pathlib import Path
 
 from linkwright.cli.command import main as linkwright
 from linkwright.cli.exit_status import FINDINGS, FINE, run_command
+from linkwright.cli.tools.gz import run_gz, run_simulator
 from linkwright.cli.tools.ros2 import ros2
 from linkwright.diagnostics import LinkwrightError, missing_extra, print_diagnostics
 from linkwright.hosting.rqt_programs import PANEL_PROGRAMS
@@ -104,6 +105,9 @@ TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "check_urdf": _check_urdf,
     "urdf_to_graphviz": _run_urdf_to_graphviz,
     "rviz2": partial(_run, "rviz2", "rviz2"),
+    "gz": partial(run_gz, "gz"),
+    "ign": partial(run_gz, "ign"),
+    **{name: partial(run_simulator, name) for name in ("gazebo", "gzserver", "gzclient")},
     **{executable: partial(_run, package, executable) for package, executable in PANEL_PROGRAMS},
     "rqt_bag": _run_rqt_bag,
     "launch_test": _run_launch_test,

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Mapping, Sequence
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.extension_errors import load_extension
 from linkwright.loading.extensions import EntryPoint, extensions
+from linkwright.process.own_programs import is_own_program
 
 if TYPE_CHECKING:
     from linkwright.nodes.node_command import CommandParser, NodeCommand
@@ -43,8 +44,14 @@ def find_replacing_node(words: Sequence[str], environment: Mapping[str, str]) ->
     if words and PurePath(words[0]).name in _INTERPRETERS:
         words = words[1:]
     entry_point = load_replaced_programs().get(PurePath(words[0]).name) if words else None
-    if entry_point is None or shutil.which(words[0], path=environment.get("PATH")):
+    if entry_point is None or _is_installed(words[0], environment):
         return None
     message = phrase("the node that replaces '{program}' cannot be imported", program=entry_point.name)
     parse_command: CommandParser = load_extension(entry_point, "NODE002", message)
     return parse_command(words)
+
+
+def _is_installed(program: str, environment: Mapping[str, str]) -> bool:
+    """Return whether a program is installed; Linkwright's own program of this name does not count."""
+    path = shutil.which(program, path=environment.get("PATH"))
+    return path is not None and not is_own_program(Path(path))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
+from keyword import iskeyword
 from pathlib import Path
 
 from linkwright.files.user_folders import cache_folder
@@ -70,13 +71,18 @@ def _write_script(package: str, name: str, origin: str, text: str) -> Path:
 
 def _format_entry_point(entry: EntryPoint, roots: Sequence[Path]) -> str:
     function, _, attributes = entry.function.partition(".")
+    is_importable = all(part.isidentifier() and not iskeyword(part) for part in entry.module.split("."))
     return "\n".join(
         [
             *_format_interpreter_lines(),
             "import sys",
+            *([] if is_importable else ["from importlib import import_module"]),
             "",
             f"sys.path[:1] = {[str(root) for root in roots]!r}",
-            f"from {entry.module} import {function}  # noqa: E402",
+            # Python can import a module such as '3d_mapping.node', although a statement cannot name it.
+            f"from {entry.module} import {function}  # noqa: E402"
+            if is_importable
+            else f"{function} = import_module({entry.module!r}).{function}",
             "",
             'if __name__ == "__main__":',
             f"    sys.exit({function}{'.' if attributes else ''}{attributes}())",

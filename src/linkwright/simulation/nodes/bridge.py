@@ -26,8 +26,10 @@ from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.standstill import VELOCITIES, send_stop
 from linkwright.perception.nodes.compressed import compress_image
+from linkwright.simulation.gz_services import WORLD_SERVICES
 from linkwright.simulation.nodes.conversions import DEFAULT_ROS_TYPES, find_conversion
 from linkwright.simulation.plugins.bridged_topics import hidden_gz_topic
+from linkwright.simulation.plugins.node import to_ros_name
 
 _DIRECTIONS = {"[": "GZ_TO_ROS", "]": "ROS_TO_GZ", "@": "BIDIRECTIONAL"}
 _IMAGE_TYPES = ("sensor_msgs/msg/Image", "gz.msgs.Image")
@@ -202,20 +204,38 @@ class ParameterBridge(_Bridge):
             path = str(self._node.declare_parameter("config_file", "").value)
             self._is_lazy = bool(self._node.declare_parameter("lazy", False).value)
             self._expands_gz_names = bool(self._node.declare_parameter("expand_gz_topic_names", False).value)
-            topics = [parse_bridge_argument(argument) for argument in arguments if not self._is_service(argument)]
+            services = [argument for argument in arguments if _is_service(argument)]
+            topics = [parse_bridge_argument(argument) for argument in arguments if argument not in services]
             topics += read_bridge_file(path) if path else []
             self._connect(graph, topics)
+            for service in services:
+                self._bridge_service(service)
 
-    def _is_service(self, argument: str) -> bool:
-        """Return whether an argument describes a service, and log a warning if it does.
+    def _bridge_service(self, argument: str) -> None:
+        """Offer a service of gz under its name in ROS, if this is another name.
 
-        The form of such an argument is ``SERVICE@ROS_TYPE``. Services are not bridged.
+        The form of the argument is ``SERVICE@ROS_TYPE``, optionally with the types of gz for request and response.
         """
         name, _, types = argument.partition("@")
-        is_service = "/srv/" in types.partition("@")[0]
-        if is_service:
-            self._node.get_logger().warning(f"{name} is not bridged: services of gz are not supported")
-        return is_service
+        service_type = types.partition("@")[0]
+        if service_type not in {service.ros_type for service in WORLD_SERVICES}:
+            self._node.get_logger().warning(f"{name} is not bridged: services of type {service_type} are not supported")
+            return
+        gz_name = to_ros_name("/" + name.lstrip("/"))
+        ros_name = self._node.resolve_service_name(name)
+        if ros_name == gz_name:
+            return  # The simulator offers it itself.
+        client = self._gz_node.create_client(service_type, gz_name)
+
+        def forward(request: Any, reply: Callable[[Any], None]) -> None:
+            client.call_async(request).add_done_callback(lambda future: reply(future.result()))
+
+        self._node.create_service(service_type, ros_name, forward, replying=True)
+
+
+def _is_service(argument: str) -> bool:
+    """Return whether an argument describes a service instead of a topic."""
+    return "/srv/" in argument.partition("@")[2].partition("@")[0]
 
 
 class StaticBridge(_Bridge):
@@ -271,9 +291,10 @@ class ImageBridge(_Bridge):
 
 
 def parse_bridge_argument(argument: str) -> BridgedTopic:
-    """Parse an argument ``TOPIC@ROS_TYPE@GZ_TYPE``.
+    """Parse an argument ``TOPIC@ROS_TYPE@GZ_TYPE`` or ``TOPIC@ROS_TYPE@GZ_TYPE@GZ_TOPIC``.
 
-    ``[`` in place of the second ``@`` bridges only from gz to ROS, and ``]`` only from ROS to gz.
+    ``[`` in place of the second ``@`` bridges only from gz to ROS, and ``]`` only from ROS to gz. The topic has the
+    same name on both sides if the argument does not name the one of gz.
 
     Raises:
         LinkwrightError: NODE820, the argument has another form.
@@ -292,7 +313,9 @@ def parse_bridge_argument(argument: str) -> BridgedTopic:
                 hint=hint,
             )
         )
-    return BridgedTopic(name, name, _complete_ros_type(ros_type), _update_gz_type(gz_type), _DIRECTIONS[direction_mark])
+    gz_type, _, gz_topic = gz_type.partition("@")
+    direction = _DIRECTIONS[direction_mark]
+    return BridgedTopic(name, gz_topic or name, _complete_ros_type(ros_type), _update_gz_type(gz_type), direction)
 
 
 def read_bridge_file(path: str) -> list[BridgedTopic]:

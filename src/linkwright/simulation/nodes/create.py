@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import Graph, Parameter
 from linkwright.nodes.options import NodeOptions, create_node, handle_start_errors
 from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_description
+from linkwright.simulation.plugins.entities import choose_free_name
 
 _TEXT_OPTIONS = ("world", "file", "topic", "string", "param", "name")
 _NUMBER_OPTIONS = ("x", "y", "z", "R", "P", "Y")
@@ -72,23 +74,10 @@ class Create(EntitySpawner):
             return
 
         def name_and_spawn(names: list[str]) -> None:
-            self._entity = _choose_free_name(self._entity, names)
+            self._entity = replace(self._entity, name=choose_free_name(self._entity.name, names))
             super(Create, self)._spawn(description)
 
         self._request_names(name_and_spawn)
-
-
-def _choose_free_name(entity: Entity, names: Sequence[str]) -> Entity:
-    """Return the entity with a name that is not in `names`.
-
-    A number is appended to the name if necessary.
-
-    As in gz, the numbers begin with 0: ``box``, ``box_0``, ``box_1``.
-    """
-    name, number = entity.name, 0
-    while name in names:
-        name, number = f"{entity.name}_{number}", number + 1
-    return Entity(name, entity.xyz, entity.rpy, entity.namespace, entity.reference_frame)
 
 
 def _read_options(arguments: Sequence[str]) -> Iterator[tuple[str, str]]:

@@ -6,17 +6,15 @@ import asyncio
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
-from linkwright.files.input_files import read_text
 from linkwright.geometry.single import Vector3, quaternion_from_rpy
 from linkwright.graph import DESCRIPTION_QOS, Clock, ClockType, Node
 from linkwright.messages import String, get_service
 from linkwright.nodes.options import SingleNode
 from linkwright.packages import current_finder
-from linkwright.sdf.resources import Missing, ResourceFinder
+from linkwright.sdf.resources import ResourceFinder
+from linkwright.simulation.description_files import read_model_file
 
 SPAWN_SERVICE = "gazebo_msgs/srv/SpawnEntity"
 _LIST_SERVICE = "gazebo_msgs/srv/GetModelList"
@@ -189,15 +187,7 @@ def read_description(address: str, environment: Mapping[str, str]) -> str:
     Raises:
         LinkwrightError: NODE811, there is no such description, or it cannot be read.
     """
-    path = ResourceFinder(current_finder(), environment).model(address, Path.cwd())
-    if isinstance(path, Missing):
-        raise LinkwrightError(Diagnostic("NODE811", path.reason, hint=path.hint))
-    try:
-        return read_text(path)
-    except (OSError, UnicodeDecodeError) as error:
-        reason = foreign(getattr(error, "strerror", None) or error)
-        message = phrase("cannot read '{path}': {reason}", path=path, reason=reason)
-        raise LinkwrightError(Diagnostic("NODE811", message)) from error
+    return read_model_file(address, ResourceFinder(current_finder(), environment))
 
 
 def read_stdin() -> str:

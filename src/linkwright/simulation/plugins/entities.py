@@ -5,7 +5,7 @@ Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_state``) and its messages.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from functools import partial
 from typing import Any
 
@@ -207,3 +207,14 @@ def transform_from_message(message: Any) -> Transform:
 def vector_components(vector: Any) -> tuple[float, float, float]:
     """Return the x, y and z of a point or vector message as a tuple."""
     return vector.x, vector.y, vector.z
+
+
+def choose_free_name(name: str, names: Sequence[str]) -> str:
+    """Return the name, with a number appended if it is in `names`.
+
+    As in gz, the numbers begin with 0: ``box``, ``box_0``, ``box_1``.
+    """
+    free_name, number = name, 0
+    while free_name in names:
+        free_name, number = f"{name}_{number}", number + 1
+    return free_name

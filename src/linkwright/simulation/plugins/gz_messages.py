@@ -18,7 +18,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.plugins.protobuf_text import Fields, TextFormatError, message_from_fields, parse_fields
 from linkwright.xmltree import Element
 
-_ROS_TYPES = {
+ROS_TYPES = {
     "Actuators": "actuator_msgs/msg/Actuators",
     "Altimeter": "ros_gz_interfaces/msg/Altimeter",
     "BatteryState": "sensor_msgs/msg/BatteryState",
@@ -67,7 +67,7 @@ def find_ros_type(plugin: SimulatedPlugin[Any], element: Element) -> str:
         LinkwrightError: SIM160, the type has no ROS type.
     """
     name = element.attributes.get("type", "")
-    ros_type = _ROS_TYPES.get(_short_name(name))
+    ros_type = ROS_TYPES.get(_short_name(name))
     if ros_type is None:
         raise plugin.parameter_error(
             phrase("plugin '{plugin}': the type '{type}' has no ROS type", plugin=plugin.context.name, type=name)
@@ -142,7 +142,7 @@ def _create_parameters(fields: Fields) -> Message:
         ]
     except (AttributeError, KeyError, TypeError, ValueError) as error:
         raise TextFormatError(str(fields)) from error
-    message: Message = get_message(_ROS_TYPES[_PARAMETERS_TYPE])(params=parameters)
+    message: Message = get_message(ROS_TYPES[_PARAMETERS_TYPE])(params=parameters)
     return message
 
 

@@ -19,6 +19,9 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 P = TypeVar("P")
 
+_FIXED = (0.0, 0.0)
+"""The position and velocity of a joint without an axis."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ClassicParameters:
@@ -38,12 +41,17 @@ class GzParameters:
 
 
 class _JointStates(SimulatedPlugin[P], Generic[P]):
-    """A plugin that publishes the positions and velocities of joints with one axis."""
+    """A plugin that publishes the positions and velocities of joints.
+
+    A joint without an axis, such as one that fixes the robot to the world, is at 0, as in Gazebo.
+    """
 
     def _publish_joints(
         self, names: list[str], joints: list[str], rate: float, topic: str, conventional_topic: str = ""
     ) -> None:
-        self._names, self._joints = names, joints
+        scene_joints = self.simulation.scene.joints
+        self._names = names
+        self._joints = [joint if scene_joints[joint].axes else None for joint in joints]
         self._output = self.node.publisher(
             "sensor_msgs/msg/JointState", topic, 1000, conventional_topic=conventional_topic
         )
@@ -52,7 +60,7 @@ class _JointStates(SimulatedPlugin[P], Generic[P]):
     def _publish(self) -> None:
         if not self._output.is_wanted:
             return
-        states = [self.simulation.joint_state(joint) for joint in self._joints]
+        states = [_FIXED if joint is None else self.simulation.joint_state(joint) for joint in self._joints]
         message = JointState(header=Header(stamp=self.stamp()))
         message.name = list(self._names)
         message.position = [position for position, _ in states]

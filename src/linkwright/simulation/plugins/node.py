@@ -113,7 +113,7 @@ class PluginNode(SteppedNode):
         self._unregister_functions.append(partial(bridged.remove_callback, topic, move_to_hidden_topic))
 
     def _topic_names(self, topic: str, conventional_topic: str) -> list[str]:
-        topic = _BEFORE_LEADING_DIGIT.sub("_", _INVALID_CHARACTERS.sub("_", topic))
+        topic = to_ros_name(topic)
         names = [topic]
         used = self._used_conventional_topics
         if conventional_topic and used is not None and conventional_topic not in {topic, *used}:
@@ -126,3 +126,8 @@ class PluginNode(SteppedNode):
         profile = QoSProfile.of(qos)
         override = self._qos.get((self._node.handle.resolve_topic_name(topic), side))
         return profile if override is None else override_profile(profile, override)
+
+
+def to_ros_name(name: str) -> str:
+    """Return the name in ROS of a topic or service of gz: characters that only gz allows are replaced."""
+    return _BEFORE_LEADING_DIGIT.sub("_", _INVALID_CHARACTERS.sub("_", name))

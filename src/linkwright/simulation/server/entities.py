@@ -29,7 +29,7 @@ class Entity:
     Attributes:
         model: the model, with its includes resolved; links of a URDF robot are not lumped.
         diagnostics: the findings on the description.
-        missing_shape_errors: the errors that explain why shapes of the model are missing.
+        missing_shape_errors: the errors about elements of SDF in ``<geometry>`` that are not shapes.
     """
 
     model: Model
@@ -56,7 +56,7 @@ def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
             raise LinkwrightError(*_select_errors(reading.diagnostics))
         converted = model_from_robot(reading.robot, lump_fixed_joints=False)
         shape_errors = _select_errors(reading.diagnostics) if _lacks_shapes(reading.robot) else ()
-        return Entity(converted.model, converted.diagnostics, tuple(shape_errors))
+        return Entity(converted.model, (*shape_errors, *converted.diagnostics))
     sdf = read(document)
     if sdf.sdf is None:
         raise LinkwrightError(*_select_errors(sdf.diagnostics))
@@ -78,7 +78,7 @@ def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
 def _lacks_shapes(robot: Robot) -> bool:
     """Return whether a visual or collision of a robot could not be read.
 
-    urdfdom rejects such a robot.
+    Gazebo spawns such a robot without it, because urdfdom drops it.
     """
     return any(
         len(link.visuals) + len(link.collisions)

@@ -1,4 +1,4 @@
-"""The services of a simulator, as in gazebo_ros and simulation_interfaces.
+"""The services of a simulator, as in gazebo_ros and simulation_interfaces; those of gz are in `world_services`.
 
 Source: gazebo_ros_pkgs for ROS 2 (``gazebo_ros_init``, ``gazebo_ros_factory``, ``gazebo_ros_state``,
 ``gazebo_ros_force_system``) and their messages.
@@ -27,6 +27,7 @@ from linkwright.simulation.plugins.entities import (
 from linkwright.simulation.server.entities import Entity, read_entity
 from linkwright.simulation.server.loading import WorldLoader
 from linkwright.simulation.server.server import SimulationServer
+from linkwright.simulation.server.world_services import WorldServices
 from linkwright.simulation.server.worlds import LoadedWorld
 from linkwright.simulation.server.wrenches import Wrench, Wrenches
 
@@ -101,6 +102,7 @@ class Services:
             ("simulation_interfaces/srv/LoadWorld", "/load_world", self.worlds.handle_request),
         ):
             node.service(service_type, name, callback)
+        self._world_services = WorldServices(server, runner, node, self._spawn_as_gz)
 
     # --- models -------------------------------------------------------------------------------------------------------
 
@@ -121,10 +123,20 @@ class Services:
         """
         return self._add_model(read_entity(text, self._server.simulation.finder, self._library), name, pose, namespace)
 
-    def _add_model(self, entity: Entity, name: str, pose: Transform, namespace: str) -> str:
-        world_pose = compose(pose, transform_of(entity.model.pose.pose))
+    def _add_model(
+        self, entity: Entity, name: str, pose: Transform | None, namespace: str, *, is_relative: bool = True
+    ) -> str:
+        """Add a model and return its name.
+
+        The pose is relative to the model's own pose, or replaces it; None means the model's own pose.
+        """
+        own_pose = transform_of(entity.model.pose.pose)
+        if pose is None:
+            pose = own_pose
+        elif is_relative:
+            pose = compose(pose, own_pose)
         name = name or entity.model.name
-        self._server.spawn(entity.model, name, world_pose, namespace)
+        self._server.spawn(entity.model, name, pose, namespace)
         self._server.report(entity.diagnostics, name)
         return name
 
@@ -158,15 +170,24 @@ class Services:
             pose = compose(
                 self._entities.frame_pose(request.reference_frame), transform_from_message(request.initial_pose)
             )
-            entity = read_entity(request.xml, self._server.simulation.finder, self._library)
-            if entity.missing_shape_errors:
-                raise LinkwrightError(*entity.missing_shape_errors)
-            name = self._add_model(entity, request.name, pose, request.robot_namespace)
-            for function in self.on_spawned:
-                function(name, request.xml)
+            self._spawn_description(request.xml, request.name, pose, request.robot_namespace)
             return f"SpawnEntity: Successfully spawned entity [{request.name}]"
 
         return fill_response(response, spawn)
+
+    def _spawn_as_gz(self, text: str, name: str, pose: Transform | None) -> None:
+        """Add a model at a pose that replaces its own, as gz does, or at its own pose."""
+        self._spawn_description(text, name, pose, "", is_relative=False)
+
+    def _spawn_description(
+        self, text: str, name: str, pose: Transform | None, namespace: str, *, is_relative: bool = True
+    ) -> None:
+        entity = read_entity(text, self._server.simulation.finder, self._library)
+        if entity.missing_shape_errors:
+            raise LinkwrightError(*entity.missing_shape_errors)
+        name = self._add_model(entity, name, pose, namespace, is_relative=is_relative)
+        for function in self.on_spawned:
+            function(name, text)
 
     def _delete(self, request: Any, response: Any) -> Any:
         def delete() -> str:

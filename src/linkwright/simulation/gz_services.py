@@ -1,0 +1,31 @@
+"""The services of gz that a simulator offers below ``/world/NAME``.
+
+Source: gz-sim (names, types of gz) and ros_gz_bridge (types of ROS).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class GzService(NamedTuple):
+    """A service of gz.
+
+    Attributes:
+        name: the last part of its name.
+        ros_type: the type of the service in ROS.
+        gz_type: the type of the request in gz. The response is a ``gz.msgs.Boolean``.
+    """
+
+    name: str
+    ros_type: str
+    gz_type: str
+
+
+CONTROL = GzService("control", "ros_gz_interfaces/srv/ControlWorld", "gz.msgs.WorldControl")
+CREATE = GzService("create", "ros_gz_interfaces/srv/SpawnEntity", "gz.msgs.EntityFactory")
+REMOVE = GzService("remove", "ros_gz_interfaces/srv/DeleteEntity", "gz.msgs.Entity")
+SET_POSE = GzService("set_pose", "ros_gz_interfaces/srv/SetEntityPose", "gz.msgs.Pose")
+
+WORLD_SERVICES = (CONTROL, CREATE, REMOVE, SET_POSE)
+"""The services of a world."""
