@@ -66,7 +66,7 @@ _GROUPS = {
         "linear_battery_ros_plugin",
     ),
     _BELT_ALTERNATIVE: ("ROSConveyorBeltPlugin", "ros2_conveyorbelt_plugin"),
-    _BREAKING_ALTERNATIVE: ("BreakableJointPlugin", "breakable_joint"),
+    _BREAKING_ALTERNATIVE: ("breakable_joint",),
     _CAMERA_ALTERNATIVE: (
         *("hsrb_gazebo_ros_camera", "recorder_camera_plugin"),
         *("GstCameraPlugin", "RealSensePlugin", "gazebo_geotagged_images_plugin", "gazebo_gst_camera_plugin"),
