@@ -86,7 +86,6 @@ def test_alternatives_are_for_what_is_not_simulated():
     ("library", "text"),
     [
         ("libgazebo_ros_create_cliff_sensor.so", "sensor_msgs/Range"),
-        ("librotors_gazebo_mavlink_interface.so", "a ROS node in place of the autopilot"),
         ("libhector_servo_plugin.so", "gz-sim-joint-position-controller-system"),
         ("libROSConveyorBeltPlugin.so", "gz-sim-track-controller-system"),
     ],

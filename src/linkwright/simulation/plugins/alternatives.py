@@ -6,10 +6,6 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.sdf.plugins import library_name
 
 _WIDE_CAMERA_ALTERNATIVE = phrase("a camera with a wide <horizontal_fov>")
-_AUTOPILOT_ALTERNATIVE = phrase(
-    "a ROS node in place of the autopilot: commands on the topics of the motors and joints, "
-    "such as /MODEL/gazebo/command/motor_speed, and the topics of the sensors"
-)
 _TASK_ALTERNATIVE = phrase(
     "`ros2 topic pub --once /vrx/release std_msgs/msg/Empty` to release the boat, and a ROS node that computes "
     "the score"
@@ -55,10 +51,6 @@ _ROTOR_SPEEDS_ALTERNATIVE = phrase("libgazebo_multirotor_base_plugin.so, which p
 _LOGICAL_CAMERA_ALTERNATIVE = phrase("a <sensor> of type logical_camera")
 _GROUPS = {
     _ATTACHING_ALTERNATIVE: ("MRSGazeboLinkAttacherPlugin",),
-    _AUTOPILOT_ALTERNATIVE: (
-        "gazebo_mavlink_interface",
-        "rotors_gazebo_mavlink_interface",
-    ),
     _BATTERY_ALTERNATIVE: (
         *("gazebo_ros_power_monitor", "LinearBatteryConsumerPlugin", "LinearBatteryPlugin"),
         "battery_consumer_ros_plugin",
