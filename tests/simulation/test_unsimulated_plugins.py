@@ -68,7 +68,7 @@ async def test_plugin_of_a_visual_is_told_of():
         assert log[0].text == "plugins and sensors that are not simulated: libMy.so"
 
 
-@pytest.mark.parametrize("kind", ["sonar", "wireless_transmitter", "thermal", "ray"])
+@pytest.mark.parametrize("kind", ["sonar", "wireless_transmitter", "wide_angle_camera", "ray"])
 async def test_sensor_without_a_substitute_is_told_of_with_what_to_use_instead(kind):
     sensor = f'<sensor name="s" type="{kind}"/>'
     model = f'<model name="m"><link name="l">{sensor}</link></model>'

@@ -12,7 +12,9 @@ _TASK_ALTERNATIVE = phrase(
 )
 _CAMERA_ALTERNATIVE = phrase("libgazebo_ros_camera.so in the <sensor>")
 _LIDAR_ALTERNATIVE = phrase("libgazebo_ros_ray_sensor.so in a <sensor> of type ray")
-_THERMAL_ALTERNATIVE = phrase("a <sensor> of type segmentation_camera, with a label for what is warm")
+_THERMAL_ALTERNATIVE = phrase(
+    "a <sensor> of type thermal_camera, with gz-sim-thermal-system in the visuals that are warm"
+)
 _RADIO_ALTERNATIVE = phrase(
     "libgazebo_ros_p3d.so for the true poses, and a ROS node that computes the signal from the distance"
 )
@@ -139,7 +141,6 @@ _GROUPS = {
         *("gymkhana_scoring_plugin", "wildlife_scoring_plugin"),
     ),
     _THERMAL_ALTERNATIVE: (
-        *("thermal", "thermal_camera", "gz-sim-thermal-system", "gz-sim-thermal-sensor-system"),
         *("MRSGazeboThermalCameraPlugin", "gazebo_ros_thermal_camera", "gazebo_ros_thermal_camera_pink"),
     ),
     _TRACKS_ALTERNATIVE: ("SimpleTrackedVehiclePlugin", "TrackedVehiclePlugin", "WheelTrackedVehiclePlugin"),
