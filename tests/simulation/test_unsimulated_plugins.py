@@ -86,6 +86,9 @@ def test_alternatives_are_for_what_is_not_simulated():
     ("library", "text"),
     [
         ("libgazebo_ros_create_cliff_sensor.so", "sensor_msgs/Range"),
+        ("libgazebo_ros_video.so", "the display Image of the page"),
+        ("gz-sim-dvl-system", "libuuv_gazebo_ros_dvl_plugin.so"),
+        ("gz-waves1-hydrodynamics-system", "libPolyhedraBuoyancyDrag.so"),
         ("libhector_servo_plugin.so", "gz-sim-joint-position-controller-system"),
         ("libROSConveyorBeltPlugin.so", "gz-sim-track-controller-system"),
     ],

@@ -3,8 +3,8 @@
 The plugin ``gz-sim-thermal-system`` gives a visual a ``<temperature>``. Everything else has the temperature of the
 world's ``<atmosphere>``. A pixel is the temperature divided by the resolution.
 
-Source: gz-sim and gz-sensors (parameters, defaults, formats, topics). A ``<heat_signature>`` is not read: its visual has
-the middle of its temperatures. The temperature of the surroundings does not vary with their colors.
+Source: gz-sim and gz-sensors (parameters, defaults, formats, topics). A ``<heat_signature>`` is not read: its visual
+has the middle of its temperatures. The temperature of the surroundings does not vary with their colors.
 """
 
 from __future__ import annotations
