@@ -164,7 +164,7 @@ def test_stepped_simulation_raises_plugin_error(tmp_path):
 
 # --- subscriptions that come and go at any moment ---------------------------------------------------------------------
 
-_PICTURES = ("camera", "depth", "rgbd", "segmentation", "boundingbox")
+_PICTURES = ("camera", "depth", "rgbd", "segmentation", "boundingbox", "thermal")
 CLASSIC = {
     "classic ray": sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so"), "a"),
     "classic block laser": sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_block_laser.so"), "a"),

@@ -68,7 +68,7 @@ async def test_plugin_of_a_visual_is_told_of():
         assert log[0].text == "plugins and sensors that are not simulated: libMy.so"
 
 
-@pytest.mark.parametrize("kind", ["sonar", "wireless_transmitter", "thermal", "ray"])
+@pytest.mark.parametrize("kind", ["sonar", "wireless_transmitter", "wide_angle_camera", "ray"])
 async def test_sensor_without_a_substitute_is_told_of_with_what_to_use_instead(kind):
     sensor = f'<sensor name="s" type="{kind}"/>'
     model = f'<model name="m"><link name="l">{sensor}</link></model>'
@@ -86,7 +86,9 @@ def test_alternatives_are_for_what_is_not_simulated():
     ("library", "text"),
     [
         ("libgazebo_ros_create_cliff_sensor.so", "sensor_msgs/Range"),
-        ("librotors_gazebo_mavlink_interface.so", "a ROS node in place of the autopilot"),
+        ("libgazebo_ros_video.so", "the display Image of the page"),
+        ("gz-sim-dvl-system", "libuuv_gazebo_ros_dvl_plugin.so"),
+        ("gz-waves1-hydrodynamics-system", "libPolyhedraBuoyancyDrag.so"),
         ("libhector_servo_plugin.so", "gz-sim-joint-position-controller-system"),
         ("libROSConveyorBeltPlugin.so", "gz-sim-track-controller-system"),
     ],

@@ -39,7 +39,7 @@ from linkwright.xmltree.tokens import Token
 _SENSOR_TYPES = (
     *("camera", "depth_camera", "rgbd_camera", "gpu_lidar", "lidar", "imu", "contact", "navsat", "force_torque"),
     *("altimeter", "magnetometer", "air_pressure", "air_speed", "logical_camera"),
-    *("segmentation_camera", "boundingbox_camera"),
+    *("segmentation_camera", "boundingbox_camera", "thermal_camera"),
     *("ray", "gpu_ray", "gps", "sonar", "depth", "multicamera", "wireless_receiver", "wireless_transmitter"),
 )
 _CHOICES: dict[tuple[str, str], tuple[str, ...]] = {

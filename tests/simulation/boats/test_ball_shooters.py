@@ -47,6 +47,18 @@ async def test_ball_leaves_the_launcher_along_its_x_axis():
         assert not log, [record.text for record in log]
 
 
+async def test_classic_shooter_is_fired_by_an_empty_message():
+    classic = shooter().replace("libBallShooterPlugin.so", "libball_shooter_plugin.so")
+    async with weightless_server(classic, BALL, step=STEP_S) as (server, graph, log):
+        node = graph.create_node("gunner")
+        node.create_publisher("std_msgs/msg/Empty", "/fire", 10).publish(get_message("std_msgs/msg/Empty")())
+        await graph.settle()
+        server.advance(SECOND_NS // 10)
+        assert server.simulation.link_velocity("ball::link")[0] == pytest.approx((0.0, SPEED, 0.0), rel=0.02, abs=0.02)
+        assert not log, [record.text for record in log]
+        node.destroy_node()
+
+
 async def test_shots_are_limited():
     async with weightless_server(shooter("<num_shots>1</num_shots><shot_force>50</shot_force>"), BALL) as (
         server,

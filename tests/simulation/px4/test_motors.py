@@ -172,13 +172,3 @@ async def test_libraries_with_simulated_alternative_are_told_of(library, alterna
     plugin = f'<plugin name="a" filename="{library}"/>'
     async with running_server(uav(extra=plugin)) as (_, __, log):
         assert f"instead of {library}, use {text}" in log[1].text
-
-
-async def test_mavlink_interface_is_told_of_with_what_to_use_instead():
-    library = "libgazebo_mavlink_interface.so"
-    plugin = f'<plugin name="a" filename="{library}"/>'
-    async with running_server(uav(extra=plugin)) as (_, __, log):
-        texts = [record.text for record in log]
-        assert texts[0] == f"plugins and sensors that are not simulated: {library}"
-        assert f"instead of {library}, use a ROS node in place of the autopilot" in texts[1]
-        assert "/MODEL/gazebo/command/motor_speed" in texts[1]

@@ -6,17 +6,29 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.sdf.plugins import library_name
 
 _WIDE_CAMERA_ALTERNATIVE = phrase("a camera with a wide <horizontal_fov>")
-_AUTOPILOT_ALTERNATIVE = phrase(
-    "a ROS node in place of the autopilot: commands on the topics of the motors and joints, "
-    "such as /MODEL/gazebo/command/motor_speed, and the topics of the sensors"
-)
 _TASK_ALTERNATIVE = phrase(
     "`ros2 topic pub --once /vrx/release std_msgs/msg/Empty` to release the boat, and a ROS node that computes "
     "the score"
 )
 _CAMERA_ALTERNATIVE = phrase("libgazebo_ros_camera.so in the <sensor>")
 _LIDAR_ALTERNATIVE = phrase("libgazebo_ros_ray_sensor.so in a <sensor> of type ray")
-_THERMAL_ALTERNATIVE = phrase("a <sensor> of type segmentation_camera, with a label for what is warm")
+_THERMAL_ALTERNATIVE = phrase(
+    "a <sensor> of type thermal_camera, with gz-sim-thermal-system in the visuals that are warm"
+)
+_VIDEO_ALTERNATIVE = phrase(
+    "a texture in the <material> of the visual, which does not change, or the display Image of the page"
+)
+_PROJECTOR_ALTERNATIVE = phrase("a <sensor> of type depth_camera, which needs no projected pattern")
+_WAVES_ALTERNATIVE = phrase("libPolyhedraBuoyancyDrag.so or libSurface.so, which float on the waves of VRX")
+_VELOCITY_ALTERNATIVE = phrase("libuuv_gazebo_ros_dvl_plugin.so")
+_LIFT_ALTERNATIVE = phrase("gz-sim-lift-drag-system")
+_AIR_ALTERNATIVE = phrase("a <sensor> of type air_speed, and gz-sim-wind-effects-system for the wind")
+_HIDING_ALTERNATIVE = phrase(
+    "a model of its own for the visual, which the service /set_entity_state of libgazebo_ros_state.so moves out of view"
+)
+_FINGER_ALTERNATIVE = phrase("libroboticsgroup_gazebo_mimic_joint_plugin.so, so that joints follow the driven one")
+_SONAR_ALTERNATIVE = phrase("a <sensor> of type gpu_lidar with many rows")
+_MESSAGES_ALTERNATIVE = phrase("ROS topics between the nodes of the robots")
 _RADIO_ALTERNATIVE = phrase(
     "libgazebo_ros_p3d.so for the true poses, and a ROS node that computes the signal from the distance"
 )
@@ -54,11 +66,8 @@ _ATTACHING_ALTERNATIVE = phrase("libgazebo_ros_link_attacher.so")
 _ROTOR_SPEEDS_ALTERNATIVE = phrase("libgazebo_multirotor_base_plugin.so, which publishes the speeds of the rotors")
 _LOGICAL_CAMERA_ALTERNATIVE = phrase("a <sensor> of type logical_camera")
 _GROUPS = {
+    _AIR_ALTERNATIVE: ("asv_sim2-anemometer-system", "asv_sim2-wind-system"),
     _ATTACHING_ALTERNATIVE: ("MRSGazeboLinkAttacherPlugin",),
-    _AUTOPILOT_ALTERNATIVE: (
-        "gazebo_mavlink_interface",
-        "rotors_gazebo_mavlink_interface",
-    ),
     _BATTERY_ALTERNATIVE: (
         *("gazebo_ros_power_monitor", "LinearBatteryConsumerPlugin", "LinearBatteryPlugin"),
         "battery_consumer_ros_plugin",
@@ -66,7 +75,7 @@ _GROUPS = {
         "linear_battery_ros_plugin",
     ),
     _BELT_ALTERNATIVE: ("ROSConveyorBeltPlugin", "ros2_conveyorbelt_plugin"),
-    _BREAKING_ALTERNATIVE: ("BreakableJointPlugin", "breakable_joint"),
+    _BREAKING_ALTERNATIVE: ("breakable_joint",),
     _CAMERA_ALTERNATIVE: (
         *("hsrb_gazebo_ros_camera", "recorder_camera_plugin"),
         *("GstCameraPlugin", "RealSensePlugin", "gazebo_geotagged_images_plugin", "gazebo_gst_camera_plugin"),
@@ -91,7 +100,9 @@ _GROUPS = {
         *("gazebo_ros_create_ir_intensity_sensor", "sonar"),
     ),
     _DRIVE_ALTERNATIVE: ("husky_gazebo_plugins", "diffdrive_plugin_multi_wheel", "gazebo_ros_diffdrive_uos"),
+    _FINGER_ALTERNATIVE: ("gazebo_underactuated_finger",),
     _FORCE_ALTERNATIVE: ("ForceTorquePlugin", "gazebo_ros_f3d"),
+    _HIDING_ALTERNATIVE: ("ToggleVisualPlugin",),
     _IMU_ALTERNATIVE: (
         *("gazebo_ros_create_imu", "realsense_gazebo_accel_sensor", "realsense_gazebo_gyro_sensor"),
         "xbot2_gz_imu_server",
@@ -101,13 +112,20 @@ _GROUPS = {
         *("rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin", "ray"),
         *("MrsGazeboCommonResources_3DLidarPlugin", "rotors_gazebo_lidar_plugin"),
     ),
+    _LIFT_ALTERNATIVE: ("asv_sim2-foil-lift-drag-system", "asv_sim2-sail-lift-drag-system"),
     _LIGHT_ALTERNATIVE: (
         *("BlinkVisualPlugin", "LedPlugin", "LEDStrip"),
         *("LightIndicator", "PlacardPlugin", "traffic_light_plugin"),
         *("MrsGazeboCommonResources_LightPlugin", "MrsGazeboCommonResources_SafetyLedPlugin"),
     ),
     _LOGICAL_CAMERA_ALTERNATIVE: ("ROSLogicalCameraPlugin", "gazebo_irlock_plugin"),
+    _MESSAGES_ALTERNATIVE: (
+        *(f"gz-sim-{name}-system" for name in ("acoustic-comms", "comms-endpoint", "perfect-comms", "rf-comms")),
+    ),
     _MOTION_ALTERNATIVE: (
+        "FollowerPlugin",
+        "gz-sim-drive-to-pose-controller-system",
+        "ridgeback_ros_force_based_move",
         *("robotnik_force_based_move", "slotcar"),
         *("SetVelPlugin", "gazebo_random_velocity_plugin", "gazebo_ros_force_based_move"),
         "tuw_gazebo_ros_diff_drive",
@@ -119,10 +137,11 @@ _GROUPS = {
         *("gazebo_vision_plugin", "gazebo_ros_create_optical_mouse", "xbot2_gz_link_state_sensor"),
     ),
     _POSITION_ALTERNATIVE: (
-        *("JointControlPlugin", "JointTrajectoryPlugin"),
+        *("JointControlPlugin", "JointTrajectoryPlugin", "asv_sim2-sail-position-controller-system"),
         *("GimbalSmall2dPlugin",),
         *("gazebo_gimbal_controller_plugin", "hector_servo_plugin", "rotors_gazebo_gimbal_controller_plugin"),
     ),
+    _PROJECTOR_ALTERNATIVE: ("gazebo_ros_projector",),
     _RADIO_ALTERNATIVE: ("wireless_receiver", "wireless_transmitter", "rfid", "rfidtag", "uwb_range"),
     _REGION_ALTERNATIVE: ("RegionEventBoxPlugin", "SimEventsPlugin"),
     _RELEASE_ALTERNATIVE: (
@@ -135,6 +154,7 @@ _GROUPS = {
     ),
     _ROTOR_SPEEDS_ALTERNATIVE: ("MrsGazeboCommonResources_MotorSpeedRepublisherPlugin",),
     _ROTOR_ALTERNATIVE: ("hector_gazebo_quadrotor_propulsion",),
+    _SONAR_ALTERNATIVE: ("image_sonar_ros_plugin",),
     _SPRING_ALTERNATIVE: ("spring_joint",),
     _STEERING_ALTERNATIVE: (
         *("VehiclePlugin", "ackermann_steering_controller"),
@@ -147,13 +167,19 @@ _GROUPS = {
         *("gymkhana_scoring_plugin", "wildlife_scoring_plugin"),
     ),
     _THERMAL_ALTERNATIVE: (
-        *("thermal", "thermal_camera", "gz-sim-thermal-system", "gz-sim-thermal-sensor-system"),
         *("MRSGazeboThermalCameraPlugin", "gazebo_ros_thermal_camera", "gazebo_ros_thermal_camera_pink"),
     ),
     _TRACKS_ALTERNATIVE: ("SimpleTrackedVehiclePlugin", "TrackedVehiclePlugin", "WheelTrackedVehiclePlugin"),
     _TRANSFORM_ALTERNATIVE: ("MrsGazeboCommonResources_LinkStaticTFPublisher",),
+    _VELOCITY_ALTERNATIVE: ("dsros_ros_dvl", "gz-sim-dvl-system"),
+    _VIDEO_ALTERNATIVE: ("gazebo_ros_video",),
     _VIEW_ALTERNATIVE: ("MRSGazeboRvizCameraSynchronizer", "MrsGazeboCommonResources_RvizCameraSynchronizer"),
     _WALK_ALTERNATIVE: ("gazebo_ros_actor_command", "gazebo_ros_actor_plugin"),
+    _WAVES_ALTERNATIVE: (
+        *("gz-waves1-hydrodynamics-system", "gz-waves1-waves-model-system", "gz-waves1-waves-visual-system"),
+        "gz-waves1-dynamic-geometry-system",
+        "usv_gazebo_dynamics_plugin",
+    ),
     _WATER_ALTERNATIVE: (
         "BuoyancySystemPlugin",
         "freebuoyancy_gazebo",

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 PLUGIN_GROUP, SENSOR_GROUP = "linkwright.simulated_plugins", "linkwright.simulated_sensors"
 
 _SENSORS_BY_SYSTEM = {
-    "sensors": ("camera", "depth_camera", "rgbd_camera", "gpu_lidar", "segmentation", "boundingbox_camera"),
+    "sensors": ("camera", "depth_camera", "rgbd_camera", "gpu_lidar", "segmentation", "boundingbox_camera", "thermal"),
     "imu": ("imu",),
     "contact": ("contact",),
     "navsat": ("navsat",),
@@ -40,8 +40,11 @@ _SENSORS_BY_SYSTEM = {
     "cpu-lidar": ("lidar",),
 }
 """The systems of gz that publish measurements, and the types of their sensors."""
-_OWN_SYSTEMS = ("physics", "user-commands", "label")
-"""The systems of gz whose features the simulation itself provides: moving, spawning and deleting models, labels."""
+_OWN_SYSTEMS = ("physics", "user-commands", "label", "thermal", "thermal-sensor")
+"""The systems of gz whose features the simulation itself provides.
+
+These are moving, spawning and deleting models, and the labels and temperatures that cameras see.
+"""
 _NO_LIBRARY = ("", "__default__", "dummy", "dummyfile")
 """The values of ``filename`` that mean "no library": in generated files, and in the settings of gz for a world."""
 _LIBRARIES_WITHOUT_EFFECT = (

@@ -12,13 +12,14 @@ from types import MappingProxyType
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, phrase
-from linkwright.geometry.single import IDENTITY, Transform, compose, invert, rotate
+from linkwright.geometry.single import IDENTITY, Transform, Vector3, compose, invert, rotate
 from linkwright.sdf.frames import FrameError, Frames
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World, find_gravity, find_physics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import SECOND_AXIS_SUFFIX, BodyWriter, compute_hinge_anchors
+from linkwright.simulation.scene.breaking import is_breakable, is_rigid, prepare_to_break
 from linkwright.simulation.scene.connections import ConnectedModel, find_connections, get_model_name
 from linkwright.simulation.scene.couplings import add_gearbox_coupling, add_screw_coupling
 from linkwright.simulation.scene.figures import add_figure, create_figures
@@ -249,7 +250,10 @@ class Scene:
             if tree_link.joint is not None and tree_link.joint.name in self.joints:
                 scene_model.parts += add_screw_coupling(self.spec, tree_link.joint)
         for joint in (*structure.loops, *connected.loops):
-            scene_model.parts += self._add_loop_constraints(joint, poses)
+            constraints = [*self._add_loop_constraints(joint, poses)]
+            scene_model.parts += constraints
+            if is_breakable(joint.joint):
+                scene_model.parts += prepare_to_break(self.spec, joint.name, constraints)
             if joint.joint.type == "gearbox":
                 scene_model.parts += add_gearbox_coupling(
                     self.spec, joint, self._find_movable_joints((name, *connected.attached_to))
@@ -503,14 +507,15 @@ class Scene:
         """
         kinds, link_names = self._mujoco.mjtEq, (joint.child, joint.parent)
         points = compute_hinge_anchors(joint, _ANCHOR_DISTANCE) if joint.axes else [joint.pose[:3]]
-        if joint.joint.type == "fixed":
-            yield self._add_equality(kinds.mjEQ_WELD, link_names)
+        if joint.joint.type == "fixed" or (is_breakable(joint.joint) and is_rigid(joint.joint)):
+            equality = self._add_equality(kinds.mjEQ_WELD, link_names)
+            equality.data[:3] = _locate(joint.pose[:3], IDENTITY if joint.parent == WORLD else poses[joint.parent])
+            yield equality
         elif joint.joint.type in ("revolute", "hinge", "continuous", "ball"):
-            world_to_child = IDENTITY if joint.child == WORLD else invert(poses[joint.child])
+            child_pose = IDENTITY if joint.child == WORLD else poses[joint.child]
             for point in points[: 1 if joint.joint.type == "ball" else 2]:
                 equality = self._add_equality(kinds.mjEQ_CONNECT, link_names)
-                rotated = rotate(world_to_child[3:], point)
-                equality.data[:3] = [a + b for a, b in zip(rotated, world_to_child[:3], strict=True)]
+                equality.data[:3] = _locate(point, child_pose)
                 yield equality
         elif joint.joint.type != "gearbox":
             message = phrase(
@@ -551,6 +556,12 @@ class Scene:
         for first, second in {tuple(sorted((joint.parent, joint.child))): None for joint in joints}:
             if WORLD not in (first, second):
                 yield self.spec.add_exclude(bodyname1=first, bodyname2=second)
+
+
+def _locate(point: Vector3, pose: Transform) -> list[float]:
+    """Return a point of the world in the frame at a pose."""
+    to_frame = invert(pose)
+    return [a + b for a, b in zip(rotate(to_frame[3:], point), to_frame[:3], strict=True)]
 
 
 def _get_weld_name(parent: str, child: str) -> str:

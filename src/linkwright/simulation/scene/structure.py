@@ -10,6 +10,7 @@ from linkwright.sdf.frames import FrameError, Frames, PlacedLink, place_links
 from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR, WORLD
+from linkwright.simulation.scene.breaking import is_breakable
 
 _MIN_AXIS_LENGTH = 1e-9
 """The length up to which an axis counts as having no direction."""
@@ -53,7 +54,8 @@ class KinematicTrees:
 
     Attributes:
         links: all links, each after its parent.
-        loops: the joints that would give a link a second parent or close a cycle, and the gearboxes.
+        loops: the joints that would give a link a second parent or close a cycle, the gearboxes and the joints that can
+            break.
     """
 
     links: tuple[TreeLink, ...]
@@ -143,7 +145,8 @@ def _build_trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) ->
     child_links: dict[str, list[str]] = {}
     for joint in joints:
         closes_loop = joint.child in parent_joints or is_below(parent_joints, joint.child, joint.parent)
-        if closes_loop or joint.joint.type == "gearbox":  # A gearbox couples joints and is not a parent joint.
+        can_break = not links[joint.child].static and is_breakable(joint.joint)
+        if closes_loop or can_break or joint.joint.type == "gearbox":  # A gearbox couples joints.
             loops.append(joint)
         else:
             parent_joints[joint.child] = joint

@@ -68,11 +68,13 @@ class ArduPilot(SimulatedPlugin[ArduPilotParameters]):
             LinkwrightError: SIM134, there is no such joint; SIM160, a channel is not valid, there is no such IMU, or
                 the address cannot be used.
         """
+        self._has_socket = False
         self._channels = self.read_channels()
         self._to_aircraft = self._read_frame("modelXYZToAirplaneXForwardZDown")
         self._from_world = invert(self._read_frame("gazeboXYZToNED"))
         self._placed_imu = self._find_imu()
         self._socket = self._bind()
+        self._has_socket = True
         self.address: tuple[str, int] = self._socket.getsockname()
         self.simulation.keep_awake(self._placed_imu.link)
         self.reset()
@@ -101,7 +103,8 @@ class ArduPilot(SimulatedPlugin[ArduPilotParameters]):
 
     def stop(self) -> None:
         """Close the socket."""
-        self._socket.close()
+        if self._has_socket:
+            self._socket.close()
 
     def _read_frame(self, tag: str) -> Transform:
         """Return the pose in an element, or a half turn about x if it is absent."""

@@ -1,4 +1,4 @@
-"""Ball shooters of boats: ``libBallShooterPlugin.so``.
+"""Ball shooters of boats: ``libBallShooterPlugin.so``, and ``libball_shooter_plugin.so`` of Gazebo Classic.
 
 A shot moves the projectile to its pose in the frame of the shooter, at rest, and pushes it along its x axis for one
 step of the simulation. The projectile is a model of its own, which is used again for the next shot.
@@ -9,7 +9,7 @@ Source: VRX (parameters, defaults, topic, force). VRX pushes along the x axis th
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -36,9 +36,14 @@ class BallShooterParameters:
 
 
 class BallShooter(SimulatedPlugin[BallShooterParameters]):
-    """The substitute for ``libBallShooterPlugin.so``."""
+    """The substitute for ``libBallShooterPlugin.so``.
+
+    Attributes:
+        TRIGGER_TYPE: the type of the messages that fire a shot.
+    """
 
     PARAMETERS = BallShooterParameters
+    TRIGGER_TYPE: ClassVar[str] = "std_msgs/msg/Bool"
     IGNORED = ("projectile",)
     CARRIED = ("_remaining_shots",)
 
@@ -61,7 +66,7 @@ class BallShooter(SimulatedPlugin[BallShooterParameters]):
         raw_pose = AT_ORIGIN if pose_element is None else read_element(pose_element, POSE, SdfReport())
         self._pose = transform_of(raw_pose.pose)
         self.reset()
-        self.node.subscribe("std_msgs/msg/Bool", self.parameters.topic_name, self._on_fire)
+        self.node.subscribe(self.TRIGGER_TYPE, self.parameters.topic_name, self._on_fire)
         self.every(0.0, self._shoot)
 
     def reset(self) -> None:
@@ -110,3 +115,9 @@ class BallShooter(SimulatedPlugin[BallShooterParameters]):
         names = (name for name in scene.bodies if f"{SEPARATOR}{name}".endswith(f"{SEPARATOR}{self._frame}"))
         link = min(names, key=lambda name: not name.startswith(prefix), default="")
         return simulation.link_pose(link) if link else None
+
+
+class ClassicBallShooter(BallShooter):
+    """The substitute for ``libball_shooter_plugin.so``, which ``std_msgs/msg/Empty`` fires."""
+
+    TRIGGER_TYPE = "std_msgs/msg/Empty"

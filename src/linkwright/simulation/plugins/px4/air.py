@@ -67,10 +67,14 @@ class Px4Airspeed(ModelSensor[Px4AirspeedParameters], SingleTopicSensor[Px4Airsp
     def measure(self) -> None:
         """Measure, and publish the dynamic pressure."""
         message = self.message("sensor_msgs/msg/FluidPressure", self.frame)
-        pressure = measure_dynamic_pressure(self.mount, elevation=self.home.elevation)
-        message.fluid_pressure = pressure + self._generator.normal(0.0, self._deviation_pa)
+        message.fluid_pressure = self.measure_pressure()
         message.variance = self._deviation_pa**2
         self.output.publish(message)
+
+    def measure_pressure(self) -> float:
+        """Return the dynamic pressure in Pa, with noise."""
+        pressure = measure_dynamic_pressure(self.mount, elevation=self.home.elevation)
+        return pressure + float(self._generator.normal(0.0, self._deviation_pa))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -133,15 +133,24 @@ class Px4Imu(ModelSensor[Px4ImuParameters], SingleTopicSensor[Px4ImuParameters])
 
     def measure(self) -> None:
         """Measure, and publish the measurement."""
-        measurement, message = self._imu.measure(), self.message("sensor_msgs/msg/Imu", self.frame)
-        message.orientation = from_values(Quaternion, measurement.orientation)
-        rates = self._rate_noise.apply(np.array(measurement.angular_velocity), self.period)
-        acceleration = self._acceleration_noise.apply(np.array(measurement.linear_acceleration), self.period)
+        message = self.message("sensor_msgs/msg/Imu", self.frame)
+        orientation, rates, acceleration = self.measure_motion()
+        message.orientation = from_values(Quaternion, orientation)
         message.angular_velocity = vector_to_message(rates)
         message.linear_acceleration = vector_to_message(acceleration)
         message.angular_velocity_covariance = self._rate_noise.covariance
         message.linear_acceleration_covariance = self._acceleration_noise.covariance
         self.output.publish(message)
+
+    def measure_motion(self) -> tuple[tuple[float, ...], Array, Array]:
+        """Return the orientation, the angular velocity in rad/s and the proper acceleration in m/s2.
+
+        The angular velocity and the acceleration are in the frame of the link, with noise.
+        """
+        measurement = self._imu.measure()
+        rates = self._rate_noise.apply(np.array(measurement.angular_velocity), self.period)
+        acceleration = self._acceleration_noise.apply(np.array(measurement.linear_acceleration), self.period)
+        return measurement.orientation, rates, acceleration
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,12 +186,16 @@ class Px4Magnetometer(ModelSensor[Px4MagnetometerParameters], SingleTopicSensor[
 
     def measure(self) -> None:
         """Measure, and publish the magnetic field in the frame of the link."""
-        rotation = np.array(self.mount.pose()[3:])
-        field = rotate(quaternion_inverse(rotation), np.array(self.context.world.magnetic_field))
         message = self.message("sensor_msgs/msg/MagneticField", self.frame)
-        message.magnetic_field = vector_to_message(self._noise.apply(field, self.period))
+        message.magnetic_field = vector_to_message(self.measure_field())
         message.magnetic_field_covariance = self._noise.covariance
         self.output.publish(message)
+
+    def measure_field(self) -> Array:
+        """Return the magnetic field in T in the frame of the link, with noise."""
+        rotation = np.array(self.mount.pose()[3:])
+        field = rotate(quaternion_inverse(rotation), np.array(self.context.world.magnetic_field))
+        return self._noise.apply(field, self.period)
 
 
 # --- barometer --------------------------------------------------------------------------------------------------------
@@ -220,11 +233,16 @@ class Px4Barometer(ModelSensor[Px4BarometerParameters], SingleTopicSensor[Px4Bar
     def measure(self) -> None:
         """Measure, and publish the air pressure."""
         message = self.message("sensor_msgs/msg/FluidPressure", self.frame)
-        pressure = standard_pressure(self.home.elevation + self.mount.pose()[2] - self._initial_height)
-        noise = self._generator.normal(0.0, _PRESSURE_DEVIATION_PA)
-        message.fluid_pressure = pressure + noise + self.parameters.drift_per_second * self.simulation.seconds
+        message.fluid_pressure, _ = self.measure_air()
         message.variance = _PRESSURE_DEVIATION_PA**2
         self.output.publish(message)
+
+    def measure_air(self) -> tuple[float, float]:
+        """Return the air pressure in Pa, with noise and drift, and the true altitude in m."""
+        altitude = self.home.elevation + self.mount.pose()[2] - self._initial_height
+        noise = self._generator.normal(0.0, _PRESSURE_DEVIATION_PA)
+        drift = self.parameters.drift_per_second * self.simulation.seconds
+        return standard_pressure(altitude) + noise + drift, altitude
 
 
 # --- position ---------------------------------------------------------------------------------------------------------
@@ -284,6 +302,10 @@ class Px4Groundtruth(ModelSensor[HomeParameters]):
         message.twist.twist.angular = vector_to_message(rotate(to_link, np.array(angular)))
         self._odometry_output.publish(message)
         self._fix_output.publish(_create_fix(self, self._globe, np.array(pose[:3])))
+
+    def locate(self) -> tuple[float, float, float]:
+        """Return the latitude and longitude in degrees, and the altitude in m."""
+        return self._globe.to_geodetic(np.array(self.mount.pose()[:3]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -363,6 +385,17 @@ class Px4Gps(ModelSensor[Px4GpsParameters]):
         message = self.message("geometry_msgs/msg/Vector3Stamped", self.frame)
         message.vector = vector_to_message(self._globe.to_east_north_up(velocity))
         self._velocity_output.publish(message)
+
+    def receive(self) -> tuple[tuple[float, float, float], Array] | None:
+        """Return the position and the velocity of 0.12 s before, or None before the first step.
+
+        The position is latitude and longitude in degrees, and the altitude in m. The velocity is in m/s towards east,
+        north and up.
+        """
+        if not self._records:
+            return None
+        _, position, velocity = self._records[0]
+        return self._globe.to_geodetic(position), self._globe.to_east_north_up(velocity)
 
 
 def _create_fix(sensor: ModelSensor[Any], globe: Globe, position: Array) -> Any:

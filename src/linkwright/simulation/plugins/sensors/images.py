@@ -105,6 +105,11 @@ def fill_raw_depth(message: Any, depth: Pixels) -> None:
     _fill_pixels(message, depth, "16UC1")
 
 
+def fill_gray(message: Any, pixels: Pixels) -> None:
+    """Fill an Image with gray values of 8 or 16 bits, shape (height, width)."""
+    _fill_pixels(message, pixels, "mono8" if pixels.itemsize == 1 else "mono16")
+
+
 def clip_depth(depth: Pixels, nearest: float, farthest: float) -> Pixels:
     """Return depths in m, with -inf up to `nearest` and inf from `farthest` on."""
     result: Pixels = np.array(depth, dtype=np.float32)

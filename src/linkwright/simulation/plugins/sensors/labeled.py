@@ -14,12 +14,12 @@ import numpy as np
 
 from linkwright.graph.stepped.node import Output
 from linkwright.messages import get_message
-from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import Plugin, library_name
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.sensors.camera import CAMERA_INFO_TYPE, IMAGE_TYPE, CameraPlugin, MountedCamera
 from linkwright.simulation.plugins.sensors.images import Pixels, fill_camera_info, fill_image
+from linkwright.simulation.plugins.sensors.part_values import find_part_values, get_closest_value
 from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.sensors.mount import GeomTable, get_part_name
 from linkwright.simulation.simulation import Simulation
@@ -56,8 +56,8 @@ class LabelTable:
         return instances
 
     def _compute_geom_labels(self, names: list[str]) -> list[float]:
-        labels = dict(self._labeled_parts())
-        return [float(_find_label(labels, get_part_name(name))) for name in names]
+        labels = find_part_values(self._simulation, _read_label)
+        return [float(get_closest_value(labels, get_part_name(name), 0)) for name in names]
 
     def _compute_geom_instances(self, names: list[str]) -> list[float]:
         labels = self._compute_geom_labels(names)
@@ -68,41 +68,12 @@ class LabelTable:
                 instance_numbers.setdefault(model, len(instance_numbers) + 1)
         return [float(instance_numbers[model]) if label else 0.0 for model, label in zip(models, labels, strict=True)]
 
-    def _labeled_parts(self) -> Iterator[tuple[str, int]]:
-        """Yield the name and the label of each labeled model and visual."""
-        for model in self._simulation.scene.models.values():
-            yield from _find_model_labels(model.model, model.name)
 
-
-def _find_model_labels(model: Model, path: str) -> Iterator[tuple[str, int]]:
-    for label in _read_labels(model.plugins):
-        yield path, label
-    for link in model.links:
-        for visual in link.visuals:
-            for label in _read_labels(visual.plugins):
-                yield f"{path}{SEPARATOR}{link.name}{SEPARATOR}{visual.name}#visual", label
-    for nested_model in model.models:
-        yield from _find_model_labels(nested_model, f"{path}{SEPARATOR}{nested_model.name}")
-
-
-def _read_labels(plugins: tuple[Plugin, ...]) -> Iterator[int]:
-    for plugin in plugins:
-        element = plugin.element.first("label") if plugin.element is not None else None
-        if element is not None and library_name(plugin.filename) == _LABEL_SYSTEM and element.text().strip().isdigit():
-            yield int(element.text()) % _LABEL_COUNT
-
-
-def _find_label(labels: dict[str, int], part: str) -> int:
-    """Return the label of a visual, or else of the closest enclosing model with a label.
-
-    Returns 0 if there is no label.
-    """
-    name = part
-    while name:
-        if name in labels:
-            return labels[name]
-        name = name.rpartition(SEPARATOR)[0]
-    return 0
+def _read_label(plugin: Plugin) -> int | None:
+    element = plugin.element.first("label") if plugin.element is not None else None
+    if element is not None and library_name(plugin.filename) == _LABEL_SYSTEM and element.text().strip().isdigit():
+        return int(element.text()) % _LABEL_COUNT
+    return None
 
 
 class _LabelingCamera(CameraPlugin[NoParameters]):
