@@ -211,3 +211,57 @@ def test_long_condition_is_compared_by_its_terms(repository, compare):
         "unless `context.find_planning_variant_of_robot('planning_urdf_variant') != 'xacro'`, "
         "unless `not context.is_good_robot_with_a_long_name(first_argument, second_argument)` added"
     )
+
+
+def test_equal_functions_beside_added_functions_are_not_reported(repository, compare):
+    code = """import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import ExecuteProcess
+
+def config_file(pkg, name):
+    path = os.path.join(get_package_share_directory(pkg), 'config', name)
+    return path
+
+def add_router():
+    action = ExecuteProcess(cmd=['router'], output='screen')
+    return action
+
+def generate_launch_description():
+    return LaunchDescription([add_router()])
+"""
+    path = "arm/launch/arm.launch.py"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: code})
+    added = """def launch_file(pkg, name):
+    path = os.path.join(get_package_share_directory(pkg), 'launch', name)
+    return path
+
+def write(name):
+    action = open(name, 'w')
+    return action
+
+def add_router"""
+    repository.write({path: code.replace("def add_router", added)})
+    (line,) = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert "launch_file" in line
+    assert "config_file" not in line
+    assert "add_router" not in line
+
+
+def test_values_of_equal_functions_are_still_reported(repository, compare):
+    code = """from launch import LaunchDescription
+
+TIMEOUT = 5
+
+def wait(process):
+    process.wait(TIMEOUT)
+
+def generate_launch_description():
+    return LaunchDescription([])
+"""
+    path = "arm/launch/arm.launch.py"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: code})
+    repository.write({path: code.replace("TIMEOUT = 5", "TIMEOUT = 9")})
+    assert [line for found in compare(repository).subjects for line in sentences(found)] == [
+        "other code: TIMEOUT = 5 -> TIMEOUT = 9"
+    ]

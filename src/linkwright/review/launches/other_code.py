@@ -21,14 +21,16 @@ _ACTION_ARGUMENTS = ("actions", "composable_node_descriptions", None)
 """The arguments of these calls that contain actions."""
 _BODY_FIELDS = ("body", "orelse", "finalbody", "handlers", "cases")
 """The fields of statements that contain nested statements."""
+_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
 
 
 def find_definitions(python: PythonFile) -> list[CodePart]:
     """Return the statements that assign a name for the only time."""
     normalizer = _CodeNormalizer(python, ())
+    scopes = _find_scopes(python.tree)
     return [
-        CodePart("", _unparse(node), python.span(node))
+        CodePart("", _unparse(node), python.span(node), scopes=scopes[id(node)])
         for node in _find_statements(python.tree)
         if isinstance(node, (ast.Assign, ast.AnnAssign)) and normalizer.is_definition(node)
     ]
@@ -46,16 +48,43 @@ def read_other_code(python: PythonFile, covered: Collection[int], branches: Coll
     """
     normalizer = _CodeNormalizer(python, covered, branches)
     tests = find_failing_tests(python)
+    scopes = _find_scopes(python.tree)
     parts = (
         CodePart(
             normalizer.format_statement(node),
             _unparse(_copy_header(node)),
             python.span(node),
             tests.get(id(node), ()),
+            scopes[id(node)],
         )
         for node in sorted(_find_statements(python.tree), key=lambda node: (node.lineno, node.col_offset))
     )
     return [part for part in parts if part.text]
+
+
+def find_scope_sources(python: PythonFile) -> dict[str, str]:
+    """Return the source of each function and class without comments and layout, by qualified name."""
+    sources: dict[str, str] = {}
+    scopes = _find_scopes(python.tree)
+    for node in _find_statements(python.tree):
+        if isinstance(node, _SCOPES):
+            name = scopes[id(node)][-1]
+            sources[name] = sources.get(name, "") + ast.unparse(node)
+    return sources
+
+
+def _find_scopes(tree: ast.AST) -> dict[int, tuple[str, ...]]:
+    """Return the qualified names of the functions and classes that are or contain a statement, by its identity."""
+    scopes: dict[int, tuple[str, ...]] = {}
+    pending: list[tuple[ast.AST, tuple[str, ...]]] = [(tree, ())]
+    while pending:
+        node, around = pending.pop()
+        if isinstance(node, _SCOPES):
+            around = (*around, ".".join((*around[-1:], node.name)))
+        if isinstance(node, ast.stmt):
+            scopes[id(node)] = around
+        pending += [(child, around) for child in ast.iter_child_nodes(node)]
+    return scopes
 
 
 def _unparse(node: ast.AST) -> str:

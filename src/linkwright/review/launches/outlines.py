@@ -130,12 +130,14 @@ class CodePart:
         span: the location of the action.
         failing_tests: the tests of the ``if`` statements around a statement that ends the launch with an error, the
             outermost first; empty for other statements.
+        scopes: the qualified names of the functions and classes around the statement, the outermost first.
     """
 
     text: str
     source: str
     span: Span
     failing_tests: tuple[FailingTest, ...] = ()
+    scopes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -146,6 +148,8 @@ class LaunchOutline:
         entries: the entries in the order of the text.
         code: the code besides the actions.
         definitions: the statements that assign a name. Its value is compared where the name is used.
+        scope_sources: the source of each function and class, by qualified name.
+        scope_sources: the source of each function and class, by qualified name.
         is_ros1: whether it is a launch file of ROS 1.
         root: the folder of the repository; None if it is unknown.
         has_unknown_actions: whether the file has imported actions whose values are unknown.
@@ -154,6 +158,7 @@ class LaunchOutline:
     entries: list[Entry]
     code: list[CodePart]
     definitions: list[CodePart] = field(default_factory=list)
+    scope_sources: Mapping[str, str] = field(default_factory=dict)
     is_ros1: bool = False
     root: Path | None = None
     has_unknown_actions: bool = False

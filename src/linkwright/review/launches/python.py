@@ -12,7 +12,7 @@ from linkwright.review.launches.list_additions import find_added_items
 from linkwright.review.launches.literals import CoveredLiterals, Literals
 from linkwright.review.launches.names import is_chosen_value
 from linkwright.review.launches.node_settings import format_settings, split_choice, split_parameters, split_remappings
-from linkwright.review.launches.other_code import find_definitions, read_other_code
+from linkwright.review.launches.other_code import find_definitions, find_scope_sources, read_other_code
 from linkwright.review.launches.outlines import (
     CONDITION,
     Entry,
@@ -54,7 +54,8 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     reader.visit(python.tree)
     entries = sorted(reader.read_entries(), key=lambda entry: (entry.span.line, entry.span.column))
     covered = reader.covered | _find_covered_literals(python, helpers, reader.evaluated)
-    return LaunchOutline(entries, read_other_code(python, covered, reader.branches), find_definitions(python))
+    code = read_other_code(python, covered, reader.branches)
+    return LaunchOutline(entries, code, find_definitions(python), find_scope_sources(python))
 
 
 def _find_covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: Sequence[ast.expr]) -> set[int]:
