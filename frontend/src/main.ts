@@ -46,6 +46,7 @@ import type { PanelId } from "./panels/panel";
 import { ProgramPanel } from "./panels/terminal/program-panel";
 import { TerminalPanel } from "./panels/terminal/terminal-panel";
 import { TimeFold } from "./panels/timeline/time-fold";
+import { TurtlesimPanel } from "./panels/turtlesim/turtlesim-panel";
 import { TimePanel } from "./panels/timeline/time-panel";
 import { TimelineBar } from "./panels/timeline/timeline-bar";
 import { SelectionPanel } from "./panels/views-and-tools/selection-panel";
@@ -155,6 +156,7 @@ function start(app: HTMLElement): void {
     new ProgramPanel(session.terminals, theme),
     lessonPanel,
     new ChecksPanel(session.course),
+    new TurtlesimPanel(session.turtlesim, session.monitor.teleop, () => dock.open("teleop")),
     ...createLivePanels(session.monitor, (id) => dock.open(id), (topic) => showTopic(session, topic)),
   ];
   preserveSearches(panels, session.pageMemory);
@@ -233,6 +235,7 @@ function start(app: HTMLElement): void {
     tip: () => tipHandles?.inspect() ?? {},
     terminal: () => terminalPanel.inspect(),
     lesson: () => lessonPanel.inspect(),
+    turtlesim: () => session.turtlesim.inspect(),
   });
 }
 
@@ -254,6 +257,7 @@ function followAvailability(dock: Dock, session: Session): void {
   const followCourse = (["lesson", "checks"] as const).map((id) => openWhile(dock, id, () => session.course.isAvailable));
   const followTerminals = openWhile(dock, "terminal", () => session.terminals.isAvailable);
   const followPrograms = openWhile(dock, "program", () => session.terminals.programs.length > 0);
+  const followTurtles = openWhile(dock, "turtlesim", () => session.turtlesim.simulators.length > 0);
   const { displays } = session;
   const pruneDisplayPanels = (): void => dock.displayPanels.prune(displays.displays.map(({ id }) => id));
   const countFindings = (): void => dock.setCount("diagnostics", session.diagnostics.length + displays.failingCount);
@@ -263,6 +267,7 @@ function followAvailability(dock: Dock, session: Session): void {
   session.comparison.changed.on(followComparison);
   session.terminals.availabilityChanged.on(followTerminals);
   session.motionPlanning.availabilityChanged.on(followPlanning);
+  session.turtlesim.simulatorsChanged.on(followTurtles);
   session.terminals.programsChanged.on((hasNew) => {
     followPrograms();
     if (hasNew) dock.open("program");
@@ -280,6 +285,7 @@ function followAvailability(dock: Dock, session: Session): void {
     followTerminals();
     followPrograms();
     followPlanning();
+    followTurtles();
     followCourse.forEach((follow) => follow());
     pruneDisplayPanels();
     countFindings();

@@ -241,6 +241,7 @@ import type {
   Timeline,
   WatchClock,
 } from "./time";
+import type { TurtleLines, TurtleScene, TurtleSimulators, WatchTurtles } from "./turtlesim";
 import type {
   AddTool,
   ChangeSavedView,
@@ -298,6 +299,7 @@ export * from "./source-editor";
 export * from "./terminal";
 export * from "./text-editor";
 export * from "./time";
+export * from "./turtlesim";
 export * from "./views-and-tools";
 export * from "./voice";
 export * from "./voice-words";
@@ -397,6 +399,9 @@ export type ServerMessage =
   | TrajectoryController
   | TrajectoryControllers
   | Tree
+  | TurtleLines
+  | TurtleScene
+  | TurtleSimulators
   | UnsavedTextEdited
   | UnsavedTextShown
   | ViewClasses
@@ -547,6 +552,7 @@ export type PageMessage =
   | WatchServices
   | WatchTopics
   | WatchTrajectory
+  | WatchTurtles
   | WatchVoice
   | WatchWords
   | WriteSourceFile

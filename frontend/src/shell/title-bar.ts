@@ -119,6 +119,7 @@ export class TitleBar {
         .filter((id) => id !== "joints" || this.session.joints.controls !== null)
         .filter((id) => id !== "terminal" || this.session.terminals.isAvailable)
         .filter((id) => id !== "program" || this.session.terminals.programs.length > 0)
+        .filter((id) => id !== "turtlesim" || this.session.turtlesim.simulators.length > 0)
         .map((id) => ({
           label: strings.panels[id],
           isChecked: dock.isOpen(id),

@@ -33,6 +33,7 @@ import { TipSwitch } from "./tip/tip-switch";
 import { TimeControlState } from "./time";
 import { TimelineState } from "./timeline";
 import { ToolsState } from "./tools";
+import { TurtlesimState } from "./turtlesim";
 import { ViewState } from "./view";
 import { VoiceState } from "./voice/voice";
 import { WordsState } from "./voice/words";
@@ -81,6 +82,7 @@ export class Session {
   readonly textEditor: TextEditorLink;
   readonly terminals: TerminalsState;
   readonly course: CourseState;
+  readonly turtlesim: TurtlesimState;
   diagnostics: readonly DiagnosticItem[] = [];
   private lastHello: Hello | null = null;
 
@@ -108,6 +110,7 @@ export class Session {
     this.textEditor = new TextEditorLink(connection, this.focus);
     this.terminals = new TerminalsState(connection);
     this.course = new CourseState(connection);
+    this.turtlesim = new TurtlesimState(connection);
     this.listen(connection);
     const followFixedFrame = (): void => {
       this.frames.fixedFrame = this.displays.fixedFrame;

@@ -142,7 +142,7 @@ class NodeHost:
         for plan in planned:
             with suppress(LinkwrightError):
                 await self._viewers.serve_page(plan)
-        if planned or any(plan.panel_program for plan in self._planned):
+        if planned or any(plan.has_panel for plan in self._planned):
             await asyncio.to_thread(load_viewer)
 
     async def start_planned(self) -> None:
@@ -160,7 +160,7 @@ class NodeHost:
                 if plan.is_viewer:
                     await self._start_viewer(plan, with_world=with_world)
                 else:
-                    if plan.panel_program is not None and not self._viewers:
+                    if plan.has_panel and not self._viewers:
                         page = plan.panel_page
                         if not await self._start_viewer(page, with_world=with_world):
                             break
@@ -405,7 +405,7 @@ class NodeHost:
         window = self._windows.pop(plan.process_name, None)
         if window is None:
             return
-        panel_plan = next((other for other, _ in self._running.values() if other.panel_program is not None), None)
+        panel_plan = next((other for other, _ in self._running.values() if other.has_panel), None)
         if panel_plan is not None:
             self._windows[panel_plan.process_name] = window
         else:

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 VIEWER = ("rviz2", "rviz2")
 """The package and executable of RViz, which Linkwright's viewer replaces."""
 
+_NODES_WITH_WINDOWS = frozenset({("turtlesim", "turtlesim_node")})
+"""The nodes that need a page, because a panel of the page replaces their window."""
+
 _GAZEBO_WINDOW = "gzclient"
 """The executable of Gazebo's window, which Linkwright's viewer also replaces."""
 
@@ -87,6 +90,11 @@ class HostedPlan:
         return _find_panel_program(self.package, self.executable)
 
     @property
+    def has_panel(self) -> bool:
+        """Whether the node needs a page: a panel of the page replaces its window."""
+        return has_window(self.package, self.executable) or self.panel_program is not None
+
+    @property
     def opens_gazebo_window(self) -> bool:
         """Whether the executable is Gazebo's window, or opens that window."""
         return self.executable == _GAZEBO_WINDOW or self.parameters.get("gui") is True
@@ -110,9 +118,13 @@ class HostedPlan:
     @property
     def panel_page(self) -> HostedPlan:
         """The plan of the viewer that opens for a panel if no viewer is running."""
-        return HostedPlan(
-            None, f"{self.process_name}-page", *VIEWER, "viewer", "/", replaced_window="the windows of rqt"
-        )
+        page = HostedPlan(None, f"{self.process_name}-page", *VIEWER, "viewer", "/")
+        if self.panel_program is not None:
+            page.replaced_window = "the windows of rqt"
+        else:
+            page.replaced_window = f"the window of {self.executable}"
+            page.viewer_config = _create_window_config
+        return page
 
     def node_options(self, library: DescriptionLibrary) -> NodeOptions:
         """Return the options with which the node is started.
@@ -155,9 +167,28 @@ def is_viewer(package: str | None, executable: str) -> bool:
     return (package, executable) == VIEWER
 
 
+def has_window(package: str | None, executable: str) -> bool:
+    """Return whether a node has a window that a panel of the page replaces, besides the programs of rqt."""
+    return (package, executable) in _NODES_WITH_WINDOWS
+
+
 def opens_page(package: str | None, executable: str) -> bool:
-    """Return whether Linkwright's page replaces the window of a node: RViz, or one of rqt."""
-    return is_viewer(package, executable) or _find_panel_program(package, executable) is not None
+    """Return whether Linkwright's page replaces the window of a node: RViz, one of rqt, or turtlesim."""
+    return (
+        is_viewer(package, executable)
+        or has_window(package, executable)
+        or _find_panel_program(package, executable) is not None
+    )
+
+
+def _create_window_config() -> RvizConfig:
+    """Return RViz's default configuration without its panels, in the frame of the tutorials about tf2."""
+    from linkwright.rviz import RvizConfig
+
+    config = RvizConfig.default("<window>")
+    config.panels.show(["time"])
+    config.options.set(("Fixed Frame",), "world")
+    return config
 
 
 def _find_panel_program(package: str | None, executable: str) -> PanelProgram | None:

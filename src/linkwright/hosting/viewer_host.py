@@ -7,6 +7,7 @@ import os
 import sys
 import threading
 from collections.abc import Iterator
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
@@ -246,10 +247,14 @@ def _create_guests(viewer: Viewer) -> GuestRecordings:
 
 
 def _attach_panel(viewer: Viewer, node: RunningNode) -> None:
+    from linkwright.nodes.options import NodeWithWindow
     from linkwright.panels.joints import NodeWithSliders
 
     if isinstance(node, NodeWithSliders):
         viewer.attach_joint_panel(node.panel)
+    if isinstance(node, NodeWithWindow):
+        module, _, name = node.window_feature.partition(":")
+        viewer.add_feature(getattr(import_module(module), name)).show(node)
 
 
 def _open_panel(viewer: Viewer, node: RunningNode) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwright.hosting.launch_log import LaunchLog
+from linkwright.hosting.plans import has_window
 from linkwright.hosting.rqt_arguments import format_usage
 from linkwright.hosting.rqt_programs import find_panel_program
 from linkwright.hosting.rviz2_arguments import USAGE, asks_for_help
@@ -47,18 +48,18 @@ def find_program(finder: PackageFinder, package: str, executable: str) -> Progra
 
 
 def run_viewer(package: str, executable: str, arguments: Sequence[str], options: LaunchOptions | None = None) -> int:
-    """Run the viewer, Linkwright's replacement for RViz and rqt, until the user ends it.
+    """Run the viewer, Linkwright's replacement for RViz, rqt and the window of turtlesim, until the user ends it.
 
     Args:
         package: the package of the program that the viewer replaces.
-        executable: the name of the program, ``rviz2`` or a program of rqt.
+        executable: the name of the program, ``rviz2``, ``turtlesim_node`` or a program of rqt.
         arguments: the command-line arguments of the program.
         options: the options of the viewer; None for the defaults.
 
     Returns:
         The exit status, see `linkwright.launch.run_launch`.
     """
-    if asks_for_help(arguments):
+    if asks_for_help(arguments) and not has_window(package, executable):
         program = find_panel_program(package, executable)
         print(USAGE if program is None else format_usage(executable, program), end="")
         return 0

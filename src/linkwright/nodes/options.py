@@ -125,6 +125,15 @@ class NodeWithFiles(RunningNode, Protocol):
         """
 
 
+@runtime_checkable
+class NodeWithWindow(RunningNode, Protocol):
+    """A node whose window is a panel of the page."""
+
+    @property
+    def window_feature(self) -> str:
+        """The page feature of the panel, as ``module:class``; its method ``show`` is called with the node."""
+
+
 class SingleNode:
     """The base class of nodes with a single graph node, `_node`.
 

@@ -11,6 +11,7 @@ _MONITOR = "linkwright.page.protocol.monitor"
 _RECORDING = "linkwright.page.protocol.time"
 _SOURCES = "linkwright.page.protocol.source_editor"
 _TERMINAL = "linkwright.page.protocol.terminal"
+_TURTLES = "linkwright.page.protocol.turtlesim"
 
 ON_DEMAND = (
     OnDemand(
@@ -99,6 +100,7 @@ ON_DEMAND = (
             "WriteTerminal",
         ),
     ),
+    OnDemand("linkwright.panels.turtlesim:TurtlesimFeature", list_message_paths(_TURTLES, "WatchTurtles")),
     OnDemand(
         "linkwright.panels.recording:RecordingFeature",
         list_message_paths(_RECORDING, "RecordTopics", "StopRecording", "SaveMinutes"),

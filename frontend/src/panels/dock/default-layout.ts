@@ -85,6 +85,7 @@ const PLACEMENTS: Readonly<Record<PanelId, Placement>> = {
   world: { neighbors: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   lesson: { neighbors: [["displays", "within"], ["links", "within"], ["scene", "left"]], width: 320 },
   program: { neighbors: [["scene", "within"]] },
+  turtlesim: { neighbors: [["scene", "within"]] },
   terminal: BELOW_SCENE,
   checks: BELOW_SCENE,
   source: BELOW_SCENE,
@@ -160,7 +161,7 @@ const MIN_WIDTH_SHARE = 0.7;
 /**
  * The panels that open in front where panels share a group: the displays, and the panel that the page was opened for.
  */
-const FRONT_PANELS: readonly PanelId[] = ["displays", "world", "comparison", "lesson", "program"];
+const FRONT_PANELS: readonly PanelId[] = ["displays", "world", "comparison", "lesson", "program", "turtlesim"];
 
 /** A phone in landscape, where the status bar is hidden, too. */
 const LOW_WINDOW_QUERY = "(max-height: 480px) and (max-width: 1000px) and (min-aspect-ratio: 3/2)";
@@ -182,10 +183,10 @@ const MIN_ONE_LINE_FOOTER_WIDTH_PX = 640;
 const FOOTER_LINE_HEIGHT_PX = 30;
 const MAX_BELOW_SHARE = 0.45;
 
-/** Returns the place of a panel on a phone: one group below the scene has all other panels. */
+/** Returns the place of a panel on a phone: one group below the scene has all other panels; turtles replace the scene. */
 function placeInNarrow(api: DockviewApi, id: PanelId): Placement {
-  if (id === "scene") return PLACEMENTS.scene;
-  const otherPanels = (Object.keys(PLACEMENTS) as PanelId[]).filter((panel) => panel !== "scene" && panel !== id);
+  if (id === "scene" || id === "turtlesim") return PLACEMENTS[id];
+  const otherPanels = (Object.keys(PLACEMENTS) as PanelId[]).filter((panel) => !["scene", "turtlesim", id].includes(panel));
   const neighbors: Placement["neighbors"] = [...otherPanels.map((panel) => [panel, "within"] as const), ["scene", "below"]];
   const reservedHeight = TOOLS_HEIGHT_PX + (window.innerWidth < MIN_ONE_LINE_FOOTER_WIDTH_PX && !isFramed() ? FOOTER_LINE_HEIGHT_PX : 0);
   const maxHeight = api.height - reservedHeight - MIN_SCENE_HEIGHT_SHARE * window.innerHeight;
@@ -226,7 +227,7 @@ function placeInWide(api: DockviewApi, id: PanelId, isClassroom: boolean): Place
 }
 
 /** The order in which open panels move to their default places. */
-export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "lesson", "program", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "motion-planning", "transformation", "help", "visual-tools", ...BOTTOM_PANELS];
+export const DEFAULT_ORDER: readonly PanelId[] = ["scene", "time", "lesson", "program", "turtlesim", "displays", "links", "world", "comparison", "views", "tool-properties", "selection", "diagnostics", "joints", "teleop", "voice", "navigation", "motion-planning", "transformation", "help", "visual-tools", ...BOTTOM_PANELS];
 
 /** Adds panels at their default places, or at those in the classroom. */
 export function addPanels(api: DockviewApi, ids: readonly PanelId[], isClassroom = false): void {

@@ -17,6 +17,7 @@ import { simulation } from "./simulation";
 import { terminal } from "./terminal";
 import { timeline } from "./timeline";
 import { tools } from "./tools";
+import { turtlesim } from "./turtlesim";
 import { values } from "./values";
 import { voice } from "./voice";
 
@@ -40,6 +41,7 @@ export const en = {
     lesson: learning.lesson,
     checks: learning.checks,
     "motion-planning": motionPlanning.panel,
+    turtlesim: turtlesim.panel,
   },
   shell,
   sharing,
@@ -55,6 +57,7 @@ export const en = {
   motionPlanning,
   voice,
   terminal,
+  turtlesim,
   learning,
   details,
   displays,

@@ -16,6 +16,7 @@ import { shell } from "./shell";
 import { simulation } from "./simulation";
 import { timeline } from "./timeline";
 import { tools } from "./tools";
+import { turtlesim } from "./turtlesim";
 import { values } from "./values";
 import { terminal } from "./terminal";
 import { voice } from "./voice";
@@ -23,7 +24,7 @@ import { voice } from "./voice";
 /** 简体中文 */
 export const zh: Strings = {
   panels: { ...description.panels,
-    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modeling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel, terminal: terminal.panel, program: terminal.program, lesson: learning.lesson, checks: learning.checks, "motion-planning": motionPlanning.panel },
+    ...tools.panels, ...monitor.panels, displays: "显示", scene: "三维视图", views: "视角", joints: "关节", diagnostics: "诊断", world: modeling.panel, comparison: comparison.panel, voice: voice.panel, editing: editing.panel, terminal: terminal.panel, program: terminal.program, lesson: learning.lesson, checks: learning.checks, "motion-planning": motionPlanning.panel, turtlesim: turtlesim.panel },
   shell,
   sharing,
   simulation,
@@ -38,6 +39,7 @@ export const zh: Strings = {
   motionPlanning,
   voice,
   terminal,
+  turtlesim,
   learning,
   details,
   displays,

@@ -1,1 +1,1 @@
-"""The substitute for the package urdf_launch, whose launch files show a robot description."""
+"""The substitutes for turtlesim and urdf_launch, the packages of the nodes of this room that have launch files."""

@@ -332,9 +332,13 @@ class RvizConfig:
         return cls(document, path, form)
 
     @classmethod
-    def default(cls) -> RvizConfig:
-        """Return RViz's default configuration: a Grid, Fixed Frame ``map``."""
-        return cls.parse(_DEFAULT_TEXT, "<default>")
+    def default(cls, name: str = "<default>") -> RvizConfig:
+        """Return RViz's default configuration: a Grid, Fixed Frame ``map``.
+
+        Args:
+            name: the name under which unsaved edits are stored.
+        """
+        return cls.parse(_DEFAULT_TEXT, name)
 
     @classmethod
     def for_model(

@@ -22,7 +22,7 @@ from linkwright.control.nodes.teleop.keys import (
     help_text,
     split_keys,
 )
-from linkwright.control.nodes.teleop.terminal import KeyTerminal
+from linkwright.control.nodes.teleop.terminal import KeyTerminal, make_terminal_error
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.graph import Clock, ClockType, Graph, ParameterType
@@ -65,13 +65,14 @@ class TeleopTwistKeyboard(SingleNode):
             self._declare_number("repeat_rate", 0.0),
             self._declare_number("key_timeout", 0.0),
         )
+        terminal_error = make_terminal_error("teleop_twist_keyboard", "teleop_twist_keyboard")
         if terminal is None:
-            raise _terminal_error()
+            raise terminal_error
         self._topic = VelocityTopic(node, "cmd_vel", is_stamped, frame_id)
         try:
             self._terminal = KeyTerminal(terminal, self._on_text, self._on_end)
         except OSError as error:
-            raise _terminal_error() from error
+            raise terminal_error from error
         # The timers use the steady clock, because a stop must not wait for simulated time, which may be paused.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         node.create_timer(_TYPE_CHECK_PERIOD_S, self._check_subscriptions, clock=clock)
@@ -161,16 +162,3 @@ class TeleopTwistKeyboard(SingleNode):
         x, y, z, turn_fraction = self._direction
         speed = self._speed
         self._topic.publish((x * speed, y * speed, z * speed), (0.0, 0.0, turn_fraction * self._turn_speed))
-
-
-def _terminal_error() -> LinkwrightError:
-    return LinkwrightError(
-        Diagnostic(
-            "NODE901",
-            phrase("teleop_twist_keyboard needs a terminal, but it was started without one"),
-            hint=phrase(
-                "start it in its own terminal, not from a launch file: ros2 run teleop_twist_keyboard "
-                "teleop_twist_keyboard; over ssh, use ssh -t"
-            ),
-        )
-    )

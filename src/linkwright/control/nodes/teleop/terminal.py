@@ -9,6 +9,8 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
+from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+
 _READ_BYTES = 1024
 _POLL_PERIOD_S = 0.02
 
@@ -106,3 +108,19 @@ def _watch_windows(on_data: Callable[[bytes], None]) -> Callable[[], None]:
 
     poll()
     return undo
+
+
+def make_terminal_error(package: str, executable: str) -> LinkwrightError:
+    """Return the error NODE901 of a program that was started without a terminal."""
+    return LinkwrightError(
+        Diagnostic(
+            "NODE901",
+            phrase("{program} needs a terminal, but it was started without one", program=executable),
+            hint=phrase(
+                "start it in its own terminal, not from a launch file: ros2 run {package} {executable}; over ssh, use "
+                "ssh -t",
+                package=package,
+                executable=executable,
+            ),
+        )
+    )

@@ -1,0 +1,1 @@
+"""The nodes of the package turtlesim, with which the tutorials of ROS begin."""

@@ -1,0 +1,89 @@
+"""The TurtleSim panel: turtles and their lines on canvases."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page
+
+from tests.browser.axe import find_violations
+from tests.browser.conftest import Start, state, until
+
+pytestmark = pytest.mark.browser
+
+LAUNCH = """\
+<launch>
+  <node pkg="turtlesim" exec="turtlesim_node" name="sim" namespace="sea">
+    <param name="background_r" value="10"/>
+    <param name="background_g" value="100"/>
+    <param name="background_b" value="60"/>
+  </node>
+</launch>
+"""
+BACKGROUND, PEN = [10, 100, 60], [179, 184, 255]
+CENTER = 499 / 90
+
+
+def read_pixel(page: Page, x: float, y: float) -> list[int]:
+    """Return the color at a place of the first world, in units."""
+    pixel = f"[{round(2 * 45 * x)}, {round(2 * (499 - 45 * y))}]"
+    color: list[int] = page.evaluate(
+        f"() => [...document.querySelector('.turtle-canvas').getContext('2d').getImageData(...{pixel}, 1, 1).data]"
+    )
+    return color[:3]
+
+
+def wait_for_pixel(page: Page, x: float, y: float, color: list[int]) -> None:
+    until(
+        page,
+        f"[...document.querySelector('.turtle-canvas').getContext('2d')"
+        f".getImageData({round(2 * 45 * x)}, {round(2 * (499 - 45 * y))}, 1, 1).data].slice(0, 3).join() === '"
+        f"{','.join(map(str, color))}'",
+    )
+
+
+def test_turtle_that_the_page_drives_draws_a_line_that_stays(
+    start: Start, open_page: Callable[..., Page], tmp_path: Path
+) -> None:
+    (tmp_path / "sea.launch.xml").write_text(LAUNCH)
+    page = open_page(start("launch", str(tmp_path / "sea.launch.xml")), wait=False)
+    until(page, "lw.panels.turtlesim[0]?.turtles?.length === 1")
+    assert state(page, "panels.turtlesim")[0]["name"] == "/sea/sim"
+    wait_for_pixel(page, 1.0, 1.0, BACKGROUND)
+    assert page.locator(".panel-tab").all_inner_texts() == ["3D View", "TurtleSim", "Time"]
+    shell = read_pixel(page, CENTER + 0.15, CENTER + 0.1)
+    assert shell not in (BACKGROUND, PEN), "there is a turtle"
+
+    page.get_by_role("button", name="turtle1").click()
+    assert page.get_by_role("textbox", name="Topic", exact=True).input_value() == "/sea/turtle1/cmd_vel"
+    until(page, "lw.panels.monitor.teleop.aim?.subscribers === 1")
+    page.get_by_role("application").focus()
+    page.keyboard.down("ArrowUp")
+    until(page, f"lw.panels.turtlesim[0].turtles[0].x > {CENTER} + 1.5")
+    page.keyboard.up("ArrowUp")
+    wait_for_pixel(page, CENTER + 0.5, CENTER, PEN)
+    page.reload()
+    wait_for_pixel(page, CENTER + 0.5, CENTER, PEN)
+    wait_for_pixel(page, 1.0, 1.0, BACKGROUND)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_each_node_has_its_world(start: Start, open_page: Callable[..., Page], theme: str) -> None:
+    page = open_page(start("launch", "turtlesim", "multisim.launch.py"), wait=False, theme=theme)
+    until(page, "lw.panels.turtlesim.every(({ turtles }) => turtles?.length === 1)")
+    names = [world["name"] for world in state(page, "panels.turtlesim")]
+    assert names == ["/turtlesim1/turtlesim", "/turtlesim2/turtlesim"]
+    boxes = [world.bounding_box() for world in page.locator(".turtle-canvas").all()]
+    assert [round(box["width"] / box["height"], 2) for box in boxes] == [1.0, 1.0]
+    assert boxes[0]["x"] + boxes[0]["width"] < boxes[1]["x"]
+    assert boxes[0]["width"] > 400
+    assert page.get_by_role("img", name="/turtlesim2/turtlesim: turtle1").is_visible()
+    assert find_violations(page, ".turtlesim-panel") == []
+
+
+def test_turtles_take_the_place_of_the_scene_on_a_phone(start: Start, open_page: Callable[..., Page]) -> None:
+    page = open_page(start("run", "turtlesim", "turtlesim_node"), wait=False, size=(400, 800))
+    page.locator(".turtle-canvas").wait_for()
+    until(page, "document.querySelector('.turtle-canvas').clientWidth > 340")
