@@ -17,7 +17,7 @@ from linkwright.graph.qos.profile import (
     ReliabilityPolicy,
 )
 from linkwright.graph.time.values import Duration
-from linkwright.messages import String, get_message, interface_names, serialize
+from linkwright.messages import String, get_message, serialize
 from tests.wire.conftest import both_wires
 
 TRANSIENT_LOCAL = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -309,19 +309,3 @@ def test_best_available_qos_considers_remote_endpoints(processes):
     assert endpoint.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
     (offered,) = process.node.get_publishers_info_by_topic("/command")
     assert offered.qos_profile.deadline == Duration(seconds=2)
-
-
-def test_shipped_message_types_can_be_described():
-    """Cyclone creates a description of each type when it is first used."""
-    pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
-    from linkwright.messages import shipped_packages
-    from linkwright.wire.dds.type_descriptions import WireTypes
-
-    types = WireTypes()
-    names = shipped_packages()
-    for name in interface_names("msg"):
-        package, _, short = name.split("/")
-        if package not in names:
-            continue
-        descriptions = types.message(get_message(name))
-        assert descriptions.__idl_typename__ == f"{package}.msg.dds_.{short}_"
