@@ -160,3 +160,46 @@ def test_frame_that_a_parameter_no_longer_gives_by_default(repository, compare, 
     (found,) = compare(repository).subjects
     assert "parameter 'camera': default 'lens' -> ''" in sentences(found)
     assert any("'lens'" in str(change.reason) for change in found.changes) is is_lost
+
+
+CPP_SUM = """  auto p = declare_parameter<std::string>("prefix", "ins");
+  auto t = declare_parameter<std::string>("input", "scan");
+  s_ = create_publisher<Bool>(NAME, 1);"""
+PYTHON_SUM = """self.declare_parameter("prefix", "ins")
+        self.declare_parameter("input", "scan")
+        prefix = self.get_parameter("prefix").value
+        name = self.get_parameter("input").value
+        self.s = self.create_publisher(Bool, NAME, 1)"""
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new"),
+    [
+        (CPP.format(CPP_SUM), "t", 'p + "/" + t'),
+        (PYTHON.format(PYTHON_SUM), "name", 'prefix + "/" + name'),
+        (PYTHON.format(PYTHON_SUM), "name", 'f"{prefix}/{name}"'),
+    ],
+)
+def test_parameters_that_are_joined_give_a_name_by_default(repository, compare, text, old, new):
+    path = "arm/arm/arm.py" if text.startswith("import") else "arm/src/arm.cpp"
+    repository.commit({**MANIFEST, path: text.replace("NAME", old)})
+    repository.write({path: text.replace("NAME", new)})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == "publisher 'scan' (Bool) renamed to 'ins/scan' (Bool)"
+    assert [str(change.reason) for change in found.changes if change.reason] == [NOT_FOUND]
+
+
+def test_another_default_of_one_of_the_joined_parameters_is_breaking(repository, compare):
+    text = CPP.format(CPP_SUM).replace("NAME", 'p + "/" + t')
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": text})
+    repository.write({"arm/src/arm.cpp": text.replace('"ins"', '"gps"')})
+    (found,) = compare(repository).subjects
+    assert [str(change.reason) for change in found.changes] == [NOT_FOUND.replace("scan", "ins/scan")]
+
+
+def test_a_name_that_something_unknown_precedes_is_shown(repository, compare):
+    text = CPP.format("auto t = find_topic(); s_ = create_publisher<Bool>(NAME, 1);")
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": text.replace("NAME", "t")})
+    repository.write({"arm/src/arm.cpp": text.replace("NAME", 'prefix_ + "/" + t')})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["publisher 't' (Bool) renamed to 'prefix_ + \"/\" + t' (Bool)"]

@@ -103,3 +103,25 @@ def test_published_message_without_its_frame_is_breaking(repository, compare, te
     repository.write({path: text.replace(old, new)})
     assert text.count(old) == 1
     assert (LOST in breaking(compare(repository))) is is_lost
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ('m.header.frame_id = "map";', "m.header = image.header;",
+         "frame_id of 'm': \"map\" -> image.header.frame_id", True),
+        ("m.header.frame_id = image.header.frame_id;", "m.header = image.header;", None, False),
+        ("m.header = image.header;", "m.header = info.header;",
+         "frame_id of 'm': image.header.frame_id -> info.header.frame_id", False),
+        ('m.header.frame_id = prefix() + "/" + frame_;', "m.header.frame_id = prefix();",
+         "frame_id of 'm': prefix() + \"/\" + frame_ -> prefix()", False),
+        ('m.header.frame_id = "map";', "m.header.frame_id = frame_;", None, False),  # a parameter may give the same
+    ],
+)  # fmt: skip
+def test_frames_of_whole_headers_and_of_expressions(repository, compare, old, new, expected, is_breaking):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": CPP.format(old)})
+    repository.write({"arm/src/arm.cpp": CPP.format(new)})
+    result = compare(repository)
+    lines = [line for subject in result.subjects for line in sentences(subject) if line.startswith("frame_id of")]
+    assert lines == ([expected] if expected else [])
+    assert breaking(result) == (lines if is_breaking else [])

@@ -69,6 +69,11 @@ def call_reason(name: str) -> Phrase:
     return phrase("programs that use the frames and topics of '{name}' do not find them", name=name)
 
 
+def message_frame_reason(name: str) -> Phrase:
+    """Return the reason why another frame of messages is breaking."""
+    return phrase("programs that look for the frame '{name}' in the messages do not find it", name=name)
+
+
 def name_reason(name: str) -> Phrase:
     """Return the reason why removing a topic, service or other name is breaking."""
     return phrase("programs that use the name '{name}' do not find it", name=name)

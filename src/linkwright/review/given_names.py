@@ -15,9 +15,10 @@ from linkwright.review.files.parameter_files import compare_parameter_files
 from linkwright.review.files.parameter_names import find_node_name
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
+from linkwright.review.sources.parameter_defaults import SUM
 from linkwright.review.sources.reading import read_source_names
 from linkwright.review.sources.reasons import find_message_frame_reason
-from linkwright.review.versions import TEST_FOLDERS, Versions
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _OFFERED_KINDS = (NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION, NameKind.FRAME, NameKind.MESSAGE_FRAME)
 _NAME = re.compile(r"[~/\w]*[A-Za-z][/\w]*")
@@ -54,7 +55,9 @@ class GivenNames:
         if old.text.strip("~/") == new.text.strip("~/") or self._is_given_elsewhere(parameter, old.text):
             return None
         name = parameter.removeprefix(f"{node}.ros__parameters.")
-        for source in self._find_sources(node or "", name):
+        if any(_is_joined(source, name) for source in self._find_sources(self.versions.new, node or "", name)):
+            return None
+        for source in self._find_sources(self.versions.old, node or "", name):
             for item in sorted(source.default_names, key=lambda known: _sort_key(known.kind)):
                 if item.parameter.lstrip("~/.") == name and item.kind in _OFFERED_KINDS:
                     return _explain(item.kind, old.text, source)
@@ -64,9 +67,8 @@ class GivenNames:
         """Return whether another parameter of the new file has a name as value."""
         return any(value.text.strip("/") == name.strip("/") for other, value in self.new.items() if other != parameter)
 
-    def _find_sources(self, node: str, parameter: str) -> Iterator[SourceNames]:
-        """Yield the old sources that may read a parameter of a node."""
-        version = self.versions.old
+    def _find_sources(self, version: Version, node: str, parameter: str) -> Iterator[SourceNames]:
+        """Yield the sources of a version that may read a parameter of a node."""
         package = self.versions.new.package_of(self.path)
         last_name = re.split(r"[./]", node)[-1]
         for path in version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX)):
@@ -77,6 +79,12 @@ class GivenNames:
             is_own = package is not None and version.package_of(path) == package
             if is_own or any(item.name == last_name for item in source.of_kind(NameKind.NODE)):
                 yield source
+
+
+def _is_joined(source: SourceNames, parameter: str) -> bool:
+    """Return whether a source joins the value of a parameter with those of others."""
+    joined = (item.parameter.split(SUM) for item in source.default_names if SUM in item.parameter)
+    return any(parameter in names for names in joined)
 
 
 def _sort_key(kind: NameKind) -> int:

@@ -55,6 +55,7 @@ from linkwright.review.sources.pairing import (
     pair_similar,
     take_pairs,
 )
+from linkwright.review.sources.parameter_defaults import SUM, split_sum
 from linkwright.review.sources.parameter_scopes import find_scoped
 from linkwright.review.sources.parameter_uses import ParameterUses
 from linkwright.review.sources.python_bases import select_methods
@@ -504,6 +505,10 @@ class _SourcePair(WholeSourcePair):
             yield from self._compare_defaults(old, new, old_default, new_default)
             return
         patterns = extract_pattern(old.name), extract_pattern(new.name)
+        parts = split_sum(old.name), split_sum(new.name)
+        if old.name in parts[1] or new.name in parts[0]:
+            yield self.make_change(format_rename(old, new), new.span, self.new, None)
+            return
         if None in patterns or patterns[0] == patterns[1]:
             return
         reason = phrase("the name is a pattern; programs that use one of the old names do not find it")
@@ -517,7 +522,8 @@ class _SourcePair(WholeSourcePair):
         if old_default.parameter == new_default.parameter or old_default.name == new_default.name:
             return
         package = self.new.find_package(self.file.path)
-        is_set = any(
+        joined = new_default.parameter.split(SUM)  # a value that a file sets is only a part of the name now
+        is_set = old_default.parameter not in joined and any(
             is_set_in_package(self.new.version, package, item.parameter) for item in (old_default, new_default)
         )
         names = self.old.get_names(self.file.old_path)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.sources.names import DefaultName, NameKind, SourceNames
+from linkwright.review.sources.parameter_defaults import SUM
 from linkwright.review.versions import Version
 
 _SETTING_SUFFIXES = (".yaml", ".yml", ".launch", ".launch.py", ".xml")
@@ -24,7 +25,8 @@ def find_default_reason(
         new: the names in the new source.
         find_removal_reason: returns the reason why removing a name is breaking.
     """
-    lost = {item for item in old.default_names if item.parameter == parameter.lstrip("~/")} - new.default_names
+    name = parameter.lstrip("~/")
+    lost = {item for item in old.default_names if name in item.parameter.split(SUM)} - new.default_names
     for item in sorted(lost, key=lambda lost_item: (lost_item.kind.name, lost_item.name)):
         used = {
             other.name.lstrip("/")

@@ -7,16 +7,20 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.review.breaking import message_frame_reason
 from linkwright.review.sources.code import Code, Part
 
 _JOINER = re.compile(r"\s*(\.|->|::)\s*|\s+(?=[(\[\])])|(?<=[(\[])\s+")
 _OBJECT = r"[A-Za-z_][\w.]*(?:->[\w.]+)*"
 _ASSIGNMENT = re.compile(
-    rf"(?<![\w.>])(?P<target>{_OBJECT}?)(?:\.|->)header(?:\.|->)frame_id = (?P<value>{_OBJECT})\s*;?\s*\Z"
+    rf"(?<![\w.>])(?P<target>{_OBJECT}?)(?:\.|->)header(?:(?P<field>(?:\.|->)frame_id) = (?P<value>[^;=]+?)|"
+    rf" = \*?(?P<header>{_OBJECT}))\s*;?\s*\Z"
 )
+_TEXT = re.compile(r"[\"'](?P<text>[^\"'\\]*)[\"']")
+_MAX_VALUE_LENGTH = 80
 _BRANCH = re.compile(r"\A[\s\d]+")
 """The mark of the branch of a statement in Python."""
-_HEADER = re.compile(r"(?:\.|->)header(?:\.|->)frame_id\Z")
+_HEADER = re.compile(r"(?:(?:\.|->)|\b)header(?:\.|->)frame_id\Z")
 _SEPARATOR = " | "
 
 
@@ -26,10 +30,12 @@ class FrameChange(NamedTuple):
     Attributes:
         sentence: the messages and the expressions.
         line: the line of the first changed assignment in the new version.
+        reason: why the change is breaking; None for other changes.
     """
 
     sentence: Phrase
     line: int
+    reason: Phrase | None = None
 
 
 class _Assigned(NamedTuple):
@@ -38,9 +44,9 @@ class _Assigned(NamedTuple):
 
 
 def find_frame_changes(old: Code, new: Code) -> Iterator[FrameChange]:
-    """Yield the messages of each function that get the frame of another message or variable now.
+    """Yield the messages of each function that get another frame now, unless both versions have a literal one.
 
-    One of both expressions is the frame of a message that the function has in both versions, so that neither is only
+    Of two variables, one is the frame of a message that the function has in both versions, so that neither is only
     another name of the other.
     """
     for name, parts in new.functions.items():
@@ -51,7 +57,8 @@ def find_frame_changes(old: Code, new: Code) -> Iterator[FrameChange]:
         groups: dict[tuple[tuple[str, ...], tuple[str, ...]], list[str]] = {}
         for target in before.keys() & after.keys():
             pair = before[target].expressions, after[target].expressions
-            if pair[0] != pair[1] and (_is_left(pair[0], texts[1]) or _is_left(pair[1], texts[0])):
+            is_other = _is_left(pair[0], texts[1]) or _is_left(pair[1], texts[0]) or _is_computed(*pair)
+            if pair[0] != pair[1] and is_other:
                 groups.setdefault(pair, []).append(target)
         for (old_values, new_values), targets in sorted(groups.items()):
             sentence = phrase(
@@ -60,7 +67,9 @@ def find_frame_changes(old: Code, new: Code) -> Iterator[FrameChange]:
                 old=_SEPARATOR.join(old_values),
                 new=_SEPARATOR.join(new_values),
             )
-            yield FrameChange(sentence, min(after[target].line for target in targets))
+            text = _TEXT.fullmatch(old_values[0]) if len(old_values) == 1 else None
+            reason = None if text is None else message_frame_reason(text["text"])
+            yield FrameChange(sentence, min(after[target].line for target in targets), reason)
 
 
 def join_operators(text: str) -> str:
@@ -73,9 +82,10 @@ def _read_assignments(parts: Sequence[Part]) -> dict[str, _Assigned]:
     found: dict[str, _Assigned] = {}
     for part in parts:
         match = _ASSIGNMENT.search(join_operators(part.text))
-        if match is not None:
+        value = "" if match is None else match["value"] or f"{match['header']}.frame_id"
+        if match is not None and len(value) <= _MAX_VALUE_LENGTH:
             known = found.get(match["target"], _Assigned((), part.first_line))
-            expressions = tuple(sorted({*known.expressions, match["value"]}))
+            expressions = tuple(sorted({*known.expressions, value}))
             found[match["target"]] = known._replace(expressions=expressions)
     return found
 
@@ -85,3 +95,11 @@ def _is_left(expressions: Sequence[str], text: str) -> bool:
     roots = [re.split(r"\.|->", _HEADER.sub("", item)) for item in expressions if _HEADER.search(item)]
     words = set(re.findall(r"\w+", text))
     return len(roots) == len(expressions) and all(words.issuperset(root) for root in roots)
+
+
+def _is_computed(old: Sequence[str], new: Sequence[str]) -> bool:
+    """Return whether one version calls or adds something, or replaces a literal frame by a header."""
+    literals = [all(map(_TEXT.fullmatch, values)) for values in (old, new)]
+    if any(literals):
+        return not all(literals) and all(map(_HEADER.search, new if literals[0] else old))
+    return any(re.search(r"[+(]", value) for value in (*old, *new))

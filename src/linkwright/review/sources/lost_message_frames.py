@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from linkwright.diagnostics import Phrase, phrase, quoted_names
+from linkwright.diagnostics import phrase, quoted_names
 from linkwright.review.sources.code import Code, Part
 from linkwright.review.sources.frame_changes import FrameChange, join_operators
 
@@ -42,14 +42,9 @@ def find_lost_message_frames(old: Code, new: Code) -> Iterator[FrameChange]:
             if len(after) <= len(before) and len(without[1]) > len(without[0]):
                 lost[variable] = without[1][0].line
         if lost:
-            yield FrameChange(
-                phrase("frame_id of {names} is no longer set", names=quoted_names(lost)), min(lost.values())
-            )
-
-
-def explain_lost_message_frame() -> Phrase:
-    """Return the reason why a message without a frame is breaking."""
-    return phrase("programs that transform the messages do not find an empty frame")
+            sentence = phrase("frame_id of {names} is no longer set", names=quoted_names(lost))
+            reason = phrase("programs that transform the messages do not find an empty frame")
+            yield FrameChange(sentence, min(lost.values()), reason)
 
 
 def _read(parts: Sequence[Part], variable: str) -> list[_Message]:

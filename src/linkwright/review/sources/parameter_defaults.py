@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
@@ -23,6 +24,9 @@ _CPP_READ = re.compile(
 _CPP_DECLARED = re.compile(
     rf"\b(?:declare_parameter(?:_if_not_declared)?|auto_declare)\s*{_TEMPLATE}\(\s*{_NODE}{_NAME}\s*,\s*{_TEXT}"
 )
+SUM = " + "
+"""What is between the names of parameters whose values are joined."""
+_CPP_TEXT = re.compile(r"(?:std\s*::\s*)?(?:string\s*\(\s*)?[\"'](?P<text>[^\"\\]*)[\"']\s*\)?")
 _CPP_VARIABLE = re.compile(r"\s*(?:this\s*->\s*)?(?P<name>[A-Za-z_]\w*)\s*(?:\.c_str\(\)\s*)?")
 
 
@@ -30,8 +34,8 @@ class ParameterDefault(NamedTuple):
     """A parameter that gives a name, with its default.
 
     Attributes:
-        parameter: the name of the parameter.
-        default: the default of the parameter.
+        parameter: the name of the parameter, or the names of those whose values are joined, such as ``prefix + topic``.
+        default: the name by default.
     """
 
     parameter: str
@@ -41,10 +45,19 @@ class ParameterDefault(NamedTuple):
 def find_cpp_parameter_default(text: str, expression: str) -> ParameterDefault | None:
     """Return the parameter that an expression of a C++ source reads, such as ``topic_``; None for others.
 
+    A sum of texts and parameters, such as ``prefix_ + "/state"``, is read as well.
+
     Args:
         text: the source without comments.
         expression: the text of the expression.
     """
+    parts = split_sum(expression)
+    if len(parts) > 1:
+        literals = (_CPP_TEXT.fullmatch(part) for part in parts)
+        return _join(
+            find_cpp_parameter_default(text, part) if literal is None else ParameterDefault("", literal["text"])
+            for part, literal in zip(parts, literals, strict=True)
+        )
     call = _CPP_READ.search(expression)
     variable = _CPP_VARIABLE.fullmatch(expression)
     reads = [call] if call is not None else []
@@ -62,6 +75,30 @@ def find_cpp_parameter_default(text: str, expression: str) -> ParameterDefault |
     return ParameterDefault(parameter.lstrip("~/."), default) if default else None
 
 
+def split_sum(expression: str) -> list[str]:
+    """Return the operands of the additions in an expression outside of brackets and texts."""
+    parts, depth, is_text = [""], 0, False
+    for index, character in enumerate(expression):
+        is_text ^= character == '"' and expression[index - 1 : index] != "\\"
+        if not is_text:
+            depth += (character in "([{") - (character in ")]}")
+        if character == "+" and depth == 0 and not is_text:
+            parts.append("")
+        else:
+            parts[-1] += character
+    return [part.strip() for part in parts]
+
+
+def _join(parts: Iterable[ParameterDefault | None]) -> ParameterDefault | None:
+    """Return the parameters and the default of a sum. Those of a literal text have no name."""
+    found = list(parts)
+    known = [item for item in found if item is not None]
+    names = [item.parameter for item in known if item.parameter]
+    if len(known) < len(found) or not names:
+        return None
+    return ParameterDefault(SUM.join(names), "".join(item.default for item in known))
+
+
 def _find_declared_default(text: str, parameter: str) -> str:
     """Return the default in the only declaration of a parameter in a C++ source; empty if there is none."""
     declared = {match["default"] for match in _CPP_DECLARED.finditer(text) if match["name"] == parameter}
@@ -75,6 +112,13 @@ def find_parameter_default(python: PythonFile, node: ast.expr) -> ParameterDefau
         python: the parsed file.
         node: the syntax tree of the expression.
     """
+    operands = _list_operands(python.resolved(node))
+    if len(operands) > 1:
+        texts = (python.text(item) for item in operands)
+        return _join(
+            find_parameter_default(python, item) if text is None else ParameterDefault("", text)
+            for item, text in zip(operands, texts, strict=True)
+        )
     for _ in range(_MAX_DEPTH):
         value = python.resolved(node)
         if isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in _READERS:
@@ -93,6 +137,15 @@ def find_parameter_default(python: PythonFile, node: ast.expr) -> ParameterDefau
         else:
             return None
     return None
+
+
+def _list_operands(node: ast.expr) -> list[ast.expr]:
+    """Return the operands of a sum or the parts of a formatted text; the expression itself if it is neither."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        return [*_list_operands(node.left), *_list_operands(node.right)]
+    if isinstance(node, ast.JoinedStr):
+        return [item.value if isinstance(item, ast.FormattedValue) else item for item in node.values]
+    return [node]
 
 
 def _find_default(python: PythonFile, call: ast.Call) -> str:

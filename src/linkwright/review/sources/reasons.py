@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.breaking import frame_reason, name_reason
+from linkwright.review.breaking import frame_reason, message_frame_reason, name_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 
@@ -117,4 +117,4 @@ def find_message_frame_reason(item: SourceName, names: SourceNames) -> Phrase | 
     """
     if all(other.kind is not NameKind.PUBLISHER for other in (*names.names, *names.expressions)):
         return None
-    return phrase("programs that look for the frame '{name}' in the messages do not find it", name=item.name)
+    return message_frame_reason(item.name)

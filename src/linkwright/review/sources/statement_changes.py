@@ -16,7 +16,7 @@ from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import CodeChange, ReportedLines, find_added_code, find_code_change
 from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.frame_changes import find_frame_changes
-from linkwright.review.sources.lost_message_frames import explain_lost_message_frame, find_lost_message_frames
+from linkwright.review.sources.lost_message_frames import find_lost_message_frames
 from linkwright.review.sources.moved_code import without_functions, without_statements
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
 from linkwright.review.sources.new_assertions import find_new_assertions
@@ -122,11 +122,9 @@ def _compare_frames(old: ChangedSources, new: ChangedSources, old_path: str, new
     before, after = old.codes.get(old_path), new.codes.get(new_path)
     if before is None or after is None:
         return
-    for change in find_frame_changes(before, after):
-        yield Change(change.sentence, location=Location(new_path, change.line, 1))
-    for change in find_lost_message_frames(before, after):
-        location = Location(new_path, change.line, 1)
-        yield Change(change.sentence, Effect.BREAKING, explain_lost_message_frame(), location)
+    for change in (*find_frame_changes(before, after), *find_lost_message_frames(before, after)):
+        effect = Effect.CHANGED if change.reason is None else Effect.BREAKING
+        yield Change(change.sentence, effect, change.reason, Location(new_path, change.line, 1))
 
 
 def _find_failures(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
