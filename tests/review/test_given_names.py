@@ -86,3 +86,29 @@ def test_switched_off_topic_of_move_group_is_breaking(repository, compare, old, 
     ] * 2
     assert sentences(subject(result, path)) == [f"argument 'publish': default {old} -> {new}"]
     assert bool(breaking(result)) is is_breaking
+
+
+TF_LAUNCH = """<launch>
+  <node pkg="base" type="base" name="base"><param name="publish_tf" value="{}"/></node>
+  {}
+</launch>
+"""
+FILTER = '<node pkg="tf2_ros" type="filter" name="filter"/>'
+
+
+@pytest.mark.parametrize(("other", "reasons"), [("", ["the node no longer publishes its transform"]), (FILTER, [])])
+def test_switched_off_transform_is_breaking_unless_an_added_node_may_publish_it(repository, compare, other, reasons):
+    path = "arm/launch/arm.launch"
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    repository.commit({**files, path: TF_LAUNCH.format("true", "")})
+    repository.write({path: TF_LAUNCH.format("false", other)})
+    assert [str(each.reason) for each in subject(compare(repository), path).changes if each.reason] == reasons
+
+
+def test_parameter_that_two_sources_of_the_package_use_for_different_things_is_not_breaking(repository, compare):
+    yaml = "/**:\n  ros__parameters:\n    output: left\n"
+    other = {"arm/src/other.cpp": CPP.format(code=SUBSCRIPTION, node="other")}
+    manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    repository.commit({**manifest, **other, "arm/src/arm.cpp": CPP.format(code=PUBLISHER, node="arm"), PATH: yaml})
+    repository.write({PATH: yaml.replace("left", "right")})
+    assert breaking(compare(repository)) == []

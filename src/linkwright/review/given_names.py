@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
@@ -57,38 +57,44 @@ class GivenNames:
         name = parameter.removeprefix(f"{node}.ros__parameters.")
         if any(_is_joined(source, name) for source in self._find_sources(self.versions.new, node or "", name)):
             return None
-        for source in self._find_sources(self.versions.old, node or "", name):
-            for item in sorted(source.default_names, key=lambda known: _sort_key(known.kind)):
-                if item.parameter.lstrip("~/.") == name and item.kind in _OFFERED_KINDS:
-                    return _explain(item.kind, old.text, source)
-        return None
+        given = [
+            (item.kind, source)
+            for source in self._find_sources(self.versions.old, node or "", name)
+            for item in source.default_names
+            if item.parameter.lstrip("~/.") == name
+        ]
+        if not given or any(kind not in _OFFERED_KINDS for kind, _ in given):
+            return None
+        kind, source = min(given, key=lambda item: _OFFERED_KINDS.index(item[0]))
+        return _explain(kind, old.text, source)
 
     def _is_given_elsewhere(self, parameter: str, name: str) -> bool:
         """Return whether another parameter of the new file has a name as value."""
         return any(value.text.strip("/") == name.strip("/") for other, value in self.new.items() if other != parameter)
 
-    def _find_sources(self, version: Version, node: str, parameter: str) -> Iterator[SourceNames]:
-        """Yield the sources of a version that may read a parameter of a node."""
+    def _find_sources(self, version: Version, node: str, parameter: str) -> list[SourceNames]:
+        """Return the sources of a version that may read a parameter of a node: those of the node, or of the package.
+
+        A source has the node if it gives the node its name.
+        """
         package = self.versions.new.package_of(self.path)
         last_name = re.split(r"[./]", node)[-1]
+        sources: dict[bool, list[SourceNames]] = {True: [], False: []}
         for path in version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX)):
             is_searched = TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) and parameter in version.text(path)
             if not is_searched or is_launch_file_name(PurePosixPath(path).name):
                 continue
             source = read_source_names(version.file(path))
-            is_own = package is not None and version.package_of(path) == package
-            if is_own or any(item.name == last_name for item in source.of_kind(NameKind.NODE)):
-                yield source
+            has_node = any(item.name == last_name for item in source.of_kind(NameKind.NODE))
+            if has_node or (package is not None and version.package_of(path) == package):
+                sources[has_node].append(source)
+        return sources[True] or sources[False]
 
 
 def _is_joined(source: SourceNames, parameter: str) -> bool:
     """Return whether a source joins the value of a parameter with those of others."""
     joined = (item.parameter.split(SUM) for item in source.default_names if SUM in item.parameter)
     return any(parameter in names for names in joined)
-
-
-def _sort_key(kind: NameKind) -> int:
-    return _OFFERED_KINDS.index(kind) if kind in _OFFERED_KINDS else len(_OFFERED_KINDS)
 
 
 def _explain(kind: NameKind, name: str, source: SourceNames) -> Phrase | None:

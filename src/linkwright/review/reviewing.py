@@ -63,6 +63,7 @@ from linkwright.review.notes import (
 )
 from linkwright.review.other_files import find_file_states
 from linkwright.review.parts import compare_parts
+from linkwright.review.removed_headers import drop_told_headers
 from linkwright.review.removed_programs import merge_removed_options
 from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import match_moved_files, remove_consequences
@@ -264,7 +265,7 @@ class _Reviewer:
         result += (subject for subject in self._run_step(source_subjects) if subject.path not in paths)
         for search in SEARCHES:
             result = _add_changes(result, self._run_step(search))
-        return sorted(merge_removed_options(result), key=lambda subject: subject.path)
+        return sorted(drop_told_headers(merge_removed_options(result)), key=lambda subject: subject.path)
 
     def _find_removed_submodules(self) -> Iterator[Subject]:
         """Yield the removed submodules with their packages.

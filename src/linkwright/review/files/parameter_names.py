@@ -236,11 +236,16 @@ def find_switch_reason(parameter: str, old: str, new: str) -> Phrase | None:
     """Return the reason why switching off a parameter is breaking, or None if it switches off no transform or topic."""
     if (old.lower(), new.lower()) != ("true", "false"):
         return None
-    if _TRANSFORM_SWITCH.search(parameter):
+    if switches_transform(parameter):
         return phrase("the node no longer publishes its transform")
     match = _OUTPUT_SWITCH.search(parameter)
     name = "" if match is None else match[0].lstrip("./_ ")
     return phrase("the data that '{name}' turns on is no longer published", name=name) if name else None
+
+
+def switches_transform(parameter: str) -> bool:
+    """Return whether a parameter enables and disables a transform of its node."""
+    return _TRANSFORM_SWITCH.search(parameter) is not None
 
 
 def is_parameter(name: str) -> bool:

@@ -13,7 +13,12 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.breaking import name_reason, possible_name_reason
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.files.parameter_names import find_switch_reason, find_type_reason, offers_frame
+from linkwright.review.files.parameter_names import (
+    find_switch_reason,
+    find_type_reason,
+    offers_frame,
+    switches_transform,
+)
 from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.matching import compute_name_similarity, find_loaded_class
@@ -331,11 +336,22 @@ def _find_parameter_reason(
     is_topic = _PUBLISHED_TOPIC.search(setting) is not None and _TOPIC.fullmatch(old_name) is not None
     if (is_frame or is_topic) and old_name.strip("/") != new_name.strip("/") and not _UNKNOWN_NAME.search(new_name):
         return name_reason(old_name)
-    switch_reason = find_switch_reason(without_condition(setting).replace("/", "."), old_name, new_name)
+    parameter = without_condition(setting).removeprefix(PARAMETER).replace("/", ".")
+    switch_reason = find_switch_reason(parameter, old_name, new_name)
+    if switch_reason is not None and switches_transform(parameter) and _starts_other_programs(old_outline, new_outline):
+        return None  # an added node may publish the transform
     if switch_reason is not None or new_outline.is_ros1:
         return switch_reason  # ROS 1 converts numbers
     old_value, new_value = _parse_literal(old_name), _parse_literal(new_name)
     return find_type_reason(old_value, new_value) if old_value and new_value else None
+
+
+def _starts_other_programs(old: LaunchOutline, new: LaunchOutline) -> bool:
+    """Return whether a file starts a program or includes a file that the old version did not."""
+    before, after = (
+        {entry.name for entry in outline.entries if entry.kind in ("node", "include")} for outline in (old, new)
+    )
+    return not after <= before
 
 
 def _parse_literal(text: str) -> YamlValue | None:
