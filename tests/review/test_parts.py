@@ -362,3 +362,25 @@ def test_robot_that_reads_links_to_sources_uses_their_elements(tmp_path):
     assert ExpandedElement("source.xacro", link.offset, False) in set(
         find_expanded_elements(cast(Any, versions), cast(Any, description), cast(Any, description))
     )
+
+
+def test_renamed_macros_that_call_each_other(library, compare):
+    path = "arm_description/urdf/wheels.xacro"
+    text = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="wheel" params="name x">
+    <link name="${name}_wheel"/>
+    <joint name="${name}_joint" type="fixed"><parent link="base"/><child link="${name}_wheel"/></joint>
+  </xacro:macro>
+  <xacro:macro name="base" params="size">
+    <link name="base"/>
+    <xacro:wheel name="left" x="${size}"/>
+    <xacro:wheel name="right" x="-${size}"/>
+  </xacro:macro>
+</robot>
+"""
+    library.commit({path: text})
+    library.write({path: text.replace('name="wheel"', 'name="my_wheel"').replace("xacro:wheel", "xacro:my_wheel")
+                   .replace('name="base" params', 'name="my_base" params')})  # fmt: skip
+    (change,) = subject(compare(library), path).changes
+    assert str(change.sentence) == "macro 'wheel' renamed to 'my_wheel'"
+    assert change.other_names == ("base -> my_base",)

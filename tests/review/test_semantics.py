@@ -207,6 +207,20 @@ def test_many_pairs_of_a_lost_link_are_summarized(package, compare):
     ]
 
 
+def test_very_many_pairs_are_counted_by_their_links(package, compare):
+    pair = '  <disable_collisions link1="%s" link2="%s" reason="Never"/>\n'
+    links = [f"link_{number}" for number in range(12)]
+    kept = "".join(pair % ("base_link", link) for link in links)
+    text = SRDF.replace("</robot>", f"{kept}%s</robot>")
+    package.commit({PATH: text % ""})
+    pairs = [(link, other) for link in links for other in links if link < other]
+    package.write({PATH: text % "".join(pair % names for names in pairs)})
+    (line,) = sentences(subject(compare(package), PATH))
+    counts = [int(item.split(" ")[0]) for item in line.split(": ")[2].split(", ")]
+    assert sum(counts) == len(pairs)
+    assert line.startswith(f"disable_collisions: {len(pairs)} pairs added: 11 with link_0, 10 with link_1, ")
+
+
 def test_renamed_virtual_joint_is_renamed_in_the_groups_that_have_it(package, compare):
     """Programs do not move a fixed joint."""
     text = SRDF.replace('<joint name="left"/>', '<joint name="left"/><joint name="fixed"/>')

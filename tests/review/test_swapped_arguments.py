@@ -52,3 +52,29 @@ def test_function_of_a_header_counts_without_a_library(repository, compare):
     repository.commit({**files, PATH: HEADER.format("", "double x, double y")})
     repository.write({PATH: HEADER.format("", "double y, double x")})
     assert breaking(compare(repository)) == ["function 'volume': parameters (x, y) -> (y, x) change places"]
+
+
+CODE = """#include "a/box.h"
+namespace arm {{
+Box::Box({}) {{ size_ = {}; }}
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("build", "declared", "old", "new", "is_breaking"),
+    [
+        (LIBRARY, "double, double", ("double x, double y", "x / y"), ("double y, double x", "x / y"), True),
+        (PROGRAM, "double, double", ("double x, double y", "x / y"), ("double y, double x", "x / y"), False),
+        (LIBRARY, "double, double", ("double x, double y", "x / y"), ("double y, double x", "y / x"), None),
+        (LIBRARY, "double, double", ("double x, double y", "x / y"), ("double a, double b", "a / b"), None),
+        (LIBRARY, "double x, double y", ("double x, double y", "x / y"), ("double y, double x", "x / y"), None),
+    ],
+)
+def test_parameters_that_only_the_definition_names(repository, compare, build, declared, old, new, is_breaking):
+    files = {"a/package.xml": PACKAGE_XML, "a/CMakeLists.txt": BUILD.format(build), PATH: HEADER.format(declared, "")}
+    repository.commit({**files, "a/src/box.cpp": CODE.format(*old)})
+    repository.write({"a/src/box.cpp": CODE.format(*new)})
+    found = [change for subject in compare(repository).subjects for change in subject.changes]
+    swapped = [change.reason is not None for change in found if "change places" in str(change.sentence)]
+    assert swapped == ([] if is_breaking is None else [is_breaking])

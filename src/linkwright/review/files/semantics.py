@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -25,6 +26,8 @@ from linkwright.xmltree import Element
 
 _NAMED_TAGS = ("group", "group_state", "end_effector", "virtual_joint", "passive_joint")
 _PAIR_TAGS = ("disable_collisions", "enable_collisions")
+_MAX_COUNTED_LINKS = 6
+"""The maximum number of links by which many pairs are counted."""
 _MAX_PAIRS = 20
 """The maximum number of pairs of links that are listed one by one."""
 _JOINT_PREFIX = "joint "
@@ -355,6 +358,20 @@ def _summarize_pairs(pairs: Sequence[tuple[str, ...]], others: Collection[tuple[
         return joined_first(list(map(" - ".join, pairs)), MAX_NAMES)
     other_links = {link for other in others for link in other}
     links = list(dict.fromkeys(link for names in pairs for link in names if link not in other_links))
-    rest = [" - ".join(names) for names in pairs if other_links.issuperset(names)]
+    rest = [names for names in pairs if other_links.issuperset(names)]
     parts = [phrase("all pairs with {links}", links=joined_first(links, MAX_NAMES))] if links else []
-    return joined([*parts, *([joined_first(rest, _MAX_PAIRS)] if rest else [])])
+    if len(rest) > 2 * _MAX_PAIRS:
+        return joined([*parts, *_count_by_link(rest)])
+    return joined([*parts, *([joined_first(list(map(" - ".join, rest)), _MAX_PAIRS)] if rest else [])])
+
+
+def _count_by_link(pairs: Sequence[tuple[str, ...]]) -> Iterator[Phrase]:
+    """Yield the numbers of pairs with the most frequent links, each pair counted once, and the number of the others."""
+    remaining = list(pairs)
+    for _ in range(_MAX_COUNTED_LINKS):
+        link, count = Counter(link for names in remaining for link in names).most_common(1)[0]
+        yield phrase("{count} with {link}", count=count, link=link)
+        remaining = [names for names in remaining if link not in names]
+        if not remaining:
+            return
+    yield counted("{count} other", "{count} others", len(remaining))

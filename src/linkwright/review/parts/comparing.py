@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 from linkwright.diagnostics import LinkwrightError, Phrase, joined, joined_first, phrase
 from linkwright.diagnostics.phrase import as_phrase
@@ -21,6 +22,7 @@ from linkwright.review.parts.interface import (
     make_macro_removal_reason,
 )
 from linkwright.review.parts.left_uses import find_left_uses
+from linkwright.review.parts.name_substitution import CALL, ComparedContent
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.properties import compare_properties
@@ -60,7 +62,7 @@ def compare_parts(
     expanded = {element for subject in subjects for element in subject.expanded}
     result = list(subjects)
     indexes = {subject.path: number for number, subject in enumerate(subjects)}
-    comparer = _Comparer(versions, expanded, is_complete)
+    comparer = _Comparer(versions, files, expanded, is_complete)
     for file in files:
         if not file.path.endswith(_SUFFIXES) or file.is_submodule:
             continue
@@ -104,9 +106,14 @@ class _Comparer:
     """Compare the changed files of a review, with the include graphs of both versions."""
 
     def __init__(
-        self, versions: Versions, expanded: Collection[ExpandedElement], is_complete: Callable[[str], bool]
+        self,
+        versions: Versions,
+        files: Sequence[ChangedFile],
+        expanded: Collection[ExpandedElement],
+        is_complete: Callable[[str], bool],
     ) -> None:
         self._versions = versions
+        self._files = files
         self._expanded = expanded
         self._is_complete = is_complete
         self._graphs = IncludeGraphs(IncludeGraph(versions.old), IncludeGraph(versions.new))
@@ -128,9 +135,10 @@ class _Comparer:
             changes += _report_lost_macros(
                 [name for name in old.macros if not self._graphs.new.find_files_with_macro(name)]
             )
-        if file.old_path and file.new_path and isinstance(old, Outline) and isinstance(new, Outline):
-            is_complete = is_compared or self._is_complete(file.new_path)
-            pair = PartPair(self._versions, file.old_path, file.new_path, old, new, is_complete, self._expanded)
+        pair = self._make_pair(file)
+        if pair is not None and file.old_path and file.new_path:
+            pair.is_complete = is_compared or self._is_complete(file.new_path)
+            pair.renamed_macros = self._renamed_macros
             pair.robots = self._graphs.new.find_outlines_of_robots(file.new_path) or ()
             self._compare(pair)
             changes += pair.changes
@@ -138,6 +146,23 @@ class _Comparer:
             texts = versions.old.text(file.old_path), versions.new.text(file.new_path)
             changes += compare_prefixes(*texts, lambda: versions.old.macros, lambda: versions.new.macros)
         return Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, changes)
+
+    def _make_pair(self, file: ChangedFile) -> PartPair | None:
+        """Return both versions of a file, or None if one of them is missing or cannot be read."""
+        old = self._read_outline(self._versions.old, file.old_path)
+        new = self._read_outline(self._versions.new, file.new_path)
+        if not (file.old_path and file.new_path and isinstance(old, Outline) and isinstance(new, Outline)):
+            return None
+        return PartPair(
+            self._versions, file.old_path, file.new_path, old, new, is_complete=False, expanded=self._expanded
+        )
+
+    @cached_property
+    def _renamed_macros(self) -> Mapping[str, str]:
+        """The new names of the macros that the changed files rename, by old name."""
+        files = [file for file in self._files if file.path.endswith(_SUFFIXES) and not file.is_submodule]
+        pairs = (self._make_pair(file) for file in files)
+        return {old: new for pair in pairs if pair is not None for old, new in _find_renamed_macros(pair)}
 
     def find_left_uses(self, files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
         """Yield the descriptions that use what the new version no longer has, each with a change."""
@@ -176,15 +201,25 @@ def _find_renamed_macros(pair: PartPair) -> Iterator[tuple[str, str]]:
 
 
 def _compute_similarity(pair: PartPair, old: MacroOutline, new: MacroOutline) -> float:
-    """Return the share of equal elements of two macros, from 0 to 1; 0 if they are not similar."""
+    """Return the share of equal elements of two macros, from 0 to 1; 0 if they are not similar.
+
+    Calls of macros that only one version of the repository has are equal, because these may be renamed, too.
+    """
     comparison = make_comparison(pair, old, new)
+    names = pair.versions.old.macros ^ pair.versions.new.macros
     contents = [
-        Counter(substitution.normalize_element(child) for child in macro.element.elements())
+        Counter(_mark_calls(substitution.normalize_element(child), names) for child in macro.element.elements())
         for substitution, macro in ((comparison.old, old), (comparison.new, new))
     ]
     total = sum(content.total() for content in contents)
     share = 2 * (contents[0] & contents[1]).total() / total if total else 0.0
     return share if share >= _MIN_SIMILARITY else 0.0
+
+
+def _mark_calls(content: ComparedContent, macros: Collection[str]) -> ComparedContent:
+    """Return the contents of an element with the same tag for calls of all macros with the given names."""
+    tag = CALL if content.tag.removeprefix(CALL) in macros else content.tag
+    return content._replace(tag=tag, children=tuple(_mark_calls(child, macros) for child in content.children))
 
 
 def _report_lost_macros(names: Sequence[str]) -> Iterator[Change]:

@@ -55,7 +55,8 @@ def make_comparison(pair: PartPair, old: MacroOutline | None = None, new: MacroO
         for values, macro in zip(literals, (old, new), strict=True):
             for name in macro.parameters:
                 values.pop(name.lstrip("*"), None)
-    return ItemComparison(NameSubstitution(literals[0], renamed), NameSubstitution(literals[1]))
+    old_names = NameSubstitution(literals[0], renamed, pair.renamed_macros)
+    return ItemComparison(old_names, NameSubstitution(literals[1]))
 
 
 def compare_contents(pair: PartPair, renamed: Mapping[str, str]) -> None:

@@ -122,7 +122,7 @@ class ItemComparison:
         pairs = []
         for key in dict.fromkeys(item.key for item in new if item.element.tag == GAZEBO):
             new_items = [item for item in new if item.key == key]
-            old_items = [item for item in old if self.old.rename_names(item.key) == key]
+            old_items = [item for item in old if self.old.rename_key(item) == key]
             if not old_items or max(len(old_items), len(new_items)) == 1:
                 continue
             texts = {self.old.rename_names(" ".join(item.conditions)) for item in old_items}
@@ -139,7 +139,7 @@ class ItemComparison:
     def _make_count_check(self, old: Sequence[Item], new: Sequence[Item]) -> Callable[[Item, Item], bool]:
         """Return a function that checks that a key occurs equally often in both lists."""
         counts = (
-            Counter(self.old.rename_names(item.key) for item in old),
+            Counter(self.old.rename_key(item) for item in old),
             Counter(item.key for item in new),
         )
         return lambda _, item: counts[0][item.key] == counts[1][item.key]
@@ -151,7 +151,7 @@ class ItemComparison:
         pairs = []
         for new_item in list(new):
             for old_item in old:
-                if self.old.rename_names(old_item.key) == new_item.key and matches(old_item, new_item):
+                if self.old.rename_key(old_item) == new_item.key and matches(old_item, new_item):
                     pairs.append((old_item, new_item))
                     old.remove(old_item)
                     new.remove(new_item)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.list_changes import change_text
+from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import compare_chosen_parts
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.outline import MacroOutline, Outline
@@ -31,11 +33,18 @@ def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, 
             _report_undefined_names(pair, graphs.new, pair.old.macros[name], macro)
         elif name not in renamed.values() and not _declares_macro(graphs.old, pair.old_path, name):
             pair.add(phrase("macro '{name}' added", name=name), None, macro.element)
+    edits: dict[Hashable, list[str]] = {}
+    for old_name, name in renamed.items():
+        edits.setdefault(name_edit(old_name, name), []).append(old_name)
     for name, macro in pair.old.macros.items():
         if name in renamed:
             new = pair.new.macros[renamed[name]]
-            text = phrase("macro '{old}' renamed to '{name}'", old=name, name=new.name)
-            pair.add(text, macro.element, new.element, make_macro_removal_reason())
+            first, *others = edits[name_edit(name, new.name)]
+            if name == first:
+                text = phrase("macro '{old}' renamed to '{name}'", old=name, name=new.name)
+                pair.add(text, macro.element, new.element, make_macro_removal_reason())
+                names = tuple(f"{other} -> {renamed[other]}" for other in others)
+                pair.changes[-1] = replace(pair.changes[-1], other_names=names)
             _compare_parameters(pair, macro, new)
         elif name not in pair.new.macros and not _declares_macro(graphs.new, pair.new_path, name):
             _report_lost_macro(pair, macro, graphs.new)

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from linkwright.review.parts.arithmetic import evaluate_number
-from linkwright.review.parts.outline import ARG, MACRO, PROPERTY
+from linkwright.review.parts.outline import ARG, MACRO, PROPERTY, Item
 from linkwright.xmltree import Element
 
+CALL = "xacro:"
+"""The prefix of the tags of calls of macros."""
 _EXPRESSION = re.compile(r"\$\{([^{}]*)\}")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _LITERAL = re.compile(r"[^${}]*")
+
+
+class ComparedContent(NamedTuple):
+    """The contents of an element without white space, comments and nested macros."""
+
+    tag: str
+    attributes: frozenset[tuple[str, str]]
+    text: str
+    children: tuple[ComparedContent, ...]
 
 
 @dataclass(frozen=True)
@@ -22,10 +34,24 @@ class NameSubstitution:
     Attributes:
         literals: the values of properties without expressions, by name.
         renamed: the new names of parameters and properties, by old name.
+        macros: the new names of macros, by old name.
     """
 
     literals: Mapping[str, str] = field(default_factory=dict)
     renamed: Mapping[str, str] = field(default_factory=dict)
+    macros: Mapping[str, str] = field(default_factory=dict)
+
+    def rename_tag(self, tag: str) -> str:
+        """Return the tag of an element, with the new name of a macro that it calls."""
+        name = tag.removeprefix(CALL)
+        return tag if name == tag else CALL + self.macros.get(name, name)
+
+    def rename_key(self, item: Item) -> str:
+        """Return the tag and name that identify an element, with new names."""
+        tag = item.element.tag
+        old, new = tag.removeprefix(CALL), self.rename_tag(tag).removeprefix(CALL)
+        is_call = old != new and item.key.split(" ")[0] == old
+        return self.rename_names(new + item.key.removeprefix(old) if is_call else item.key)
 
     def rename_names(self, text: str) -> str:
         """Return a text with the new names of parameters and properties, and single spaces."""
@@ -46,13 +72,14 @@ class NameSubstitution:
             return value
         return evaluate_number(content, self.literals) or match[0]
 
-    def normalize_element(self, element: Element) -> Hashable:
+    def normalize_element(self, element: Element) -> ComparedContent:
         """Return comparable contents, without white space, comments and nested macros."""
         attributes = frozenset(
             (name, self.resolve_values(self.rename_names(value))) for name, value in element.attributes.items()
         )
         children = tuple(self.normalize_element(child) for child in element.elements() if child.tag not in (ARG, MACRO))
-        return element.tag, attributes, self.resolve_values(self.rename_names(element.text())), children
+        text = self.resolve_values(self.rename_names(element.text()))
+        return ComparedContent(self.rename_tag(element.tag), attributes, text, children)
 
 
 def read_literals(root: Element) -> dict[str, str]:

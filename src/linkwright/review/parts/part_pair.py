@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from linkwright.diagnostics import Phrase
@@ -24,6 +24,7 @@ class PartPair:
         new: the new outline.
         is_complete: whether the file describes a complete robot, so that no other file calls its macros.
         expanded: the elements of changed files that the compared robots show.
+        renamed_macros: the new names of the macros that changed files rename, by old name.
         robots: the new outlines of all files of the robots that include the file; empty if some are not known.
         changes: the changes found so far.
     """
@@ -35,6 +36,7 @@ class PartPair:
     new: Outline
     is_complete: bool
     expanded: Collection[ExpandedElement]
+    renamed_macros: Mapping[str, str] = field(default_factory=dict)
     robots: Sequence[Outline] = ()
     changes: list[Change] = field(default_factory=list)
 

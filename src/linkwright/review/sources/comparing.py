@@ -112,6 +112,7 @@ class _SourcePair(WholeSourcePair):
         changes += self.compare_imports(old_names, new_names)
         changes += self.find_undefined(old_names, new_names)
         changes += self.compare_header(old_names, new_names)
+        changes += self.compare_definitions()
         changes += self.compare_packages(are_headers_told=not changes)
         changes += compare_statements(self.old, self.new, self.file, changes)
         yield from merge_renames(changes)

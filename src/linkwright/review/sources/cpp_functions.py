@@ -208,14 +208,12 @@ def _read_function(chunk: str, classes: list[str], start: int) -> Iterator[Decla
             continue
         if declaration[: match.start()].rstrip().endswith("::"):
             return  # the definition of a method that its class declares
-        texts = list(_split_parameters(declaration[match.end() : end]))
-        parameters = tuple(map(_parse_parameter_type, texts))
+        parameters, names = read_parameters(declaration[match.end() : end])
         name = "::".join([*classes, "".join(match["name"].split())])
         is_override = re.search(r"\b(?:override|final)\b", suffix) is not None
         is_pure = re.search(r"=\s*0\s*$", suffix) is not None
         is_const = re.match(r"\s*const\b", suffix) is not None
         result = _read_result(declaration[: match.start()], suffix)
-        names = tuple(map(_parse_parameter_name, texts))
         yield DeclaredFunction(
             name, parameters, is_pure, is_override, is_const, result, start, is_defined=False, parameter_names=names
         )
@@ -230,6 +228,12 @@ def _read_result(prefix: str, suffix: str) -> str:
         r"\b(?:auto|template|operator)\b", text
     )
     return normalize_type(text) if is_known else ""
+
+
+def read_parameters(text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the types and the names of the parameters in the text between parentheses."""
+    texts = list(_split_parameters(text))
+    return tuple(map(_parse_parameter_type, texts)), tuple(map(_parse_parameter_name, texts))
 
 
 def _parse_parameter_type(text: str) -> str:

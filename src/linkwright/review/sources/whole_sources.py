@@ -22,7 +22,11 @@ from linkwright.review.sources.package_imports import (
 )
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.rates import compare_rates, compare_timers
-from linkwright.review.sources.swapped_arguments import compare_argument_order
+from linkwright.review.sources.swapped_arguments import (
+    compare_argument_order,
+    find_swapped_definitions,
+    is_declared_without_order,
+)
 from linkwright.review.sources.transform_senders import find_lost_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.undefined_uses import find_undefined_uses
@@ -182,6 +186,20 @@ class WholeSourcePair:
         for change in compare_argument_order(old_names, new_names):
             reason = change.reason if self.can_be_linked(str(change.text.arguments["name"])) else None
             yield self.make_change(change.text, change.span, self.new, reason)
+
+    def compare_definitions(self) -> Iterator[Change]:
+        """Yield the parameters that change places in definitions whose declaration does not name them."""
+        path = self.file.new_path or ""
+        old, new = self.old.codes.get(self.file.old_path or ""), self.new.codes.get(path)
+        package = self.new.find_package(path)
+        if old is None or new is None or package is None or path.endswith((*HEADER_SUFFIXES, PYTHON_SUFFIX)):
+            return
+        for item in find_swapped_definitions(old, new):
+            if is_declared_without_order(self.new.version, package, item.name):
+                facts = read_package_facts(self.new.version, package)
+                is_linked = facts is None or facts.has_library
+                effect = Effect.BREAKING if is_linked else Effect.CHANGED
+                yield Change(item.text, effect, item.reason if is_linked else None, Location(path, item.line, 1))
 
     @staticmethod
     def make_change(text: Phrase, span: Span, side: ChangedSources, reason: Phrase | None) -> Change:
