@@ -142,6 +142,53 @@ def test_visual_that_moves_to_another_link_in_the_same_place_is_not_outlined(ren
     assert sum(count_outline_pixels(image) for view in images for image in (view.old, view.new)) == 0
 
 
+def test_mesh_that_is_not_drawn_is_named_below_the_images(render_images):
+    bracket = """<link name="bracket"><visual><geometry><mesh filename="package://arm_description/no.stl"/></geometry></visual>
+  <visual><geometry><sphere radius="0.2"/></geometry></visual></link>
+  <joint name="bracket_joint" type="fixed"><parent link="lower"/><child link="bracket"/></joint></robot>"""
+    result, images = render_images({PATH: ARM.replace("</robot>", bracket)})
+    (note,) = images[0].notes
+    assert "link 'bracket' is drawn without the mesh 'package://arm_description/no.stl'" in note
+    assert as_html(result).count("is drawn without the mesh") == 1
+
+
+SWITCH = """<xacro:arg name="size" default="1"/>
+  <link name="knob"><visual><geometry><sphere radius="$(arg size)"/></geometry></visual>
+  <inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <joint name="knob_joint" type="fixed"><parent link="lower"/><child link="knob"/></joint></robot>"""
+
+
+def test_images_and_quantities_name_the_arguments_of_several_callers(package, render_images):
+    launch = """<launch>{}</launch>"""
+    path = "$(find-pkg-share arm_description)/urdf/arm.urdf.xacro"
+    call = f'<let name="d{{0}}" value="$(command \'xacro {path} size:={{0}}\')"/>'
+    package.commit(
+        {
+            PATH: ARM.replace("</robot>", SWITCH.format(1)),
+            "arm_description/launch/arm.launch.xml": launch.format(call.format(2) + call.format(3)),
+        }
+    )
+    result, images = render_images({PATH: ARM.replace("</robot>", SWITCH.format(2).replace("sphere", "sphere "))})
+    assert images == []
+    page = as_html(result)
+    assert "mass (with size:=2)" in page
+
+
+COLLISION = "<collision><geometry>{}</geometry></collision>"
+
+
+def test_collision_that_moves_to_another_link_in_the_same_place_is_not_outlined(package, render_images):
+    shell = """<link name="shell">{}</link><link name="knob">{}</link>
+  <joint name="shell_joint" type="fixed"><parent link="knob"/><child link="shell"/></joint>
+  <joint name="knob_joint" type="fixed"><parent link="lower"/><child link="knob"/></joint></robot>"""
+    sphere, box = COLLISION.format('<sphere radius="0.2"/>'), COLLISION.format('<box size="0.2 0.2 0.2"/>')
+    package.commit({PATH: ARM.replace("</robot>", shell.format("", sphere))})
+    assert render_images({PATH: ARM.replace("</robot>", shell.format(sphere, ""))})[1] == []
+    _, images = render_images({PATH: ARM.replace("</robot>", shell.format(box, ""))})
+    assert [view.name for view in images] == ["iso, collision", "front, collision"]
+    assert all(count_outline_pixels(image) > 50 for view in images for image in (view.old, view.new))
+
+
 def test_new_root_link_has_no_images(render_images):
     new_root = """<link name="foot"/><joint name="foot_joint" type="fixed">
     <parent link="foot"/><child link="base_link"/><origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""

@@ -150,12 +150,14 @@ class Figure:
         old: its old value as text; empty if there is none.
         new: its new value as text; empty if there is none.
         unit: the unit of both values; empty for counts.
+        arguments: the values of arguments with which it was measured, if the subject has other sets; else empty.
     """
 
     name: Phrase
     old: str
     new: str
     unit: str = ""
+    arguments: str = ""
 
 
 @dataclass(frozen=True)
@@ -248,11 +250,13 @@ class ViewImages:
         name: the name of the view, such as ``front``.
         old: the old robot as PNG; empty if there is none.
         new: the new robot as PNG; empty if there is none.
+        notes: what is special about the images, such as meshes that are not drawn.
     """
 
     name: str
     old: bytes
     new: bytes
+    notes: tuple[Phrase, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -109,6 +109,7 @@ def _change_subject(subject: Subject, change_text: Callable[[str], str]) -> Subj
         ],
         problems=[replace(problem, text=_change_texts(problem.text, change_text)) for problem in subject.problems],
         cases=[_change_texts(case, change_text) for case in subject.cases],
+        images=[replace(view, notes=_change_texts(view.notes, change_text)) for view in subject.images],
     )
 
 

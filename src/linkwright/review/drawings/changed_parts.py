@@ -55,12 +55,41 @@ def find_changed_parts(
     )
     old_side = _Side(models.old, old, frames.old, old_links)
     new_side = _Side(models.new, new, frames.new, new_links)
+    old_shown, new_shown = _drop_equal_links(old_side, new_side, comparison)
     old_frames, new_frames = _find_changed_frames(old, new, comparison, frames)
+    return Parts(old_shown, old_frames), Parts(new_shown, new_frames)
+
+
+def find_changed_collisions(
+    models: Pair, old: Robot, new: Robot, comparison: Comparison, frames: SharedFrames
+) -> tuple[Parts, Parts] | None:
+    """Return the links with other collision shapes of the old and of the new robot, or None.
+
+    The result is None if no link of both robots has other shapes.
+
+    Args:
+        models: the descriptions.
+        old: the old robot, with its collision shapes as visuals.
+        new: the new robot, with its collision shapes as visuals.
+        comparison: the comparison of the robots.
+        frames: the frames that both robots have.
+    """
     old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
-    return (
-        Parts(_drop_equal_links(old_side, new_side, comparison.links), old_frames),
-        Parts(_drop_equal_links(new_side, old_side, old_names), new_frames),
+    changed = {
+        difference.name
+        for difference in comparison.differences
+        if difference.subject == "link" and difference.property.startswith("collision") and difference.name in old_names
+    }
+    if not changed:
+        return None
+    old_links = {*set(old.links) - set(comparison.links), *(old_names[name] for name in changed)}
+    new_links = {*set(new.links) - set(comparison.links.values()), *changed}
+    old_shown, new_shown = _drop_equal_links(
+        _Side(models.old, old, frames.old, _select_links_with_visuals(old, old_links)),
+        _Side(models.new, new, frames.new, _select_links_with_visuals(new, new_links)),
+        comparison,
     )
+    return (Parts(old_shown), Parts(new_shown)) if old_shown or new_shown else None
 
 
 # --- frames ----------------------------------------------------------------------------------------------------------
@@ -189,7 +218,13 @@ def _make_material_key(visual: Visual) -> Hashable:
     return None if material is None else (material.rgba, material.texture)
 
 
-def _drop_equal_links(side: _Side, other: _Side, matches: Mapping[str, str]) -> set[str]:
+def _drop_equal_links(old: _Side, new: _Side, comparison: Comparison) -> tuple[set[str], set[str]]:
+    """Return the links of both robots, without those whose visuals only belong to another link of the other robot."""
+    old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
+    return _drop_equal_links_of(old, new, comparison.links), _drop_equal_links_of(new, old, old_names)
+
+
+def _drop_equal_links_of(side: _Side, other: _Side, matches: Mapping[str, str]) -> set[str]:
     """Return the links of a robot, without those whose visuals only belong to another link of the other robot."""
     appearances = [
         appearance for name in other.links if name in other.frames for appearance in other.make_appearances(name)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from linkwright.diagnostics import Phrase
+from linkwright.diagnostics.phrase import as_phrase
 from linkwright.geometry.arrays import Array
 from linkwright.picture import Camera, Scene, View
-from linkwright.picture.bodies import Anchor, Axes, Body, Labels
+from linkwright.picture.bodies import Anchor, Axes, Body, Color, Labels
 from linkwright.picture.camera import fit_camera
 from linkwright.picture.visibility import count_outlined_pixels
 
@@ -124,3 +126,23 @@ def make_close_up(scenes: Sequence[Scene], size: tuple[int, int]) -> dict[str, C
     counts = [count_outlined_pixels(shown, fit_camera(view, _TRIAL_SIZE, [corners])) for view in _CLOSE_UP_VIEWS]
     first = next(index for index, count in enumerate(counts) if count >= _SUFFICIENT_SHARE * max(counts))
     return {"changed parts": fit_camera(_CLOSE_UP_VIEWS[first], size, [corners])}
+
+
+def find_notes(scenes: Sequence[Scene]) -> tuple[Phrase, ...]:
+    """Return what is drawn incompletely in scenes, such as links with a mesh that is not found."""
+    messages = (as_phrase(problem.message) for scene in scenes for problem in scene.problems)
+    return tuple({str(message): message for message in messages}.values())
+
+
+def remove_colors(scene: Scene, color: Color) -> Scene:
+    """Return a scene with all surfaces in one color, without textures."""
+    bodies = (
+        replace(
+            body,
+            surfaces=tuple(
+                replace(surface, color=color, alpha=1.0, texture=None, vertex_colors=None) for surface in body.surfaces
+            ),
+        )
+        for body in scene.bodies
+    )
+    return Scene(tuple(bodies), scene.problems, scene.labels, scene.axes)

@@ -10,15 +10,15 @@ from linkwright.descriptions.pairs import Model, Pair
 from linkwright.images.png import png
 from linkwright.picture import OUTLINE_COLOR, VIEWS, Scene, Style, SurfaceLibrary, camera_for, render, robot_scene
 from linkwright.review.changes import ViewImages
-from linkwright.review.drawings.changed_parts import Parts, find_changed_parts
-from linkwright.review.drawings.highlights import add_frames, make_close_up
+from linkwright.review.drawings.changed_parts import Parts, find_changed_collisions, find_changed_parts
+from linkwright.review.drawings.highlights import add_frames, find_notes, make_close_up, remove_colors
 from linkwright.review.frames import SharedFrames
-from linkwright.urdf import Material, Robot, Visual
+from linkwright.urdf import Robot, Visual
 
 _SIZE = (480, 360)
 _COLLISION_VIEWS = ("iso", "front")
-_COLLISION_MATERIAL = Material("", (0.62, 0.67, 0.74, 1.0))
-"""The material of collision shapes: without a hue, so that the outlines of changed ones stand out."""
+_COLLISION_COLOR = (0.62, 0.67, 0.74)
+"""The color of collision shapes: without a hue, so that the outlines of changed ones stand out."""
 
 
 def render_views(
@@ -32,9 +32,7 @@ def render_views(
     old_parts, new_parts = find_changed_parts(models, old, new, comparison, frames)
     if not (old_parts.links or new_parts.links or old_parts.frames or new_parts.frames):
         return []
-    return _render_pair(
-        models, (old, old_parts), (new, new_parts), frames, {name: name for name in VIEWS}, has_close_up=True
-    )
+    return _render_pair(models, (old, old_parts), (new, new_parts), frames, {name: name for name in VIEWS})
 
 
 def render_collisions(
@@ -42,20 +40,16 @@ def render_collisions(
 ) -> list[ViewImages]:
     """Return images of the collision shapes from two sides; empty if the shapes are equal.
 
-    Links with changed shapes are outlined. Links without collision shapes are not drawn.
+    Links with changed shapes are outlined, and so are added and removed ones. Links without collision shapes are not
+    drawn.
     """
-    old_names = {new_name: old_name for old_name, new_name in comparison.links.items()}
-    changed = {
-        difference.name
-        for difference in comparison.differences
-        if difference.subject == "link" and difference.property.startswith("collision") and difference.name in old_names
-    }
-    if not changed:
+    shown = _show_collisions(old), _show_collisions(new)
+    parts = find_changed_collisions(models, *shown, comparison, frames)
+    if parts is None:
         return []
-    old_side = _show_collisions(old), Parts({old_names[name] for name in changed})
-    new_side = _show_collisions(new), Parts(changed)
+    old_side, new_side = zip(shown, parts, strict=True)
     labels = {name: f"{name}, collision" for name in _COLLISION_VIEWS}
-    return _render_pair(models, old_side, new_side, frames, labels)
+    return _render_pair(models, old_side, new_side, frames, labels, is_of_collisions=True)
 
 
 def _render_pair(
@@ -65,7 +59,7 @@ def _render_pair(
     frames: SharedFrames,
     labels: Mapping[str, str],
     *,
-    has_close_up: bool = False,
+    is_of_collisions: bool = False,
 ) -> list[ViewImages]:
     """Return images of both robots; empty if neither has anything to draw.
 
@@ -75,7 +69,7 @@ def _render_pair(
         new: the new robot, and its highlighted parts.
         frames: the frames that both robots have.
         labels: the labels of the images, by the name of the view.
-        has_close_up: whether small parts have an image of their own.
+        is_of_collisions: whether the robots show collision shapes, without colors and without an image of small parts.
     """
     library = SurfaceLibrary()
     scenes = [
@@ -91,17 +85,20 @@ def _render_pair(
     ]
     if not any(len(scene.mesh.faces) for scene in scenes):
         return []
+    if is_of_collisions:
+        scenes = [remove_colors(scene, _COLLISION_COLOR) for scene in scenes]
     scenes = add_frames(scenes, (old[1].frames, new[1].frames))
     if not any(scene.axes or any(body.outline for body in scene.bodies) for scene in scenes):
         return []
     style = Style(labels="links")
     cameras = {label: camera_for(VIEWS[name], _SIZE, *scenes) for name, label in labels.items()}
-    if has_close_up:
+    if not is_of_collisions:
         cameras |= make_close_up(scenes, _SIZE)
-    return [
-        ViewImages(label, *(png(render(scene, camera=camera, style=style)) for scene in scenes))
-        for label, camera in cameras.items()
-    ]
+    images = []
+    for label, camera in cameras.items():
+        first, second = (png(render(scene, camera=camera, style=style)) for scene in scenes)
+        images.append(ViewImages(label, first, second, find_notes(scenes)))
+    return images
 
 
 def _show_collisions(robot: Robot) -> Robot:
@@ -109,10 +106,7 @@ def _show_collisions(robot: Robot) -> Robot:
     links = {
         name: replace(
             link,
-            visuals=tuple(
-                Visual(shape.geometry, shape.origin, material=_COLLISION_MATERIAL, element=shape.element)
-                for shape in link.collisions
-            ),
+            visuals=tuple(Visual(shape.geometry, shape.origin, element=shape.element) for shape in link.collisions),
         )
         for name, link in robot.links.items()
     }
@@ -137,5 +131,6 @@ def render_unpaired_scene(scene: Scene, *, is_old: bool) -> list[ViewImages]:
     images = []
     for name, view in VIEWS.items():
         image = png(render(scene, camera=camera_for(view, _SIZE, scene)))
-        images.append(ViewImages(name, image, b"") if is_old else ViewImages(name, b"", image))
+        first, second = (image, b"") if is_old else (b"", image)
+        images.append(ViewImages(name, first, second, find_notes([scene])))
     return images

@@ -20,6 +20,7 @@ from linkwright.picture.bodies import Body, Surface
 from linkwright.picture.camera import fit_camera
 from linkwright.picture.worlds import world_scene
 from linkwright.review.changes import ViewImages
+from linkwright.review.drawings.highlights import find_notes
 from linkwright.review.drawings.images import render_unpaired_scene
 from linkwright.review.file_pair import FilePair
 from linkwright.review.versions import Version
@@ -116,7 +117,8 @@ def _render_pair(old: Scene, new: Scene, *, has_outlines: bool = True) -> list[V
     images = []
     for name, view in VIEWS.items():
         camera = fit_camera(view, _SIZE, points)
-        images.append(ViewImages(name, *(png(render(scene, camera=camera)) for scene in scenes)))
+        first, second = (png(render(scene, camera=camera)) for scene in scenes)
+        images.append(ViewImages(name, first, second, find_notes((old, new))))
     return images
 
 

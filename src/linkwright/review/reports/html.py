@@ -24,6 +24,8 @@ from linkwright.review.reports.sentences import (
     format_cases,
     format_change,
     format_code_heading,
+    format_figure_name,
+    format_image_notes,
     format_location,
     format_paths,
     format_repeated,
@@ -176,7 +178,7 @@ def _render_figures(figures: Sequence[Figure]) -> str:
     names = (phrase("quantity"), phrase("before"), phrase("after"), phrase("unit"))
     head = "".join(f"<th>{_escape_text(name)}</th>" for name in names)
     rows = (
-        f"<tr><td>{_escape_text(figure.name)}</td><td>{escape(figure.old)}</td><td>{escape(figure.new)}</td>"
+        f"<tr><td>{_escape_text(format_figure_name(figure))}</td><td>{escape(figure.old)}</td><td>{escape(figure.new)}</td>"
         f"<td>{escape(figure.unit)}</td></tr>"
         for figure in figures
     )
@@ -186,7 +188,9 @@ def _render_figures(figures: Sequence[Figure]) -> str:
 def _render_images(images: Sequence[ViewImages]) -> str:
     if not images:
         return ""
-    return f"<div class='images'>{''.join(map(_render_image, images))}</div>"
+    notes = format_image_notes(images)
+    text = "" if notes is None else f"<p class='soft'>{_escape_text(notes)}</p>"
+    return f"<div class='images'>{''.join(map(_render_image, images))}</div>{text}"
 
 
 def _render_image(view: ViewImages) -> str:

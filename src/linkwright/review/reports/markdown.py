@@ -23,6 +23,7 @@ from linkwright.review.reports.sentences import (
     format_cases,
     format_change,
     format_code_heading,
+    format_figure_name,
     format_location,
     format_paths,
     format_repeated,
@@ -208,7 +209,7 @@ def _shorten_values(change: Change) -> Change:
 def _format_figures(figures: Sequence[Figure]) -> list[str]:
     head = " | ".join(map(_escape, (phrase("quantity"), phrase("before"), phrase("after"), phrase("unit"))))
     rows = [
-        f"| {_escape(figure.name)} | {_escape(figure.old)} | {_escape(figure.new)} | {figure.unit} |"
+        f"| {_escape(format_figure_name(figure))} | {_escape(figure.old)} | {_escape(figure.new)} | {figure.unit} |"
         for figure in figures
     ]
     return [f"| {head} |", "| --- | ---: | ---: | --- |", *rows]

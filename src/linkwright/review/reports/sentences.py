@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Hashable, Sequence
 
-from linkwright.diagnostics import Diagnostic, Phrase, counted, joined_first, phrase, quoted_names
+from linkwright.diagnostics import Diagnostic, Phrase, counted, joined, joined_first, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.review.changes import Change, Effect, Location, Review, Subject, SubjectKind
+from linkwright.review.argument_sets import ARGUMENT, find_distinct_arguments
+from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject, SubjectKind, ViewImages
 from linkwright.review.other_files import group_files
 
 _MAX_NAMES = 24
@@ -16,12 +16,10 @@ _MAX_BREAKING_NAMES = 12
 """The maximum number of other links or joints in a line about a breaking change. Users may search for them."""
 _MAX_PATHS = 4
 """The maximum number of other files that a line names."""
+_MAX_IMAGE_NOTES = 3
+"""The maximum number of notes below images."""
 _MAX_NAMED_CASES = 1
 """The maximum number of argument sets that a line names."""
-_MAX_ARGUMENTS = 4
-"""The maximum number of arguments of an argument set that a line names."""
-_ARGUMENT = re.compile(r" (?=[\w.-]+:=)")
-"""The space between two arguments in the name of an argument set."""
 
 
 def get_path_state(subject: Subject) -> Phrase | None:
@@ -53,7 +51,7 @@ def format_cases(change: Change, subject: Subject) -> Phrase | None:
     cause = _find_common_cause(change.cases, subject.cases)
     if cause is not None:
         return cause
-    names = [_find_distinct_arguments(name, subject.cases or change.cases) for name in change.cases]
+    names = [find_distinct_arguments(name, subject.cases or change.cases) for name in change.cases]
     if names == [""]:
         return phrase("with the default arguments")
     if len(names) <= _MAX_NAMED_CASES:
@@ -67,8 +65,8 @@ def _find_common_cause(cases: Sequence[str], all_cases: Sequence[str]) -> Phrase
     Returns None unless there is exactly one such argument. An argument is preferred that the other sets have with
     other values.
     """
-    words = [set(_ARGUMENT.split(case)) - {""} for case in cases]
-    others = [set(_ARGUMENT.split(case)) - {""} for case in all_cases if case not in cases]
+    words = [set(ARGUMENT.split(case)) - {""} for case in cases]
+    others = [set(ARGUMENT.split(case)) - {""} for case in all_cases if case not in cases]
     if not others:
         return None
     cause = _find_common_argument(words, others)
@@ -90,15 +88,20 @@ def _has_argument(words: set[str], cause: str) -> bool:
     return any(word.startswith(cause.partition(":=")[0] + ":=") for word in words)
 
 
-def _find_distinct_arguments(case_name: str, cases: Sequence[str]) -> str:
-    """Return the values that distinguish an argument set from the first set.
+def format_figure_name(figure: Figure) -> Phrase:
+    """Return the name of a quantity, with the arguments with which it was measured if there are several sets."""
+    if not figure.arguments:
+        return figure.name
+    return phrase("{quantity} (with {arguments})", quantity=figure.name, arguments=figure.arguments)
 
-    For the first set, they are the values that the other sets do not share.
-    """
-    words = [set(_ARGUMENT.split(case)) for case in cases]
-    shared = set.intersection(*words) if case_name == cases[0] else words[0]
-    distinct = [word for word in _ARGUMENT.split(case_name) if word not in shared]
-    return " ".join([*distinct[:_MAX_ARGUMENTS], *(["..."] if len(distinct) > _MAX_ARGUMENTS else [])]) or case_name
+
+def format_image_notes(images: Sequence[ViewImages]) -> Phrase | None:
+    """Return what is special about images, such as meshes that are not drawn, or None."""
+    notes = list({str(note): note for view in images for note in view.notes}.values())
+    shown = joined(notes[:_MAX_IMAGE_NOTES])
+    if len(notes) > _MAX_IMAGE_NOTES:
+        return phrase("{names} and {count} more", names=shown, count=len(notes) - _MAX_IMAGE_NOTES)
+    return shown if notes else None
 
 
 def format_repeated(path: str, count: int, *, is_shared: bool) -> Phrase:

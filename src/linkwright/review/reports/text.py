@@ -14,6 +14,7 @@ from linkwright.review.reports.sentences import (
     format_alike,
     format_cases,
     format_change,
+    format_figure_name,
     format_repeated,
     get_path_state,
     group_findings,
@@ -77,7 +78,8 @@ def _format_section(section: Section) -> Iterator[str]:
     if alike is not None:
         yield f"  = {localized(alike)}"
     for figure in subject.figures:
-        yield f"  # {localized(figure.name)}: {figure.old or '-'} -> {figure.new or '-'} {figure.unit}".rstrip()
+        name = localized(format_figure_name(figure))
+        yield f"  # {name}: {figure.old or '-'} -> {figure.new or '-'} {figure.unit}".rstrip()
     for problem in subject.problems:
         yield f"  ? {localized(problem.text)}"
     yield ""

@@ -10,6 +10,7 @@ from pathlib import Path
 from linkwright.descriptions.comparison import Comparison, Difference, DifferenceLocation, sentence
 from linkwright.diagnostics import Phrase, joined, phrase, term
 from linkwright.diagnostics.phrase import as_phrase
+from linkwright.review.argument_sets import find_distinct_arguments
 from linkwright.review.breaking import find_breaking_reason, frame_reason
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.controller_files import find_controller_file_reason
@@ -55,6 +56,7 @@ def compare_descriptions(pair: FilePair) -> None:
     """Compare two versions of a description with each set of argument values."""
     groups: dict[Hashable, _Group] = {}
     collisions: list[Change] = []
+    drawn_case = ""
     for case in _find_cases_to_compare(pair, groups):
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
@@ -72,6 +74,7 @@ def compare_descriptions(pair: FilePair) -> None:
         if pair.drawings.images and not pair.images:
             pair.images += render_views(case.models, case.old.robot, case.new.robot, comparison, frames)
             pair.images += render_collisions(case.models, case.old.robot, case.new.robot, comparison, frames)
+            drawn_case = case.name if pair.images else ""
             if pair.images and pair.drawings.scenes:
                 roots = pair.versions.old.root, pair.versions.new.root
                 pair.scene = build_robot_scene(case.models, case.old, case.new, roots)
@@ -85,6 +88,19 @@ def compare_descriptions(pair: FilePair) -> None:
                 collisions = list(compare_collisions(old, new, comparison.links, disabled))
     pair.changes += merge_changes(group.change(pair.cases) for group in _merge_groups(groups.values()))
     pair.changes += collisions
+    if len(set(pair.cases)) > 1:
+        _name_arguments(pair, drawn_case)
+
+
+def _name_arguments(pair: FilePair, drawn_case: str) -> None:
+    """Add the arguments with which the robot was measured and drawn, unless they are the defaults."""
+    if pair.cases[0]:
+        arguments = find_distinct_arguments(pair.cases[0], pair.cases)
+        pair.figures[:] = [replace(figure, arguments=arguments) for figure in pair.figures]
+    if pair.images and drawn_case:
+        arguments = find_distinct_arguments(drawn_case, pair.cases)
+        note = phrase("drawn with {arguments}", arguments=arguments)
+        pair.images[0] = replace(pair.images[0], notes=(note, *pair.images[0].notes))
 
 
 def _find_cases_to_compare(pair: FilePair, groups: Sized) -> Iterator[Case]:
