@@ -22,26 +22,24 @@ LAUNCH = """\
   </node>
 </launch>
 """
-BACKGROUND, PEN = [10, 100, 60], [179, 184, 255]
+BACKGROUND, PEN = "rgb(10, 100, 60)", [179, 184, 255]
 CENTER = 499 / 90
 
 
-def read_pixel(page: Page, x: float, y: float) -> list[int]:
-    """Return the color at a place of the first world, in units."""
-    pixel = f"[{round(2 * 45 * x)}, {round(2 * (499 - 45 * y))}]"
-    color: list[int] = page.evaluate(
-        f"() => [...document.querySelector('.turtle-canvas').getContext('2d').getImageData(...{pixel}, 1, 1).data]"
-    )
-    return color[:3]
+def wait_for_line(page: Page, x: float, y: float, color: list[int]) -> None:
+    """Wait until the line at a place of the first world, in units, has a color."""
+    pixel = f"{round(45 * x)}, {round(499 - 45 * y)}, 1, 1"
+    lines = "document.querySelector('.turtle-sea > canvas')?.getContext('2d')"
+    until(page, f"{lines}?.getImageData({pixel}).data.join() === '{','.join(map(str, [*color, 255]))}'")
 
 
-def wait_for_pixel(page: Page, x: float, y: float, color: list[int]) -> None:
-    until(
-        page,
-        f"[...document.querySelector('.turtle-canvas').getContext('2d')"
-        f".getImageData({round(2 * 45 * x)}, {round(2 * (499 - 45 * y))}, 1, 1).data].slice(0, 3).join() === '"
-        f"{','.join(map(str, color))}'",
-    )
+def find_offset(page: Page) -> tuple[float, float]:
+    """Return the distance of the first turtle from the middle, to the right and down, in pixels of a world of 500."""
+    sea, turtle = (page.locator(selector).first.bounding_box() for selector in (".turtle-sea", ".turtle"))
+    scale = 500.0 / sea["width"]
+    across = turtle["x"] + turtle["width"] / 2.0 - sea["x"] - sea["width"] / 2.0
+    down = turtle["y"] + turtle["height"] / 2.0 - sea["y"] - sea["height"] / 2.0
+    return across * scale, down * scale
 
 
 def test_turtle_that_the_page_drives_draws_a_line_that_stays(
@@ -51,10 +49,9 @@ def test_turtle_that_the_page_drives_draws_a_line_that_stays(
     page = open_page(start("launch", str(tmp_path / "sea.launch.xml")), wait=False)
     until(page, "lw.panels.turtlesim[0]?.turtles?.length === 1")
     assert state(page, "panels.turtlesim")[0]["name"] == "/sea/sim"
-    wait_for_pixel(page, 1.0, 1.0, BACKGROUND)
+    until(page, f"getComputedStyle(document.querySelector('.turtle-sea')).backgroundColor === '{BACKGROUND}'")
     assert page.locator(".panel-tab").all_inner_texts() == ["3D View", "TurtleSim", "Time"]
-    shell = read_pixel(page, CENTER + 0.15, CENTER + 0.1)
-    assert shell not in (BACKGROUND, PEN), "there is a turtle"
+    assert find_offset(page) == pytest.approx((0.0, 0.0), abs=1.0), "the turtle is in the middle"
 
     page.get_by_role("button", name="turtle1").click()
     assert page.get_by_role("textbox", name="Topic", exact=True).input_value() == "/sea/turtle1/cmd_vel"
@@ -63,10 +60,13 @@ def test_turtle_that_the_page_drives_draws_a_line_that_stays(
     page.keyboard.down("ArrowUp")
     until(page, f"lw.panels.turtlesim[0].turtles[0].x > {CENTER} + 1.5")
     page.keyboard.up("ArrowUp")
-    wait_for_pixel(page, CENTER + 0.5, CENTER, PEN)
+    wait_for_line(page, CENTER + 0.5, CENTER, PEN)
     page.reload()
-    wait_for_pixel(page, CENTER + 0.5, CENTER, PEN)
-    wait_for_pixel(page, 1.0, 1.0, BACKGROUND)
+    wait_for_line(page, CENTER + 0.5, CENTER, PEN)
+    page.locator(".turtle").wait_for()
+    across, down = find_offset(page)
+    assert across > 60.0
+    assert down == pytest.approx(0.0, abs=1.0)
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
@@ -75,7 +75,7 @@ def test_each_node_has_its_world(start: Start, open_page: Callable[..., Page], t
     until(page, "lw.panels.turtlesim.every(({ turtles }) => turtles?.length === 1)")
     names = [world["name"] for world in state(page, "panels.turtlesim")]
     assert names == ["/turtlesim1/turtlesim", "/turtlesim2/turtlesim"]
-    boxes = [world.bounding_box() for world in page.locator(".turtle-canvas").all()]
+    boxes = [world.bounding_box() for world in page.locator(".turtle-sea").all()]
     assert [round(box["width"] / box["height"], 2) for box in boxes] == [1.0, 1.0]
     assert boxes[0]["x"] + boxes[0]["width"] < boxes[1]["x"]
     assert boxes[0]["width"] > 400
@@ -85,5 +85,5 @@ def test_each_node_has_its_world(start: Start, open_page: Callable[..., Page], t
 
 def test_turtles_take_the_place_of_the_scene_on_a_phone(start: Start, open_page: Callable[..., Page]) -> None:
     page = open_page(start("run", "turtlesim", "turtlesim_node"), wait=False, size=(400, 800))
-    page.locator(".turtle-canvas").wait_for()
-    until(page, "document.querySelector('.turtle-canvas').clientWidth > 340")
+    page.locator(".turtle-sea").wait_for()
+    until(page, "document.querySelector('.turtle-sea').clientWidth > 340")

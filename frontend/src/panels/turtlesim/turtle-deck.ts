@@ -1,16 +1,14 @@
 import "../../styles/turtlesim.css";
-import { createButton, h } from "../../dom";
+import { coalesce, createButton, h } from "../../dom";
 import { createIcon } from "../../icons";
 import type { TurtleLines, TurtlePose, TurtleScene } from "../../protocol";
 import type { TurtlesimState } from "../../state/turtlesim";
 import { strings } from "../../strings";
-import { drawTurtle } from "./turtle-drawing";
+import { createTurtle } from "./turtle-drawing";
 
 /** The size of the world, and pixels of the world in a unit of turtlesim. */
 const SIZE_PX = 500;
 const PX_PER_UNIT = 45;
-/** More pixels of the screen than in the world, for sharp turtles. */
-const SCALE = 2;
 
 /** All worlds of turtlesim side by side. */
 export class TurtleDeck {
@@ -44,14 +42,17 @@ export class TurtleDeck {
   }
 }
 
-/** The canvas of a turtlesim_node, and the names of its turtles. */
+/** The world of a turtlesim_node: its lines on a canvas, its turtles above it, and their names. */
 class TurtleWorld {
   readonly element: HTMLElement;
-  private readonly canvas = h("canvas", { class: "turtle-canvas", role: "img" });
-  private readonly lines = new OffscreenCanvas(SIZE_PX, SIZE_PX);
-  private readonly turtles = h("div", { class: "turtle-names" });
+  private readonly sea: HTMLElement;
+  private readonly lines = h("canvas");
+  private readonly names = h("div", { class: "turtle-names" });
   private scene: TurtleScene | null = null;
   private shownTopics = "";
+  private turtles: readonly HTMLElement[] = [];
+  /** Moves the turtles before the next frame. */
+  private readonly moveTurtles = coalesce(() => this.move());
   /** The end of the drawing of lines received so far; images are decoded one after another. */
   private decoding = Promise.resolve();
 
@@ -59,19 +60,14 @@ class TurtleWorld {
     readonly name: string,
     private readonly drive: (topic: string) => void,
   ) {
-    this.canvas.width = this.canvas.height = SIZE_PX * SCALE;
-    this.element = h("figure", { class: "turtle-world" }, h("div", { class: "turtle-frame" }, this.canvas), h("figcaption", {}, h("span", { class: "turtle-node" }, name), this.turtles));
+    this.lines.width = this.lines.height = SIZE_PX;
+    this.sea = h("div", { class: "turtle-sea", role: "img" }, this.lines);
+    this.element = h("figure", { class: "turtle-world" }, h("div", { class: "turtle-frame" }, this.sea), h("figcaption", {}, h("span", { class: "turtle-node" }, name), this.names));
   }
 
   show(scene: TurtleScene): void {
     this.scene = scene;
-    const topics = scene.turtles.map(({ topic }) => topic).join();
-    if (topics !== this.shownTopics) {
-      this.shownTopics = topics;
-      this.canvas.ariaLabel = `${this.name}: ${scene.turtles.map(({ name }) => name).join(", ")}`;
-      this.turtles.replaceChildren(...scene.turtles.map((turtle) => this.createTurtleButton(turtle)));
-    }
-    this.draw();
+    this.moveTurtles();
   }
 
   addLines({ left, top, image }: TurtleLines): void {
@@ -82,7 +78,6 @@ class TurtleWorld {
       context?.clearRect(left, top, bitmap.width, bitmap.height);
       context?.drawImage(bitmap, left, top);
       bitmap.close();
-      this.draw();
     });
   }
 
@@ -90,23 +85,36 @@ class TurtleWorld {
     this.decoding = this.decoding.then(() => this.lines.getContext("2d")?.clearRect(0, 0, SIZE_PX, SIZE_PX));
   }
 
+  private move(): void {
+    if (!this.scene) return;
+    const { background, turtles } = this.scene;
+    const topics = turtles.map(({ topic, shape }) => `${topic} ${shape}`).join();
+    if (topics !== this.shownTopics) {
+      this.shownTopics = topics;
+      this.replaceTurtles(turtles);
+    }
+    this.sea.style.backgroundColor = background;
+    this.turtles.forEach((element, index) => {
+      const turtle = turtles[index];
+      if (!turtle) return;
+      element.style.left = toPercent(turtle.x * PX_PER_UNIT);
+      element.style.top = toPercent(SIZE_PX - 1 - turtle.y * PX_PER_UNIT);
+      element.style.rotate = `${-turtle.theta}rad`;
+    });
+  }
+
+  private replaceTurtles(turtles: readonly TurtlePose[]): void {
+    this.sea.ariaLabel = `${this.name}: ${turtles.map(({ name }) => name).join(", ")}`;
+    this.turtles = turtles.map(({ shape }) => createTurtle(shape));
+    this.sea.replaceChildren(this.lines, ...this.turtles);
+    this.names.replaceChildren(...turtles.map((turtle) => this.createTurtleButton(turtle)));
+  }
+
   private createTurtleButton({ name, topic }: TurtlePose): HTMLElement {
     return createButton(strings.turtlesim.driveHint(topic), () => this.drive(topic), "tool", createIcon("teleop"), name);
   }
+}
 
-  private draw(): void {
-    const context = this.canvas.getContext("2d");
-    if (!context || !this.scene) return;
-    context.setTransform(SCALE, 0, 0, SCALE, 0, 0);
-    context.fillStyle = this.scene.background;
-    context.fillRect(0, 0, SIZE_PX, SIZE_PX);
-    context.drawImage(this.lines, 0, 0);
-    for (const { x, y, theta, shape } of this.scene.turtles) {
-      context.save();
-      context.translate(x * PX_PER_UNIT, SIZE_PX - 1 - y * PX_PER_UNIT);
-      context.rotate(-theta);
-      drawTurtle(context, shape);
-      context.restore();
-    }
-  }
+function toPercent(pixels: number): string {
+  return `${(100 * pixels) / SIZE_PX}%`;
 }

@@ -1,3 +1,5 @@
+import { h } from "../../dom";
+
 /** Our own drawings of turtles, seen from above, heading along x; they are as long as turtlesim's, 45 pixels. */
 interface Turtle {
   skin: string;
@@ -64,8 +66,24 @@ const TURTLES: readonly Turtle[] = [
   { skin: "#c7b5ee", shell: "#5f4a94", pattern: drawStar, breadth: 13.5 },
 ];
 
-/** Draws a turtle at the origin, heading along x. */
-export function drawTurtle(context: CanvasRenderingContext2D, shape: number): void {
+/** The size of a drawing in pixels of the world, and the pixels of the canvas in one of these. */
+const DRAWING_SIZE = 60;
+const SCALE = 4;
+
+/** Creates a canvas with a turtle in its middle, heading along x. */
+export function createTurtle(shape: number): HTMLElement {
+  const canvas = h("canvas", { class: "turtle" });
+  canvas.width = canvas.height = DRAWING_SIZE * SCALE;
+  const context = canvas.getContext("2d");
+  if (context) {
+    context.scale(SCALE, SCALE);
+    context.translate(DRAWING_SIZE / 2, DRAWING_SIZE / 2);
+    drawTurtle(context, shape);
+  }
+  return canvas;
+}
+
+function drawTurtle(context: CanvasRenderingContext2D, shape: number): void {
   const turtle = TURTLES[shape % TURTLES.length];
   if (!turtle) return;
   const { skin, shell, pattern, breadth } = turtle;
