@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from linkwright.graph import LogLevel
 from linkwright.messages import get_message
+from linkwright.simulation.description_files import read_model_file
 from tests.simulation.test_server import URDF, simulator
-from tests.simulation.worlds import box
+from tests.simulation.worlds import box, finder
 
 PACKAGE = "ros_gz_interfaces"
 
@@ -74,6 +77,24 @@ async def test_pose_of_request_replaces_pose_of_model(tmp_path):
         assert session.simulator.server.simulation.model_pose("ball")[:3] == pytest.approx((2.0, 0.0, 3.0))
         assert await create(session, name="second", sdf=SDF)
         assert session.simulator.server.simulation.model_pose("second")[:3] == pytest.approx((0.0, 0.0, 7.0))
+
+
+def test_relative_paths_in_file_are_relative_to_it(tmp_path):
+    folder = tmp_path / "models & more" / "wheel"
+    (folder / "meshes").mkdir(parents=True)
+    mesh = folder / "meshes" / "wheel.stl"
+    mesh.write_text("solid a\nendsolid a\n", encoding="utf-8")
+    (folder / "model.sdf").write_text(
+        '<sdf version="1.7"><model name="wheel"><link name="link"><visual name="v"><geometry><mesh><uri>\n'
+        "meshes/wheel.stl </uri></mesh></geometry></visual><visual name='w'><geometry><mesh><uri>meshes/other.stl</uri>"
+        "</mesh></geometry></visual></link></model></sdf>",
+        encoding="utf-8",
+    )
+    text = read_model_file(str(folder / "model.sdf"), finder())
+    assert [element.strip() for element in re.findall("<uri>([^<]*)</uri>", text)] == [
+        str(mesh).replace("&", "&amp;"),
+        "meshes/other.stl",
+    ]
 
 
 async def test_model_is_moved(tmp_path):

@@ -24,6 +24,7 @@ from linkwright.sdf.shapes import Cone, Heightmap, Mesh, Plane, Polyline, Shape
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.shapes import compute_cone_vertices, set_pose
 from linkwright.simulation.scene.textured_shapes import create_textured_mesh
+from linkwright.simulation.scene.textures import limit_texture_size
 from linkwright.xmltree import Element
 
 _MAX_PIECES = 300
@@ -203,6 +204,7 @@ class MeshLibrary:
         Equal images share one texture, because each compilation of the specification decodes every texture.
         """
         mujoco = load_mujoco()
+        image = limit_texture_size(image)
         if image not in self._textures:
             texture = self.spec.add_texture(name=material.name, type=mujoco.mjtTexture.mjTEXTURE_2D)
             texture.file = f"{material.name}.png"
