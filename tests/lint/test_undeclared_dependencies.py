@@ -55,9 +55,19 @@ def test_named_packages_are_not_reported(tmp_path, more):
     assert find(tmp_path, {"CMakeLists.txt": "project(p)\nfind_package(rosbag2_cpp REQUIRED)\n"}, more) == []
 
 
-def test_dependency_of_a_declared_package_is_not_reported(tmp_path):
-    cmake = "project(p)\nfind_package(hardware_interface REQUIRED)\n"
-    assert find(tmp_path, {"CMakeLists.txt": cmake}, "<depend>ros2_control</depend>") == []
+@pytest.mark.parametrize(
+    ("declared", "used", "names"),
+    [
+        ("ros2_control", "hardware_interface", []),
+        ("phidgets_drivers", "phidgets_spatial", []),
+        ("velodyne", "velodyne_pointcloud", []),
+        ("velodyne", "velodyne_description", ["velodyne_description"]),
+        ("ros2_controllers", "diff_drive_controller", []),
+    ],
+)
+def test_dependency_of_a_declared_package_is_not_reported(tmp_path, declared, used, names):
+    cmake = f"project(p)\nfind_package({used} REQUIRED)\n"
+    assert find(tmp_path, {"CMakeLists.txt": cmake}, f"<depend>{declared}</depend>") == names
 
 
 def test_components_of_catkin(tmp_path):

@@ -28,7 +28,7 @@ POSSIBLE = "if the node publishes or serves '{}', programs that use it do not fi
         ("elsewhere", "scan", POSSIBLE),
         ("elsewhere", "cloud_in", None),
         ("move_base", "odom", None),
-        ("move_base", "cmd_vel", POSSIBLE),
+        ("move_base", "map", POSSIBLE),
         ("elsewhere", "cloud_out", CERTAIN),
     ],
 )
@@ -37,6 +37,27 @@ def test_remapping_is_breaking_by_the_side_of_the_node(repository, compare, pack
     text = f'<launch><node pkg="{package}" type="n.py" name="n">{remap}</node></launch>'
     files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/scripts/n.py": SOURCE}
     repository.commit({**files, "arm/launch/arm.launch": text.replace(remap, "")})
+    repository.write({"arm/launch/arm.launch": text})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
+    assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
+
+
+@pytest.mark.parametrize(
+    ("program", "name", "reason"),
+    [
+        ("move_base/move_base", "map", None),
+        ("move_base/move_base", "move_base_simple/goal", None),
+        ("move_base/move_base", "cmd_vel", CERTAIN),
+        ("slam_toolbox/async_slam_toolbox_node", "map", POSSIBLE),
+        ("amcl/amcl", "map", None),
+        ("map_server/map_server", "map", CERTAIN),
+    ],
+)
+def test_topics_of_well_known_programs_have_a_side(repository, compare, program, name, reason):
+    remap = f'<remap from="{name}" to="/base/x"/>'
+    package, _, executable = program.partition("/")
+    text = f'<launch><node pkg="{package}" type="{executable}" name="n">{remap}</node></launch>'
+    repository.commit({"arm/launch/arm.launch": text.replace(remap, "")})
     repository.write({"arm/launch/arm.launch": text})
     (change,) = subject(compare(repository), "arm/launch/arm.launch").changes
     assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))

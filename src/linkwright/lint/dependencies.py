@@ -90,6 +90,31 @@ _METAPACKAGE_PREFIXES = (
     ("rosbridge_suite", "rosbridge_"),
     ("rosserial", "rosserial_"),
     ("rtabmap", "rtabmap_"),
+    ("phidgets_drivers", "phidgets_"),
+    *(("velodyne", f"velodyne_{name}") for name in ("driver", "laserscan", "msgs", "pointcloud")),
+    *(("turtlebot3", f"turtlebot3_{name}") for name in ("bringup", "cartographer", "description", "example", "msgs")),
+    *(("turtlebot3", f"turtlebot3_{name}") for name in ("navigation", "node", "slam", "teleop")),
+    *(
+        (metapackage, name)
+        for metapackage in ("ros_controllers", "ros2_controllers")
+        for name in (
+            *("ackermann_steering_controller", "diff_drive_controller", "effort_controllers"),
+            *("forward_command_controller", "gripper_action_controller", "gripper_controllers", "imu_sensor_"),
+            *("force_torque_sensor_", "joint_state_", "joint_trajectory_controller", "position_controllers"),
+            *("tricycle_", "velocity_controllers"),
+        )
+    ),
+    *(("ros_control", name) for name in ("controller_interface", "hardware_interface", "transmission_interface")),
+    *(("navigation", name) for name in ("base_local_planner", "costmap_2d", "dwa_local_planner", "global_planner")),
+    *(("navigation", name) for name in ("nav_core", "navfn", "voxel_grid")),
+    *(("joystick_drivers", name) for name in ("joy", "spacenav", "wiimote")),
+    *(("laser_pipeline", name) for name in ("laser_assembler", "laser_filters", "laser_geometry")),
+    *(("imu_tools", name) for name in ("imu_complementary_filter", "imu_filter_madgwick", "rviz_imu_plugin")),
+    *(("perception_pcl", name) for name in ("pcl_conversions", "pcl_ros")),
+    *(("vision_opencv", name) for name in ("cv_bridge", "image_geometry")),
+    ("ros_ign", "ros_ign_"),
+    ("rtabmap_ros", "rtabmap_"),
+    ("geometry2", "tf2"),
     ("warehouse_ros_mongo", "warehouse_ros"),
     ("uuv_simulator", "uuv_"),
     ("image_transport_plugins", "compressed_"),

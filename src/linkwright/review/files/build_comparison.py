@@ -20,8 +20,7 @@ from linkwright.review.files.build_facts import (
     BuildFacts,
     Fact,
     FactKind,
-    TargetParts,
-    find_new_source,
+    find_renamed_targets,
     list_names,
 )
 from linkwright.review.files.cmake_branches import is_test_condition
@@ -83,7 +82,7 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             added = [fact for fact in added if fact.name not in installed | _find_test_programs(old)]
             removed = [fact for fact in removed if fact.name not in installed | _find_test_programs(new)]
         private = old.private_libraries if kind is FactKind.BUILT_LIBRARY else frozenset()
-        _report_renamed(pair, kind, removed, added, _find_renamed_targets(pair, old, new), private)
+        _report_renamed(pair, kind, removed, added, find_renamed_targets(pair.versions, old, new), private)
         if kind is FactKind.PACKAGE:
             _report_other_versions(pair, removed, added)
         if kind is FactKind.STOP:
@@ -274,25 +273,6 @@ def _report_reworded_errors(pair: FilePair, removed: list[Fact], added: list[Fac
             added.remove(new)
             text = phrase("the error '{old}' has another text: '{new}'", old=old.name, new=new.name)
             pair.add(text, pair.location(new.span))
-
-
-def _find_renamed_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
-    """Return the new names of renamed targets by old name.
-
-    A renamed target keeps its first source, and a renamed executable runs the same component.
-    """
-    sources = {
-        next(iter(parts.sources)): name
-        for name, parts in new.targets.items()
-        if parts.sources and not old.targets.get(name, TargetParts()).sources
-    }
-    renamed = {}
-    for name, parts in old.targets.items():
-        source = next((find_new_source(pair, old, new, item) for item in parts.sources), None)
-        if source in sources and not new.targets.get(name, TargetParts()).sources:
-            renamed[name] = sources[source]
-    programs = {name: new.component_programs.get(component) for component, name in old.component_programs.items()}
-    return renamed | {name: other for name, other in programs.items() if other is not None and other != name}
 
 
 def _format_facts(kind: FactKind, facts: Sequence[Fact], *, is_added: bool) -> Phrase:

@@ -10,6 +10,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
+from linkwright.review.versions import Versions
 
 _MIN_FOLDER_PARTS = 3
 """The minimum number of path parts of a folder that replaces its files in a report."""
@@ -215,11 +216,11 @@ class BuildFacts:
         return PurePosixPath(parts[0], *parts[2:]).as_posix() if is_own else path
 
 
-def find_new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str:
+def find_new_source(versions: Versions, old: BuildFacts, new: BuildFacts, source: str) -> str:
     """Return the path of a source in the new version.
 
     Args:
-        pair: both versions of the build file.
+        versions: the repository before and after the change.
         old: the facts of the old version.
         new: the facts of the new version.
         source: the path in the old version.
@@ -228,9 +229,28 @@ def find_new_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: st
         The path relative to the package; the old path if the file was not renamed.
     """
     path = (PurePosixPath(old.package) / source).as_posix()
-    new_path = next((file.new_path for file in pair.versions.changed_files if file.old_path == path), None)
+    new_path = next((file.new_path for file in versions.changed_files if file.old_path == path), None)
     is_inside = new_path is not None and PurePosixPath(new_path).is_relative_to(new.package)
     return PurePosixPath(new_path).relative_to(new.package).as_posix() if new_path and is_inside else source
+
+
+def find_renamed_targets(versions: Versions, old: BuildFacts, new: BuildFacts) -> dict[str, str]:
+    """Return the new names of renamed targets by old name.
+
+    A renamed target keeps its first source, and a renamed executable runs the same component.
+    """
+    sources = {
+        next(iter(parts.sources)): name
+        for name, parts in new.targets.items()
+        if parts.sources and not old.targets.get(name, TargetParts()).sources
+    }
+    renamed = {}
+    for name, parts in old.targets.items():
+        source = next((find_new_source(versions, old, new, item) for item in parts.sources), None)
+        if source in sources and not new.targets.get(name, TargetParts()).sources:
+            renamed[name] = sources[source]
+    programs = {name: new.component_programs.get(component) for component, name in old.component_programs.items()}
+    return renamed | {name: other for name, other in programs.items() if other is not None and other != name}
 
 
 def find_own_include_text(source: str) -> str:

@@ -122,7 +122,7 @@ def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         before = old.targets.get(name)
         if before is None:
             continue
-        sources = {find_new_source(pair, old, new, item): span for item, span in before.sources.items()}
+        sources = {find_new_source(pair.versions, old, new, item): span for item, span in before.sources.items()}
         if parts.is_test:
             _report_moved_sources(pair, name, dict(zip(before.sources, sources, strict=False)), parts.sources)
         for kind, old_items, new_items in (

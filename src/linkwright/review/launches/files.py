@@ -39,6 +39,7 @@ from linkwright.review.launches.included import (
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
 from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
+from linkwright.review.launches.missing_programs import lacks_program
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renamed_programs import find_renamed_programs
@@ -228,6 +229,8 @@ def _report_unpaired_entries(
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         outlines = old_included.outline, new_included.outline
         reason = find_removal_reason(entry, *outlines, stops_nodes=stops_nodes) or explain_lost_value(entry, *outlines)
+        if reason is not None and lacks_program(pair.versions.old, entry):
+            text, reason = phrase("{change}; its package never had the program", change=text), None
         _report_removed(pair, entry, text, reason, trees)
     _report_moved(pair, moved)
 

@@ -15,6 +15,8 @@ from linkwright.review.launches.names import LaunchPythonFile
 
 _MAX_IMPORT_DEPTH = 5
 """The maximum number of files through which a name is imported."""
+_MAX_CALL_DEPTH = 2
+"""The maximum number of functions that a function calls one through the other to make actions."""
 _MAX_BYTES = 1 << 20
 _NODE_MODULES = ("rclpy", "rclpy.node", "rclpy.lifecycle")
 _NODE_CALLS = frozenset({"rclpy.init", "rclpy.create_node", "rospy.init_node"})
@@ -122,7 +124,9 @@ class HelperFunctions:
             nodes = (node for statement in statements for node in ast.walk(statement))
             called = {called_name(node) for node in nodes if isinstance(node, ast.Call)}
             functions = (node for node in _index_definitions(python).values() if isinstance(node, ast.FunctionDef))
-            names = frozenset(node.name for node in functions if node.name in called and self._makes_actions(node))
+            names = frozenset(
+                node.name for node in functions if node.name in called and self._makes_actions(python, node)
+            )
             self._names_by_file[id(python)] = names
         return names
 
@@ -166,6 +170,13 @@ class HelperFunctions:
                     return found
         return None
 
+    def find_class(self, python: PythonFile, name: str) -> tuple[PythonFile, ast.ClassDef] | None:
+        """Return the definition of a class that a file defines or imports from the repository, with its file."""
+        definition = self._find_definition(python, name, 0)
+        if definition is None or not isinstance(definition[1], ast.ClassDef):
+            return None
+        return definition[0], definition[1]
+
     def _find(self, python: PythonFile, name: str) -> Function | None:
         first_name, _, method = name.partition(".")
         if not first_name or "." in method:
@@ -175,7 +186,7 @@ class HelperFunctions:
             return None
         file, node = definition
         if isinstance(node, ast.FunctionDef):
-            return Function(file, node) if self._makes_actions(node) and not method else None
+            return Function(file, node) if self._makes_actions(file, node) and not method else None
         return self._find_method(file, node, method, 0)
 
     def _find_method(self, file: PythonFile, class_node: ast.ClassDef, name: str, depth: int) -> Function | None:
@@ -184,7 +195,7 @@ class HelperFunctions:
         method = methods.get(name)
         if method is not None:
             is_method = "staticmethod" not in map(ast.unparse, method.decorator_list)
-            return Function(file, method, is_method) if self._makes_actions(method) else None
+            return Function(file, method, is_method) if self._makes_actions(file, method) else None
         for base in class_node.bases if depth < _MAX_IMPORT_DEPTH else ():
             definition = self._find_definition(file, base.id, 0) if isinstance(base, ast.Name) else None
             if definition is not None and isinstance(definition[1], ast.ClassDef):
@@ -193,10 +204,18 @@ class HelperFunctions:
                     return inherited
         return None
 
-    def _makes_actions(self, function: ast.FunctionDef) -> bool:
-        """Return whether a function makes actions."""
-        calls = (node for node in ast.walk(function) if isinstance(node, ast.Call))
-        return any(called_name(call).rpartition(".")[2] in self._action_classes for call in calls)
+    def _makes_actions(self, python: PythonFile, function: ast.FunctionDef, depth: int = 0) -> bool:
+        """Return whether a function makes actions, itself or by a call of another function."""
+        names = {called_name(node) for node in ast.walk(function) if isinstance(node, ast.Call)}
+        if any(name.rpartition(".")[2] in self._action_classes for name in names):
+            return True
+        for name in sorted(names) if depth < _MAX_CALL_DEPTH else ():
+            definition = self._find_definition(python, name, 0) if name.isidentifier() else None
+            if definition is None or not isinstance(definition[1], ast.FunctionDef):
+                continue
+            if self._makes_actions(definition[0], definition[1], depth + 1):
+                return True
+        return False
 
     def _find_definition(
         self, python: PythonFile, name: str, depth: int
@@ -231,6 +250,15 @@ class HelperFunctions:
             module_parts = (*path.parts[:-1], path.stem) if path.stem != "__init__" else path.parts[:-1]
             if module_parts[-len(parts) :] == parts:
                 yield path
+
+
+def find_parameter_defaults(function: ast.FunctionDef) -> dict[str, ast.expr]:
+    """Return the defaults of the parameters of a function, by name."""
+    arguments = function.args
+    names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
+    defaults = dict(zip(names[len(names) - len(arguments.defaults) :], arguments.defaults, strict=True))
+    keyword_defaults = zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+    return defaults | {argument.arg: value for argument, value in keyword_defaults if value is not None}
 
 
 def _index_definitions(python: PythonFile) -> dict[str, ast.FunctionDef | ast.ClassDef]:

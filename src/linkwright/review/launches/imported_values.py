@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from copy import deepcopy
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
@@ -77,6 +77,21 @@ def _find_values(python: PythonFile, node: ast.ImportFrom, helpers: HelperFuncti
             yield name, expression
 
 
+def inline_values(
+    node: ast.expr, python: PythonFile, helpers: HelperFunctions, values: Mapping[str, ast.expr]
+) -> ast.expr:
+    """Return a copy of an expression with values in place of names.
+
+    Args:
+        node: the expression.
+        python: the module that contains it.
+        helpers: the modules of the repository.
+        values: the values of local names.
+    """
+    result: ast.expr = _Inliner(python, helpers, values=values).visit(deepcopy(node))
+    return result
+
+
 def _make_assignment(name: str, value: ast.expr, node: ast.ImportFrom) -> ast.Assign:
     """Return an assignment in the place of an import."""
     assignment = ast.Assign([ast.Name(name, ast.Store())], value)
@@ -93,17 +108,27 @@ class _Inliner(ast.NodeTransformer):
         python: the module.
         helpers: the modules of the repository.
         depth: the number of names that led to the module.
+        values: the values of local names.
     """
 
-    def __init__(self, python: PythonFile, helpers: HelperFunctions, depth: int = 0) -> None:
+    def __init__(
+        self,
+        python: PythonFile,
+        helpers: HelperFunctions,
+        depth: int = 0,
+        values: Mapping[str, ast.expr] | None = None,
+    ) -> None:
         self._python = python
         self._helpers = helpers
         self._depth = depth
+        self._values = values or {}
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
         """Return the value of a name, or the name if its value is unknown."""
         if self._depth >= _MAX_DEPTH or not isinstance(node.ctx, ast.Load):
             return node
+        if node.id in self._values:
+            return deepcopy(self._values[node.id])
         value = self._python.assigned_expression(node.id)
         definition = (self._python, value) if value is not None else None
         definition = definition or self._helpers.find_imported_value(self._python, node.id)

@@ -11,6 +11,7 @@ from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
+    REMAPPING,
     SERVER_PARAMETER,
     Entry,
     LaunchOutline,
@@ -130,6 +131,9 @@ def _compute_replacement_score(
     if old_program == new_program:
         return 2.0 + similarity if similarity >= MIN_SIMILARITY or not (old.settings and new.settings) else 0.0
     name_similarity = compute_name_similarity(old_program.rpartition("::")[2], new_program.rpartition("::")[2])
+    has_same_topics = old.settings == new.settings and any(key.startswith(REMAPPING) for key in old.settings)
+    if old_package == new_package and has_same_topics and name_similarity >= MIN_SIMILARITY:
+        return 1.0 + name_similarity
     other_names = (old_package, new_package), (name or "", new.settings.get("name", ""))
     is_renamed = all(a == b or compute_name_similarity(a, b) >= _MIN_SIMILARITY_OF_PROGRAMS for a, b in other_names)
     is_similar = name_similarity >= _MIN_SIMILARITY_OF_PROGRAMS and (

@@ -50,6 +50,8 @@ _COMPUTED_NAME = re.compile(
 )
 """A command of a build file that may build programs whose names it does not contain."""
 _PACKAGE_OF_PATH = re.compile(r"\$\(find(?:-pkg-share|-pkg-prefix)? (?P<package>[\w.-]+)\)")
+_UNKNOWN_PROGRAM = re.compile(r"[$/*:\s]")
+"""A character of a name that is computed, or that is the class of a component."""
 _SUBMODULE = re.compile(r"^\s*path\s*=\s*(?P<path>\S+)", re.MULTILINE)
 
 
@@ -167,7 +169,7 @@ def find_missing_programs(versions: Versions, changed_files: Sequence[ChangedFil
         reported: set[str] = set()
         for entry in _read_nodes(versions.new, path):
             package, _, name = entry.name.partition("/")
-            if package not in packages or not name or entry.name in reported or re.search(r"[$/*:\s]", name):
+            if package not in packages or not name or entry.name in reported or _UNKNOWN_PROGRAM.search(name):
                 continue
             old, new = packages[package]
             is_first = path in changed and entry.name not in old_names
@@ -186,6 +188,15 @@ def find_missing_programs(versions: Versions, changed_files: Sequence[ChangedFil
                 reported.add(entry.name)
                 location = Location(path, entry.span.line, entry.span.column)
                 yield path, Change(change, Effect.BREAKING, phrase("the node does not start"), location)
+
+
+def lacks_program(version: Version, entry: Entry) -> bool:
+    """Return whether a launch action starts a program that its package in the repository certainly does not have."""
+    package, _, name = entry.name.partition("/")
+    owner = find_packages(version).get(package) if entry.kind in PROGRAM_KINDS else None
+    if owner is None or not name or _UNKNOWN_PROGRAM.search(name):
+        return False
+    return owner.lacks(name) and (name.endswith(_SCRIPT_SUFFIXES) or not owner.may_compute_names)
 
 
 def _translate_package(program: str, new_names: Mapping[str, str]) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
-from linkwright.review.launches.helpers import Function, HelperFunctions, find_program_guard
+from linkwright.review.launches.helpers import Function, HelperFunctions, find_parameter_defaults, find_program_guard
 from linkwright.review.launches.list_additions import find_added_items
 from linkwright.review.launches.literals import CoveredLiterals, Literals
 from linkwright.review.launches.names import is_chosen_value
@@ -155,6 +155,11 @@ class _Reader:
             for item in node.elts:
                 scope = scope.with_namespace(self._find_pushed_namespace(item))
                 self.visit(item, scope)
+        elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            for term in (node.left, node.right):
+                self.visit(term, scope)
+                for item in self._list_items(term):
+                    scope = scope.with_namespace(self._find_pushed_namespace(item))
         elif isinstance(node, ast.For):
             self._visit_loop(node.target, node.iter, node.body, scope)
         elif isinstance(node, (ast.ListComp, ast.GeneratorExp)):
@@ -168,6 +173,13 @@ class _Reader:
         else:
             for child in ast.iter_child_nodes(node):
                 self.visit(child, scope)
+
+    def _list_items(self, node: ast.expr) -> list[ast.expr]:
+        """Return the items of a list, also of a sum of lists; none for other expressions."""
+        node = self.python.resolved(node)
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            return [*self._list_items(node.left), *self._list_items(node.right)]
+        return node.elts if isinstance(node, (ast.List, ast.Tuple)) else []
 
     def _visit_value(self, value: ast.expr, scope: Scope) -> None:
         """Find the actions in the value of a name.
@@ -344,9 +356,7 @@ class _Reader:
         """
         arguments = function.node.args
         names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
-        defaults = dict(zip(names[len(names) - len(arguments.defaults) :], arguments.defaults, strict=True))
-        keyword_defaults = zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
-        defaults |= {argument.arg: value for argument, value in keyword_defaults if value is not None}
+        defaults = find_parameter_defaults(function.node)
         default_texts = ExpressionTexts(function.python)
         bindings = {name: default_texts.text(value) for name, value in defaults.items()}
         if function.is_method:
@@ -387,7 +397,11 @@ class _Reader:
         if function in _ARGUMENT_CLASSES:
             kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
             names = {"default_value": "default", "choices": "choices"}
-            settings = {names[key]: text(value) for key, value in keywords.items() if key in names}
+            settings = {
+                names[key]: text(value)
+                for key, value in keywords.items()
+                if key in names and not (key == "default_value" and self._is_none(value))
+            }
             if "default" in settings:
                 settings["default"] = self.texts.format_joined(keywords["default_value"])
         elif function == "SetLaunchConfiguration":
@@ -418,6 +432,16 @@ class _Reader:
         if condition:
             settings[CONDITION] = condition
         return Entry(kind, name, scope.add_to_settings(kind, settings), self.python.span(call))
+
+    def _is_none(self, node: ast.expr) -> bool:
+        """Return whether an expression is None, also by the default of a parameter of a function around it."""
+        value = self.texts.resolve(node).node
+        if isinstance(value, ast.Name) and self.texts.text(value) in ("None", value.id):
+            functions = (item for item in ast.walk(self.python.tree) if isinstance(item, ast.FunctionDef))
+            around = [item for item in functions if item.lineno <= value.lineno <= (item.end_lineno or item.lineno)]
+            defaults = {name: default for item in around for name, default in find_parameter_defaults(item).items()}
+            value = defaults.get(value.id, value)
+        return isinstance(value, ast.Constant) and value.value is None
 
     def _read_handler(self, call: ast.Call, scope: Scope) -> Entry:
         """Return the handler of an event: its class and the action whose event it handles."""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import SourceText, foreign, phrase
 from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launches.dictionary_classes import expand_dictionary_classes
 from linkwright.review.launches.environment import find_python_readings
 from linkwright.review.launches.helpers import HelperFunctions
 from linkwright.review.launches.imported_values import assign_imported_values, uses_unknown_actions
@@ -45,7 +46,7 @@ def _read(path: Path, root: Path) -> LaunchOutline:
         message = phrase("line {line} is not valid Python: {reason}", line=line, reason=reason)
         raise UnreadableFileError(message) from None
     helpers = HelperFunctions(root, ACTIONS)
-    python = assign_imported_values(python, helpers)
+    python = expand_dictionary_classes(assign_imported_values(python, helpers), helpers)
     outline = read_python_outline(python, helpers)
     return replace(
         outline,

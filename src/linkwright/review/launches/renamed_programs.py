@@ -1,13 +1,13 @@
-"""Find programs that only have another name: renamed scripts, and executables of the same component."""
+"""Find programs that only have another name: renamed scripts, and renamed executables of a build file."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from pathlib import PurePosixPath
 
+from linkwright.review.files.build_facts import find_renamed_targets
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.installed_paths import read_package_facts
-from linkwright.review.versions import Version, Versions
+from linkwright.review.versions import Versions
 
 
 def find_renamed_programs(versions: Versions) -> dict[str, str]:
@@ -17,14 +17,20 @@ def find_renamed_programs(versions: Versions) -> dict[str, str]:
         for file in versions.changed_files
         if file.old_path and file.new_path
     }
-    paths = {file.path for file in versions.changed_files if PurePosixPath(file.path).name == CMAKE_FILE}
-    old, new = _read_component_programs(versions.old, paths), _read_component_programs(versions.new, paths)
-    left = set(new.values())
-    return names | {old[plugin]: new[plugin] for plugin in old if plugin in new and old[plugin] not in left}
+    for file in versions.changed_files:
+        if PurePosixPath(file.path).name != CMAKE_FILE or file.old_path is None or file.new_path is None:
+            continue
+        folders = versions.old.package_of(file.old_path), versions.new.package_of(file.new_path)
+        if None not in folders:
+            names |= _find_renamed_targets(versions, *map(str, folders))
+    return names
 
 
-def _read_component_programs(version: Version, paths: Collection[str]) -> dict[str, str]:
-    """Return the executables of components in the packages of build files, by the class of the component."""
-    folders = {folder for path in paths if (folder := version.package_of(path)) is not None}
-    facts = [read_package_facts(version, folder) for folder in sorted(folders)]
-    return {plugin: name for item in facts if item is not None for plugin, name in item.component_programs.items()}
+def _find_renamed_targets(versions: Versions, old_folder: str, new_folder: str) -> dict[str, str]:
+    """Return the new names of the renamed executables of a package, by old name."""
+    old, new = read_package_facts(versions.old, old_folder), read_package_facts(versions.new, new_folder)
+    if old is None or new is None:
+        return {}
+    left = {*new.targets, *new.component_programs.values()}
+    renamed = find_renamed_targets(versions, old, new)
+    return {name: other for name, other in renamed.items() if name not in left}

@@ -259,6 +259,7 @@ class SettingChanges:
         other_settings = {name: value for name, value in include.settings.items() if name != setting}
         old_include = replace(include, settings=other_settings if old is None else {**other_settings, setting: old})
         stopped = self._included.count_started_programs(old_include) - self._included.count_started_programs(include)
+        stopped &= self._old_included.count_started_programs(old_include)
         return _explain_stopped_programs(stopped) if stopped else None
 
     def _sets_default_name(self, entry: Entry, setting: str, old: str | None, new: str | None) -> bool:

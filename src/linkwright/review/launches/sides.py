@@ -22,6 +22,34 @@ _INPUT_TOPIC = re.compile(
     r"depth_camera_info|(rgb|depth|image)(/\w+)*|camera_info)"
 )
 """The topics to which these programs subscribe. They publish their other topics."""
+_INPUTS = {
+    "move_base/move_base": {"map", "goal", "move_base_simple/goal"},
+    "amcl/amcl": {"map", "initialpose"},
+    "nav2_amcl/amcl": {"map", "initialpose"},
+    "map_server/map_saver": {"map"},
+    "robot_localization/ekf_node": {"set_pose"},
+    "robot_localization/ukf_node": {"set_pose"},
+    "robot_localization/ekf_localization_node": {"set_pose"},
+    "robot_localization/ukf_localization_node": {"set_pose"},
+}
+"""More topics to which well-known programs subscribe."""
+_OUTPUTS = {
+    "move_base/move_base": {"cmd_vel"},
+    "amcl/amcl": {"amcl_pose", "particlecloud"},
+    "nav2_amcl/amcl": {"amcl_pose", "particle_cloud"},
+    "nav2_controller/controller_server": {"cmd_vel"},
+    "nav2_map_server/map_server": {"map"},
+    "map_server/map_server": {"map"},
+    "gmapping/slam_gmapping": {"map"},
+    "robot_localization/ekf_node": {"odometry/filtered"},
+    "robot_localization/ukf_node": {"odometry/filtered"},
+    "robot_localization/ekf_localization_node": {"odometry/filtered"},
+    "robot_localization/ukf_localization_node": {"odometry/filtered"},
+    "joint_state_publisher/joint_state_publisher": {"joint_states"},
+    "depthimage_to_laserscan/depthimage_to_laserscan": {"scan"},
+    "pointcloud_to_laserscan/pointcloud_to_laserscan_node": {"scan"},
+}
+"""Topics that well-known programs publish."""
 _NAMED_INPUT = re.compile(r"(.*[/_])?(in|input)([/_].*)?")
 _NAMED_OUTPUT = re.compile(r"(.*[/_])?(out|output)([/_].*)?")
 _OFFERING_KINDS = frozenset({NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION})
@@ -57,6 +85,10 @@ def find_side(program: str, name: str, root: Path | None) -> Side:
         root: the folder of the repository, which may have the sources; None if it is unknown.
     """
     relative_name = name.lstrip("~/")
+    if relative_name in _OUTPUTS.get(program, ()):
+        return Side.OFFERS
+    if relative_name in _INPUTS.get(program, ()):
+        return Side.USES
     if _SUBSCRIBING_PROGRAM.match(program) and _INPUT_TOPIC.fullmatch(relative_name):
         return Side.USES
     modules = () if root is None else _find_modules(root, program)

@@ -14,6 +14,7 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.launches.missing_programs import RepositoryPackage, find_packages
 from linkwright.review.launches.script_options import find_refused_options
+from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.users.installed_readers import find_named_paths
 from linkwright.review.versions import Version, Versions
 
@@ -37,13 +38,14 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
     lost = {file.old_path for file in changed_files if file.old_path and file.old_path != file.new_path}
     names = {PurePosixPath(path).name for path in lost}
     changed = {file.new_path: file.old_path for file in changed_files if file.new_path}
+    renamed = PackageNames(find_renamed_packages(versions))
     for path in find_launch_files(versions.new):
         text = versions.new.text(path) if names or path in changed else ""
         is_user = any(name in text for name in names)
         if not is_user and path not in changed:
             continue
         source = SourceText(str(versions.new.file(path)), text)
-        known = _list_known_paths(versions.old, changed.get(path, path)) if path in changed else None
+        known = _list_known_paths(versions.old, changed.get(path, path), renamed) if path in changed else None
         reported: set[tuple[str, str]] = set()
         for package, subpath, span in find_share_paths(source, path):
             if (package, subpath) in reported:
@@ -58,15 +60,21 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
                     yield path, replace(change, effect=Effect.CHANGED, reason=None) if is_added else change
 
 
-def _list_known_paths(version: Version, path: str | None) -> set[tuple[str, str]] | None:
+def _list_known_paths(version: Version, path: str | None, renamed: PackageNames) -> set[tuple[str, str]] | None:
     """Return the paths that the old version of a launch file names; None for a file in Python.
 
+    They have the new names of renamed packages.
     The check of packages (LW842) finds the missing files that Python files name.
     """
     if (path or "").endswith(".py"):
         return None
     source = SourceText(str(version.file(path or "")), version.text(path) if path else "")
-    return {(package, subpath) for package, subpath, _ in find_share_paths(source, path or "")}
+    paths = {(package, subpath) for package, subpath, _ in find_share_paths(source, path or "")}
+    return paths | {
+        (renamed.translate_package(package), text)
+        for package, subpath in paths
+        for text in (subpath, renamed.rename_derived(subpath))
+    }
 
 
 def find_share_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, Span]]:
