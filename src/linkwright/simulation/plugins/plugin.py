@@ -217,6 +217,11 @@ class SimulatedPlugin(Generic[P]):
         """The surface of the water on which the plugin floats bodies, or None."""
         return None
 
+    @property
+    def read_sensors(self) -> Collection[str]:
+        """The names of sensors without a plugin that this plugin reads, so that they are not reported as missing."""
+        return ()
+
     # --- methods for plugins to call ----------------------------------------------------------------------------------
 
     @property

@@ -364,14 +364,19 @@ class SimulationServer:
         Unchanged plugins take over the state of their previous instances in `old_plugins`.
         """
         self._plugins[owner] = []
-        unsimulated: dict[str, bool] = {}
+        unsimulated_contexts: list[PluginContext] = []
         for context in contexts:
             with self._logging_failures(context):
                 plugin_type = self._find_plugin_class(context)
                 if plugin_type is None:
-                    unsimulated |= _find_unsimulated_names(context)
+                    unsimulated_contexts.append(context)
                 else:
                     self._start_plugin(owner, plugin_type, context, namespace, old_plugins)
+        read_sensors = {name for plugin in self._plugins[owner] for name in plugin.read_sensors}
+        unsimulated: dict[str, bool] = {}
+        for context in unsimulated_contexts:
+            if context.plugin is not None or context.sensor is None or context.sensor.name not in read_sensors:
+                unsimulated |= _find_unsimulated_names(context)
         new_names = {name: unsimulated[name] for name in unsimulated if name not in self._logged_names}
         self._logged_names.update(new_names)
         if new_names:
