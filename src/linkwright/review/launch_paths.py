@@ -6,12 +6,16 @@ import re
 from functools import lru_cache
 from pathlib import Path
 
+from linkwright.diagnostics import LinkwrightError
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.versions import Version
+from linkwright.xacro.cache import read_document
 
 _LAUNCH_ROOT_TAG = re.compile(rb"\s*(<\?[^>]*>\s*)?(<!--(?:[^-]|-(?!->))*-->\s*)*<launch[\s>]")
 _LAUNCH_FUNCTION = re.compile(rb"^def generate_launch_description\b|^def generate_test_description\b", re.MULTILINE)
-_XML_SUFFIXES = (".xml", ".test")
+LAUNCH_TEMPLATE_SUFFIXES = (".em", ".j2", ".jinja")
+"""The ends of the names of templates from which a program makes launch files."""
+_XML_SUFFIXES = (".xml", ".test", *LAUNCH_TEMPLATE_SUFFIXES)
 _SUFFIXES = (".launch", *_XML_SUFFIXES, ".py", ".yaml", ".yml")
 _MAX_BYTES = 1 << 20
 
@@ -24,12 +28,15 @@ def is_launch_file(path: str) -> bool:
 def is_launch_xml(file: Path) -> bool:
     """Return whether the root of an XML file is ``<launch>``.
 
-    Included files may have any name.
+    Included files may have any name. A template counts if it is valid XML, although its expressions are not evaluated.
     """
     try:
-        return file.suffix in _XML_SUFFIXES and _LAUNCH_ROOT_TAG.match(file.read_bytes()) is not None
-    except OSError:
+        is_launch = file.suffix in _XML_SUFFIXES and _LAUNCH_ROOT_TAG.match(file.read_bytes()) is not None
+        if is_launch and file.suffix in LAUNCH_TEMPLATE_SUFFIXES:
+            read_document(str(file))
+    except (OSError, LinkwrightError):
         return False
+    return is_launch
 
 
 def is_launch_yaml(file: Path) -> bool:

@@ -50,7 +50,12 @@ from linkwright.review.kinds import (
     find_rule,
     may_help_launch_files,
 )
-from linkwright.review.launch_paths import contains_actions, is_launch_xml, is_launch_yaml
+from linkwright.review.launch_paths import (
+    LAUNCH_TEMPLATE_SUFFIXES,
+    contains_actions,
+    is_launch_xml,
+    is_launch_yaml,
+)
 from linkwright.review.launches.formats import join_format_changes
 from linkwright.review.launches.helpers import imports_actions
 from linkwright.review.launches.missing_programs import drop_told_findings
@@ -332,6 +337,9 @@ class _Reviewer:
             rule = rule if any(is_launch_yaml(version.file(name)) for version, name in sides if name) else PARAMETERS
         if rule is not None and rule.kind is SubjectKind.PARAMETERS:
             return MAP if any(is_map(version.file(path)) for version, path in sides if path) else rule
+        if rule is None and path.endswith(LAUNCH_TEMPLATE_SUFFIXES):
+            is_launch = all(is_launch_xml(version.file(name)) for version, name in sides if name)
+            return LAUNCH_FILE if is_launch else None
         if rule is None and any(is_launch_xml(version.file(name)) for version, name in sides if name):
             return LAUNCH_TEST if path.endswith(LAUNCH_TEST.suffixes) else LAUNCH_FILE
         if rule is None and any(is_tree_file(version.file(name)) for version, name in sides if name):

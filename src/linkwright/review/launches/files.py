@@ -316,9 +316,9 @@ def _report_moved(pair: FilePair, moved: Mapping[tuple[str, bool], Sequence[Entr
 def _find_new_undeclared_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> dict[str, Entry]:
     """Return the arguments that are undeclared only in the new version.
 
-    Each comes with an action that uses it.
+    Each comes with an action that uses it. In ROS 1, every file must declare the arguments that it uses.
     """
-    if not is_launch_file_name(pair.new_path):
+    if not (is_launch_file_name(pair.new_path) or new.is_ros1):
         return {}
     old_names = IncludedActions(pair.versions.old, pair.old_path, old).find_undeclared_arguments()
     new_names = IncludedActions(pair.versions.new, pair.new_path, new).find_undeclared_arguments()

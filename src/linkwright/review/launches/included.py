@@ -220,13 +220,13 @@ class IncludedActions:
             entry.kind == "action" or (entry.has_value and "$(" in entry.name) for entry in entries
         ):
             return {}
-        outlines = [self.outline, *self._included.values()]
+        outlines = [self.outline, *(() if self.outline.is_ros1 else self._included.values())]
         declared = {entry.name for outline in outlines for entry in outline.entries if entry.has_value}
         file = self.file
         unknown_include_lines = [
             entry.span.line
             for entry in entries
-            if entry.kind == "include" and self.find_included_file(entry, file) is None
+            if entry.kind == "include" and not self.outline.is_ros1 and self.find_included_file(entry, file) is None
         ]
         undeclared: dict[str, Entry] = {}
         for entry in entries:
