@@ -15,7 +15,7 @@ from linkwright.nodes import NodeOptions
 from linkwright.nodes.turtlesim.canvas import EXTENT, SIZE_PX, Canvas
 from linkwright.nodes.turtlesim.draw_square import DrawSquare
 from linkwright.nodes.turtlesim.mimic import Mimic
-from linkwright.nodes.turtlesim.simulator import Turtlesim
+from linkwright.nodes.turtlesim.simulator import SHAPE_COUNT, Turtlesim
 from linkwright.nodes.turtlesim.turtle import normalize_angle
 
 PERIOD_S = 0.016
@@ -213,6 +213,12 @@ async def test_names_of_spawned_turtles_are_numbered_and_unique(sea, logged):
     assert taken == "A turtle named [turtle2] already exists"
     assert "my turtle" in invalid
     assert list(sea.simulator.turtles) == ["turtle1", "turtle2", "turtle3"]
+
+
+async def test_turtles_look_different(sea):
+    for _ in range(SHAPE_COUNT - 1):
+        await sea.call("/spawn", "Spawn")
+    assert {turtle.shape for turtle in sea.simulator.turtles.values()} == set(range(SHAPE_COUNT))
 
 
 async def test_killed_turtle_leaves_no_topics_services_or_action(sea, harness, logged):

@@ -9,6 +9,7 @@ deliberate difference: the y in the warning about a wall is that of the pose, an
 from __future__ import annotations
 
 import struct
+from itertools import cycle
 from random import Random
 from typing import Any
 
@@ -49,7 +50,9 @@ class Turtlesim(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions, random: Random | None = None) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        self._random = random or Random()  # noqa: S311  # no secrets here
+        # Unlike turtlesim's, turtles look alike only if there are more than drawings.
+        order = (random or Random()).sample(range(SHAPE_COUNT), SHAPE_COUNT)  # noqa: S311  # no secrets here
+        self._shapes = cycle(order)
         self._interfaces = find_interface_package(options.environment)
         self._count = 0
         self.canvas = Canvas()
@@ -131,9 +134,8 @@ class Turtlesim(SingleNode):
         """Add a turtle and return its name, which is generated if the given one is empty."""
         name = name or self._generate_name()
         x, y, theta = struct.unpack("3f", struct.pack("3f", x, y, theta))
-        shape = self._random.randrange(SHAPE_COUNT)
         self.turtles[name] = Turtle(
-            self._node, self._interfaces, name, (x, y, theta), shape, self.canvas, self._is_holonomic
+            self._node, self._interfaces, name, (x, y, theta), next(self._shapes), self.canvas, self._is_holonomic
         )
         self._node.get_logger().info(f"Spawning turtle [{name}] at x=[{x:f}], y=[{y:f}], theta=[{theta:f}]")
         return name
