@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
+from linkwright.packages import PackageFinder
 
 MANIFEST = (
     "<package><name>arm</name><version>1.2.0</version><license>MIT</license><depend>xacro</depend>"
@@ -37,7 +38,10 @@ def test_pkg_list_contains_workspace_and_built_in_packages(capsys: pytest.Captur
 
 def test_pkg_prefix_prints_package_location(capsys: pytest.CaptureFixture[str], package: Path) -> None:
     assert run_command(capsys, "prefix", "--share", "arm") == f"{package}\n"
-    assert run_command(capsys, "prefix", "arm").strip()
+    share = Path(run_command(capsys, "prefix", "arm").strip(), "share", "arm")
+    assert share.resolve() == package
+    assert (share / "package.xml").read_text(encoding="utf-8") == MANIFEST
+    assert PackageFinder(start=[share]).share("arm") == package  # a launch file there belongs to the sources
     assert "arm" in run_command(capsys, "prefix", "armm", status=1)
 
 

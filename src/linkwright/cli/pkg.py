@@ -160,10 +160,11 @@ def _print_packages(_: argparse.Namespace) -> int:
 
 
 def _print_prefix(arguments: argparse.Namespace) -> int:
-    from linkwright.packages import PackageFinder, install_prefix
+    from linkwright.packages import PackageFinder
+    from linkwright.packages.share_layout import find_prefix
 
     share = PackageFinder().share(arguments.package)
-    print(share if arguments.share else install_prefix(share))
+    print(share if arguments.share else find_prefix(arguments.package, share))
     return 0
 
 

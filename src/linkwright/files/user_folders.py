@@ -14,6 +14,10 @@ SHARES_SUBFOLDER = "shares"
 See `linkwright.packages.share_layout`.
 """
 
+PREFIXES_SUBFOLDER = "prefixes"
+"""The subfolder of `SHARES_SUBFOLDER` for install prefixes of packages that are not built."""
+
+
 _DEFAULT_FOLDERS = {"CACHE": ".cache", "CONFIG": ".config", "DATA": ".local/share", "STATE": ".local/state"}
 
 

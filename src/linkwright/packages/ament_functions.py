@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from linkwright.packages.active import current_finder
-from linkwright.packages.ament import install_prefix
+from linkwright.packages.share_layout import find_prefix
 
 
 def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:  # noqa: ARG001 - as in ament
@@ -32,9 +32,9 @@ def get_package_prefix(package_name: str) -> str:
     Raises:
         PackageNotFoundError: PKG101, there is no such package.
     """
-    return str(install_prefix(current_finder().share(package_name)))
+    return str(find_prefix(package_name, current_finder().share(package_name)))
 
 
 def get_packages_with_prefixes() -> dict[str, str]:
     """Return the install prefixes of all packages, by name."""
-    return {name: str(install_prefix(share)) for name, share in current_finder().packages().items()}
+    return {name: str(find_prefix(name, share)) for name, share in current_finder().packages().items()}

@@ -20,7 +20,12 @@ from linkwright.diagnostics import (
 from linkwright.packages import ament, uri
 from linkwright.packages.ament import install_prefix
 from linkwright.packages.manifest import SourceScan, enclosing_package
-from linkwright.packages.share_layout import find_share_of_sources, find_substituted_share, iterate_substitutes
+from linkwright.packages.share_layout import (
+    find_share_of_sources,
+    find_substituted_share,
+    iterate_substitutes,
+    leave_prefix,
+)
 
 START_VARIABLE = "LINKWRIGHT_START"
 """The environment variable with the start folders of a launcher. Its processes also search them for packages."""
@@ -353,4 +358,4 @@ def _to_absolute(path: str | Path) -> Path:
 
     Share folders often contain links.
     """
-    return Path(os.path.abspath(path))  # noqa: PTH100 - Path.resolve would follow the links
+    return leave_prefix(Path(os.path.abspath(path)))  # noqa: PTH100 - Path.resolve would follow the links

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from linkwright.files.user_folders import SHARES_SUBFOLDER, cache_folder
+from linkwright.files.user_folders import PREFIXES_SUBFOLDER, SHARES_SUBFOLDER, cache_folder
 from linkwright.packages.readers.installed import InstalledFile
 
 _MAX_LINKS = 5000
@@ -73,6 +73,22 @@ def make_link_folder(name: str, folder: Path, moved: Mapping[str, InstalledFile]
     if not share.is_dir():
         raise OSError("the links were not made")
     return share
+
+
+def make_prefix(name: str, share: Path) -> Path:
+    """Return a folder in the user's cache in which ``share/NAME`` is a link to the share folder of a package.
+
+    Raises:
+        OSError: the folder or the link cannot be created.
+    """
+    share_hash = hashlib.sha256(os.fsencode(share)).hexdigest()[:12]
+    prefix = cache_folder() / SHARES_SUBFOLDER / PREFIXES_SUBFOLDER / share_hash
+    link = prefix / "share" / name
+    if not (link.is_symlink() and link.exists()):
+        link.parent.mkdir(parents=True, exist_ok=True)
+        with suppress(FileExistsError):  # another process has created the link
+            link.symlink_to(share, target_is_directory=True)
+    return prefix
 
 
 def _delete_old_layouts(layouts: Path) -> None:

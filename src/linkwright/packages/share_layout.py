@@ -24,7 +24,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from linkwright.files.user_folders import SHARES_SUBFOLDER
+from linkwright.files.user_folders import PREFIXES_SUBFOLDER, SHARES_SUBFOLDER
 from linkwright.loading.extensions import extensions
 from linkwright.packages.ament import find_share_in_prefix, install_prefix
 from linkwright.packages.manifest import MANIFEST
@@ -135,6 +135,8 @@ def _is_compiled(folder: Path, text: str) -> bool:
 
 _LINK_FOLDER_MARK = os.path.join("", "linkwright", SHARES_SUBFOLDER, "")  # noqa: PTH118 - a part of the path as text
 
+_PREFIX_MARK = os.path.join(_LINK_FOLDER_MARK, PREFIXES_SUBFOLDER, "")  # noqa: PTH118 - a part of the path as text
+
 
 def find_share_of_sources(name: str, folder: Path) -> Path:
     """Return the share folder of an unbuilt package: its source folder, or a folder of links.
@@ -158,6 +160,35 @@ def find_share_of_sources(name: str, folder: Path) -> Path:
         return make_link_folder(name, folder, moved_files)
     except OSError:
         return folder
+
+
+def find_prefix(name: str, share: Path) -> Path:
+    """Return the install prefix of a package, as programs see it.
+
+    For a package that is not installed, this is a folder in the user's cache, because programs look for files in
+    ``PREFIX/share/NAME``. If its link cannot be created, the result is the source folder.
+
+    Args:
+        name: the package.
+        share: the share folder of the package.
+    """
+    prefix = install_prefix(share)
+    if prefix != share:
+        return prefix
+    from linkwright.packages.link_folder import make_prefix
+
+    try:
+        return make_prefix(name, share)
+    except OSError:
+        return prefix
+
+
+def leave_prefix(folder: Path) -> Path:
+    """Return the folder behind a folder in a prefix of `find_prefix`, and any other folder unchanged.
+
+    Without this, a search that starts there would take an unbuilt package for an installed one.
+    """
+    return Path(os.path.realpath(folder)) if _PREFIX_MARK in str(folder) else folder
 
 
 def find_source(path: str) -> str:

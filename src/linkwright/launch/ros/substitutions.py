@@ -20,7 +20,8 @@ from linkwright.launch.model.substitution import (
 from linkwright.launch.model.substitutions import PathJoinSubstitution
 from linkwright.launch.model.substitutions.configuration import normalize_default
 from linkwright.launch.ros.executables import find_executable
-from linkwright.packages import current_finder, install_prefix
+from linkwright.packages import current_finder
+from linkwright.packages.share_layout import find_prefix
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,7 +65,7 @@ class FindPackagePrefix(FindPackage, tag="find-pkg-prefix"):
 
     def find(self, package_name: str) -> str:
         """Return the install prefix of a package."""
-        return str(install_prefix(current_finder().share(package_name)))
+        return str(find_prefix(package_name, current_finder().share(package_name)))
 
 
 class FindPackageShare(FindPackage, tag="find-pkg-share"):
