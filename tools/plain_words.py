@@ -10,10 +10,8 @@ if there is one. With paths below ``src/linkwright`` or ``frontend/src``, reads 
 from __future__ import annotations
 
 import ast
-import io
 import re
 import sys
-import tokenize
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +27,12 @@ PAGE = ROOT / "frontend" / "src"
 REFUSED = Path(__file__).with_suffix(".toml")
 
 _SENTENCE_END = re.compile(r"(?<=[.;:!?]) ")
+_STRING_OR_COMMENT = re.compile(
+    r'''"""(?:[^\\]|\\.)*?"""|\'{3}(?:[^\\]|\\.)*?\'{3}|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'|(?P<comment>\#[^\n]*)''',
+    re.DOTALL,
+)
+"""A string or a comment of Python. The module `tokenize` took half of the time of this program."""
+
 _PAGE_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"|`(?:[^`\\]|\\.)*`|/\*.*?\*/|//[^\n]*', re.DOTALL)
 
 
@@ -99,9 +103,9 @@ def iterate_python_texts(path: Path) -> Iterator[tuple[int, str]]:
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value:
             yield node.lineno, node.value
-    for token in tokenize.generate_tokens(io.StringIO(source).readline):
-        if token.type == tokenize.COMMENT:
-            yield token.start[0], token.string
+    for match in _STRING_OR_COMMENT.finditer(source):
+        if match["comment"]:
+            yield source.count("\n", 0, match.start()) + 1, match["comment"]
 
 
 def iterate_page_texts(path: Path) -> Iterator[tuple[int, str]]:
