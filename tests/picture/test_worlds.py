@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,10 @@ import pytest
 
 from linkwright.descriptions import examine_world
 from linkwright.packages import PackageFinder
-from linkwright.picture.scene import Scene
+from linkwright.picture.camera import VIEWS
+from linkwright.picture.rendering import Style, render
+from linkwright.picture.scene import Scene, camera_for
+from linkwright.picture.visibility import count_outlined_pixels
 from linkwright.picture.worlds import world_scene
 from linkwright.sdf.resources import ResourceFinder
 from tests.places import REPOSITORY
@@ -74,3 +78,36 @@ def test_planes_are_omitted_and_unsupported_shapes_reported(tmp_path: Path) -> N
     assert problem.code == "PIC101"
     (problem,) = world_with_visual(tmp_path, "<geometry><mesh><uri>no.dae</uri></mesh></geometry>").problems
     assert problem.code == "PIC101"
+
+
+ROOM = """<sdf version="1.9"><world name="w">
+<model name="floor"><link name="l"><visual name="v"><geometry><box><size>{width} {width} {height}</size></box>
+</geometry></visual></link></model>
+<model name="table"><pose>2 1 0.5 0 0 0</pose><link name="l"><visual name="v"><geometry><box><size>1 2 1</size></box>
+</geometry></visual></link></model></world></sdf>"""
+
+
+@pytest.mark.parametrize(("width", "height", "is_ground"), [(100, 0.1, True), (5, 0.1, False), (100, 20, False)])
+def test_images_need_not_show_a_large_floor_as_a_whole(
+    tmp_path: Path, width: float, height: float, is_ground: bool
+) -> None:
+    path = tmp_path / "room.world"
+    path.write_text(ROOM.format(width=width, height=height))
+    scene = load_scene(path)
+    assert [body.is_ground for body in scene.bodies] == [is_ground, False]
+    shown = np.ptp(scene.points, axis=0).max()
+    assert shown == pytest.approx(2.0 if is_ground else width)
+    drawn = np.ptp(scene.mesh.points, axis=0).max()
+    assert drawn == pytest.approx(2.0 + 2.0 * np.linalg.norm((1, 2, 1)) if is_ground else width)
+
+
+def test_parts_behind_the_camera_are_not_drawn(tmp_path: Path) -> None:
+    path = tmp_path / "room.world"
+    path.write_text(ROOM.format(width=100, height=20).replace("2 1 0.5", "2 1 12"))
+    scene = load_scene(path)
+    alone = Scene(scene.bodies[1:])
+    camera = camera_for(VIEWS["iso"], (120, 90), alone)
+    shown, expected = (render(each, camera=camera, style=Style(transparent=True)) for each in (scene, alone))
+    table = expected[:, :, 3] == 255
+    assert (shown[:, :, 3] == 255)[table].all()
+    assert count_outlined_pixels(Scene([replace(body, outline=(1.0, 0.0, 0.0)) for body in alone.bodies]), camera) > 500

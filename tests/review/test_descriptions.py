@@ -52,6 +52,18 @@ def test_rotation_is_reported_in_degrees(package, compare):
     assert any("(rotated by 90°)" in sentence for sentence in sentences(subject(compare(package), PATH)))
 
 
+@pytest.mark.parametrize(("angle", "is_reported"), [("3.14159", False), ("3.1415", True)])
+def test_rounded_pi_is_no_change(package, compare, angle, is_reported):
+    text = MACRO.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 1 0"/><!-- turned -->')
+    origin = '<origin xyz="0 0 ${length}" rpy="0 0 %s"/>'
+    turned = text.replace('<origin xyz="0 0 ${length}"/>', origin)
+    package.commit({"arm_description/urdf/segment.xacro": turned % "${pi}"})
+    package.write({"arm_description/urdf/segment.xacro": turned % angle})
+    assert (
+        any("rotated" in sentence for item in compare(package).subjects for sentence in sentences(item)) == is_reported
+    )
+
+
 def test_equal_robot_is_not_reported(package, compare):
     package.write({"arm_description/urdf/segment.xacro": MACRO.replace("<mass value", "<!-- heavy --><mass value")})
     result = compare(package)

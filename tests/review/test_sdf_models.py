@@ -61,6 +61,15 @@ SCALED = (
 )
 
 
+def test_size_of_a_model_includes_a_large_floor(repository, compare):
+    box = "<link name='{}'><visual name='v'><geometry><box><size>{}</size></box></geometry></visual></link>"
+    links = box.format("base", "1 1 1") + box.format("floor", "50 50 0.1")
+    text = f"<sdf version='1.9'><model name='cart'>{links}</model></sdf>"
+    result = review_model(repository, compare, ("50 50", "60 50"), text=text)
+    (figure,) = subject(result, PATH).figures
+    assert (str(figure.name), figure.old, figure.new) == ("size", "50 x 50 x 1", "60 x 50 x 1")
+
+
 @pytest.mark.parametrize("replacement", [("<mass>2<", "<mass>3<"), ("<pose>0.1 0 0 0 0 0</pose>", "")])
 def test_other_inertial_of_a_link_with_the_name_of_a_tag_is_not_breaking(repository, compare, replacement):
     text = MODEL.replace("base", "link").replace("arm", "frame")

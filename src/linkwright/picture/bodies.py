@@ -123,6 +123,7 @@ class Body:
         surfaces: what is drawn, in the link's frame.
         ghost: the color in which the body is drawn as transparent, without a shadow; None for its own colors.
         outline: the color of a line around the body, which is seen through other bodies; None for none.
+        is_ground: whether the body is a floor or ground, which images need not show as a whole.
     """
 
     name: str
@@ -130,6 +131,7 @@ class Body:
     surfaces: tuple[Surface, ...] = ()
     ghost: Color | None = None
     outline: Color | None = None
+    is_ground: bool = False
 
 
 @dataclass(frozen=True, slots=True)

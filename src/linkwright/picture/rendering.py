@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from linkwright.picture.axes import draw_axes
 from linkwright.picture.camera import VIEWS, Camera, View
 from linkwright.picture.cast_shadows import CastShadows
+from linkwright.picture.clipping import project_mesh
 from linkwright.picture.edges import compute_edge_strength
 from linkwright.picture.ground import (
     GroundGrid,
@@ -93,7 +94,8 @@ class _Renderer:
         self._per_pixel = (
             _SAMPLES_PER_PIXEL if self._width * self._height <= _LARGE_IMAGE_PIXELS else _SAMPLES_PER_PIXEL_OF_LARGE
         )
-        x, y, nearness = camera.project(mesh.points)
+        self._projected = projected = project_mesh(camera, mesh.points, mesh.faces)
+        x, y, nearness = projected.x, projected.y, projected.nearness
         self._screen = ScreenTriangles.from_faces(x * self._per_pixel, y * self._per_pixel, nearness, mesh.faces)
         self._range = (float(nearness.max()), float(nearness.min())) if len(nearness) else (1.0, 0.0)
         lights = Lights.of(camera)
@@ -136,23 +138,23 @@ class _Renderer:
         mesh, scale = self._mesh, self._per_pixel
         width = self._width * scale
         opaque = DepthBuffer(width, upper * scale, lower * scale, *self._range)
-        opaque.add(self._screen, mesh.opaque)
+        opaque.add(self._screen, self._projected.select(mesh.opaque))
         rows = (lower - upper) * scale
         light = np.zeros((rows, width, 3), np.float32)
         alpha = np.zeros((rows, width), np.float32)
         self._blend(light, alpha, opaque, is_first=True)
-        transparent = mesh.transparent
+        transparent = self._projected.select(mesh.transparent)
         if len(transparent):
             for layer in reversed(self._peel(transparent, opaque)):
                 self._blend(light, alpha, layer)
-        ghosts = mesh.ghosts
+        ghosts = self._projected.select(mesh.ghosts)
         if len(ghosts):
             layer = opaque.make_empty_copy()
             layer.add(self._screen, ghosts, in_front_of=opaque)
             self._blend(light, alpha, layer, opacity=_GHOST_ALPHA)
         for color, triangles in mesh.outlined_triangles().items():
             layer = opaque.make_empty_copy()
-            layer.add(self._screen, triangles)
+            layer.add(self._screen, self._projected.select(triangles))
             mask = layer.keys != NOTHING
             bodies = np.full(len(mask), -1, np.int32)
             bodies[mask] = self._body_numbers[mesh.parts[layer.keys[mask] & (MAX_TRIANGLES - 1)]]

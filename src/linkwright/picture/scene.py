@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from linkwright.diagnostics import Diagnostic
 from linkwright.geometry.arrays import Array
+from linkwright.geometry.shapes import IDENTITY, Placement
 from linkwright.picture.axes import make_points
 from linkwright.picture.bodies import Axes, Body, Labels
 from linkwright.picture.camera import Camera, View, fit_camera
@@ -50,16 +52,45 @@ class Scene:
 
     @cached_property
     def mesh(self) -> Mesh:
-        """The triangles of all bodies."""
-        return Mesh.of(self.bodies)
+        """The triangles of all bodies. Those of the ground are near the others."""
+        shown = self._shown_bodies
+        if len(shown) == len(self.bodies):
+            return Mesh.of(self.bodies)
+        points = Mesh.of(shown).points
+        return Mesh.of([crop_ground(body, points) if body.is_ground and len(points) else body for body in self.bodies])
+
+    @property
+    def _shown_bodies(self) -> list[Body]:
+        return [body for body in self.bodies if not body.is_ground]
 
     @property
     def points(self) -> Array:
-        """The points that an image must show: all vertices and axes, else the origins of the bodies."""
-        points = [self.mesh.points, *map(make_points, self.axes)]
+        """The points that an image must show: all vertices and axes, else the origins of the bodies.
+
+        Those of the ground are left out if there are others.
+        """
+        shown = self._shown_bodies
+        mesh = self.mesh if len(shown) == len(self.bodies) else Mesh.of(shown)
+        points = [mesh.points if len(mesh.points) else self.mesh.points, *map(make_points, self.axes)]
         if any(map(len, points)):
             return np.concatenate(points)
         return np.array([body.frame.position for body in self.bodies] or [(0.0, 0.0, 0.0)])
+
+
+def crop_ground(body: Body, points: Array) -> Body:
+    """Return the ground without what is far from points, shape (n, 3), and would be behind the camera.
+
+    Its vertices are moved to the border of a rectangle.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = float(np.linalg.norm(high - low))
+    surfaces = []
+    for surface in body.surfaces:
+        placed = surface.placed(body.frame)
+        cropped = placed.points.copy()
+        cropped[:, :2] = np.clip(cropped[:, :2], low[:2] - margin, high[:2] + margin)
+        surfaces.append(replace(placed, points=cropped))
+    return replace(body, frame=Placement(IDENTITY, (0.0, 0.0, 0.0)), surfaces=tuple(surfaces))
 
 
 def camera_for(view: View, size: tuple[int, int], *scenes: Scene) -> Camera:

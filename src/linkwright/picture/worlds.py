@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, phrase
+from linkwright.geometry.arrays import Array
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Placement, Sphere
 from linkwright.geometry.single import IDENTITY, Transform, normalized, rotation_matrix
 from linkwright.geometry.surfaces import cone
@@ -22,6 +25,10 @@ from linkwright.sdf.worlds import Sdf
 
 _DEFAULT_COLOR = (0.7, 0.7, 0.7, 1.0)
 """The color of shapes without a material: gray, as in Gazebo."""
+_MIN_GROUND_RATIO = 3.0
+"""The minimum ratio of the sizes of the ground and of everything else."""
+_MAX_GROUND_THICKNESS = 0.05
+"""The maximum height of the ground, as a fraction of its width."""
 _POSE_GRID = float(1 << 36)
 """Poses are rounded to multiples of 1 / _POSE_GRID, because the last bits of sines differ between machines."""
 
@@ -29,7 +36,8 @@ _POSE_GRID = float(1 << 36)
 def world_scene(sdf: Sdf, finder: ResourceFinder, *, library: SurfaceLibrary | None = None) -> Scene:
     """Return the scene of the visuals of a world, or of the models in a file.
 
-    Planes are left out: a plane is the ground of an image. Heightmaps and extruded polygons are left out with a
+    Planes are left out: a plane is the ground of an image. A flat link that is much larger than everything else is the
+    ground as well, and images need not show it as a whole. Heightmaps and extruded polygons are left out with a
     finding.
 
     Args:
@@ -46,7 +54,36 @@ def world_scene(sdf: Sdf, finder: ResourceFinder, *, library: SurfaceLibrary | N
         frame = _placement_from_pose(placed_link.pose)
         bodies.append(Body(placed_link.name, frame, tuple(reader.read_surfaces(placed_link))))
         anchors.append(Anchor(placed_link.name, frame.position))
-    return Scene(bodies, reader.problems, Labels(tuple(anchors)))
+    return Scene(_find_ground(bodies), reader.problems, Labels(tuple(anchors)))
+
+
+def _find_ground(bodies: Sequence[Body]) -> list[Body]:
+    """Return the bodies, with a flat one that is much larger than all others marked as the ground."""
+    boxes = [_compute_box(body) for body in bodies]
+    sizes = [0.0 if box is None else float(np.linalg.norm(box[1] - box[0])) for box in boxes]
+    if len(bodies) < 2:
+        return list(bodies)
+    largest = int(np.argmax(sizes))
+    others = [box for index, box in enumerate(boxes) if box is not None and index != largest]
+    ground = boxes[largest]
+    if ground is None or not others:
+        return list(bodies)
+    low, high = np.min([box[0] for box in others], axis=0), np.max([box[1] for box in others], axis=0)
+    lengths = ground[1] - ground[0]
+    is_flat = lengths[2] <= _MAX_GROUND_THICKNESS * min(lengths[:2])
+    if not is_flat or sizes[largest] < _MIN_GROUND_RATIO * float(np.linalg.norm(high - low)):
+        return list(bodies)
+    return [replace(body, is_ground=index == largest) for index, body in enumerate(bodies)]
+
+
+def _compute_box(body: Body) -> tuple[Array, Array] | None:
+    """Return the corners of the box around a body in the scene, or None if it has no surfaces."""
+    points = [surface.placed(body.frame).points for surface in body.surfaces if len(surface.points)]
+    if not points:
+        return None
+    return np.min([array.min(axis=0) for array in points], axis=0), np.max(
+        [array.max(axis=0) for array in points], axis=0
+    )
 
 
 def _iterate_placed_links(sdf: Sdf) -> Iterator[PlacedLink]:

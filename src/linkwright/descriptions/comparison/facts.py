@@ -14,8 +14,8 @@ from linkwright.xmltree import Element
 
 LENGTH_TOLERANCE = 1e-6
 """The difference in meters up to which lengths are equal."""
-ROTATION_TOLERANCE = 1e-6
-"""The angle in radians up to which rotations, and directions of axes, are equal."""
+ROTATION_TOLERANCE = 5e-6
+"""The angle in radians up to which rotations, and directions of axes, are equal, such as 3.14159 and pi."""
 RELATIVE_TOLERANCE = 1e-6
 """The difference up to which other numbers are equal, as a fraction of the larger magnitude."""
 

@@ -18,6 +18,7 @@ from linkwright.images.png import png
 from linkwright.picture import OUTLINE_COLOR, VIEWS, Scene, SurfaceLibrary, render
 from linkwright.picture.bodies import Body, Surface
 from linkwright.picture.camera import fit_camera
+from linkwright.picture.scene import crop_ground
 from linkwright.picture.worlds import world_scene
 from linkwright.review.changes import ViewImages
 from linkwright.review.drawings.highlights import find_notes
@@ -113,6 +114,11 @@ def _render_pair(old: Scene, new: Scene, *, has_outlines: bool = True) -> list[V
     scenes = [
         _outline_bodies(scene, bodies) if has_outlines else scene
         for scene, bodies in zip((old, new), changed, strict=True)
+    ]
+    shown = np.concatenate(points)
+    scenes = [
+        Scene([crop_ground(body, shown) if body.is_ground else body for body in scene.bodies], scene.problems)
+        for scene in scenes
     ]
     images = []
     for name, view in VIEWS.items():

@@ -11,6 +11,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.mass import MassProperties, combine
 from linkwright.geometry.single import IDENTITY
 from linkwright.picture import Scene
+from linkwright.picture.scene_mesh import Mesh
 from linkwright.review.changes import Figure
 from linkwright.review.quantities import compare_quantity
 from linkwright.sdf.frames import FrameError, Frames, PlacedLink, place_links, pose_of
@@ -87,9 +88,10 @@ def _get_center_of_mass(measures: _Measures) -> Array | None:
 
 def _measure_scene(scene: Scene) -> Array | None:
     """Return the size of all visuals in m, shape (3,); None if some cannot be drawn."""
-    if scene.problems or not len(scene.mesh.points):
+    points = Mesh.of(scene.bodies).points  # those of the scene leave out the ends of a floor
+    if scene.problems or not len(points):
         return None
-    size: Array = np.ptp(scene.mesh.points, axis=0)
+    size: Array = np.ptp(points, axis=0)
     return size
 
 
