@@ -47,6 +47,7 @@ class SubjectKind(Enum):
     SOURCE = "node source"
     PLUGINS = "plugin description"
     RVIZ = "RViz configuration"
+    GUI = "configuration of Gazebo's window"
     BUILD = "build file"
     MANIFEST = "package manifest"
     DEPENDENCIES = "list of dependencies"

@@ -24,6 +24,7 @@ from linkwright.review.files.dependency_lists import (
     repository_contents,
     requirement_contents,
 )
+from linkwright.review.files.gui_files import compare_gui_files, gui_contents
 from linkwright.review.files.interfaces import compare_interfaces, interface_contents
 from linkwright.review.files.manifests import compare_manifests, manifest_contents
 from linkwright.review.files.maps import compare_map_files, compare_maps, map_contents
@@ -258,6 +259,18 @@ LAUNCH_HELPER = KindRule(
     phrase("launch files that import the module do not find it"),
 )
 """The rule for Python modules that make actions for launch files."""
+
+
+GUI = KindRule(
+    SubjectKind.GUI,
+    compare_gui_files,
+    (".config",),
+    phrase("configuration of Gazebo's window added"),
+    phrase("configuration of Gazebo's window removed"),
+    phrase("launch files and worlds that name the file do not find it"),
+    contents=gui_contents,
+)
+"""The rule for configurations of Gazebo's window."""
 
 
 BEHAVIOR_TREE = KindRule(

@@ -31,6 +31,7 @@ from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
 from linkwright.review.files.behavior_tree_files import is_tree_file
 from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.files.gui_files import is_gui_file
 from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
 from linkwright.review.files.plugin_files import compare_plugin_files
@@ -40,6 +41,7 @@ from linkwright.review.findings import Findings, compare_findings, find_findings
 from linkwright.review.folders import review_without_folder
 from linkwright.review.kinds import (
     BEHAVIOR_TREE,
+    GUI,
     LAUNCH_FILE,
     LAUNCH_HELPER,
     LAUNCH_TEST,
@@ -344,6 +346,8 @@ class _Reviewer:
             return LAUNCH_TEST if path.endswith(LAUNCH_TEST.suffixes) else LAUNCH_FILE
         if rule is None and any(is_tree_file(version.file(name)) for version, name in sides if name):
             return BEHAVIOR_TREE
+        if rule is None and any(is_gui_file(version.file(name)) for version, name in sides if name):
+            return GUI
         if rule is None and may_help_launch_files(path):
             if any(contains_actions(version, name) for version, name in sides if name):
                 return LAUNCH_FILE
