@@ -242,6 +242,12 @@ def test_message_frame_is_not_reported_without_transforms():
     assert "DOC310" not in codes(observation)
 
 
+def test_fixed_frame_does_not_matter_if_nothing_has_a_frame():
+    empty = replace(HEALTHY, transforms=(), joints=(), descriptions=(), fixed_frames=(FixedFrame("map", "'/viewer'"),))
+    assert codes(empty) == []
+    assert "DOC309" in codes(replace(empty, frames=(ObservedFrame("/scan", "laser", "/lidar"),)))
+
+
 def test_simulation_world_is_accepted_as_fixed_frame():
     shown = replace(HEALTHY, fixed_frames=(FixedFrame("world", "'/viewer'"),))
     assert codes(shown) == ["DOC309"]

@@ -334,6 +334,8 @@ def _examine_fixed_frames(observation: Observation, robots: Sequence[ObservedRob
     known_frames |= {robot.frame(robot.root) for robot in robots}
     if observation.find_publishers(_WORLD_POSES):
         known_frames.add(_WORLD)  # in the viewer, the frames of tf are in the world frame
+    if not known_frames and not observation.frames:
+        return  # nothing needs a frame, such as beside the turtles of turtlesim
     roots = sorted(
         {transform.parent for transform in observation.transforms}
         - {transform.child for transform in observation.transforms}
