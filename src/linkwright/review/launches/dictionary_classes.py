@@ -14,6 +14,7 @@ from linkwright.review.launches.names import LaunchPythonFile
 _MAX_DEPTH = 5
 """The maximum number of methods that call each other."""
 _ITEM_METHODS = frozenset({"__setitem__", "setdefault"})
+_READING_METHODS = frozenset({"copy", "get", "items", "keys", "values"})
 _Items = dict[str, tuple[ast.expr, ast.expr]]
 """The key and the value of each item, by the text of the key."""
 
@@ -76,8 +77,8 @@ def _expand(body: list[ast.stmt], assignment: ast.Assign, name: str, dictionary:
                 dictionary.call(method, statement.value, {}, items)
     except _UnknownItemsError:
         return
-    keys, values = [key for key, _ in items.values()], [value for _, value in items.values()]
-    assignment.value = ast.Dict(keys, values)
+    keys: list[ast.expr | None] = [key for key, _ in items.values()]
+    assignment.value = ast.Dict(keys, [value for _, value in items.values()])
     for node in ast.walk(assignment.value):
         if isinstance(node, (ast.expr, ast.keyword)):
             ast.copy_location(node, call)
@@ -90,8 +91,9 @@ def _changes(node: ast.AST, name: str) -> bool:
         return node.id == name
     if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
         return _is_name(node.value, name)
-    is_method = isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and _is_name(node.func.value, name)
-    return is_method and called_name(node).partition(".")[2] not in ("items", "keys", "values", "get")
+    if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+        return False
+    return _is_name(node.func.value, name) and node.func.attr not in _READING_METHODS
 
 
 class _DictionaryClass:

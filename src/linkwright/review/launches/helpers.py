@@ -103,6 +103,7 @@ class HelperFunctions:
         self._action_classes = action_classes
         self._names_by_file: dict[int, frozenset[str]] = {}
         self._functions: dict[tuple[int, str], Function | None] = {}
+        self._value_functions: dict[tuple[int, str], Function | None] = {}
         self._remaining_passes = _MAX_PASSES
 
     def reserve_passes(self, count: int) -> bool:
@@ -169,6 +170,26 @@ class HelperFunctions:
                 if found is not None:
                     return found
         return None
+
+    def find_value_function(self, python: PythonFile, call: ast.Call) -> Function | None:
+        """Return the called function if it is in the repository and only computes and returns a value, or None."""
+        name = called_name(call)
+        key = id(python), name
+        if key not in self._value_functions:
+            self._value_functions[key] = self._find_value_function(python, name)
+        return self._value_functions[key]
+
+    def _find_value_function(self, python: PythonFile, name: str) -> Function | None:
+        definition = self._find_definition(python, name, 0) if name.isidentifier() else None
+        if definition is None:
+            return None
+        file, node = definition
+        if not isinstance(node, ast.FunctionDef):
+            return None
+        is_simple = not node.decorator_list and node.args.vararg is None and node.args.kwarg is None
+        if not is_simple or not _only_returns_value(node) or self._makes_actions(file, node):
+            return None
+        return Function(file, node)
 
     def find_class(self, python: PythonFile, name: str) -> tuple[PythonFile, ast.ClassDef] | None:
         """Return the definition of a class that a file defines or imports from the repository, with its file."""
@@ -250,6 +271,21 @@ class HelperFunctions:
             module_parts = (*path.parts[:-1], path.stem) if path.stem != "__init__" else path.parts[:-1]
             if module_parts[-len(parts) :] == parts:
                 yield path
+
+
+def _only_returns_value(function: ast.FunctionDef) -> bool:
+    """Return whether a function only assigns local names and returns a value."""
+    *statements, last = function.body
+    return (
+        isinstance(last, ast.Return)
+        and last.value is not None
+        and all(
+            isinstance(statement, (ast.Import, ast.ImportFrom))
+            or (isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant))
+            or (isinstance(statement, ast.Assign) and all(isinstance(item, ast.Name) for item in statement.targets))
+            for statement in statements
+        )
+    )
 
 
 def find_parameter_defaults(function: ast.FunctionDef) -> dict[str, ast.expr]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from copy import copy
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.failing_tests import find_failing_tests
 from linkwright.review.launches.outlines import CodePart
-from linkwright.review.launches.text import shorten_text
+from linkwright.review.launches.text import ExpressionTexts, shorten_text
 
 _COMBINING_CALLS = frozenset(
     {"add_action", "add_entity", "GroupAction", "LaunchDescription", "LoadComposableNodes", "TimerAction"}
@@ -21,13 +21,15 @@ _ACTION_ARGUMENTS = ("actions", "composable_node_descriptions", None)
 """The arguments of these calls that contain actions."""
 _BODY_FIELDS = ("body", "orelse", "finalbody", "handlers", "cases")
 """The fields of statements that contain nested statements."""
+_MAX_NAMES = 10
+"""The maximum number of names through which an item of a value is followed."""
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 _UNCOMPARED_FIELDS = frozenset({"ctx", "returns", "annotation", "type_comment", "type_params", "kind"})
 
 
-def find_definitions(python: PythonFile) -> list[CodePart]:
+def find_definitions(python: PythonFile, texts: ExpressionTexts) -> list[CodePart]:
     """Return the statements that assign a name for the only time."""
-    normalizer = _CodeNormalizer(python, ())
+    normalizer = _CodeNormalizer(python, (), (), texts)
     scopes = _find_scopes(python.tree)
     return [
         CodePart("", _unparse(node), python.span(node), scopes=scopes[id(node)])
@@ -36,7 +38,9 @@ def find_definitions(python: PythonFile) -> list[CodePart]:
     ]
 
 
-def read_other_code(python: PythonFile, covered: Collection[int], branches: Collection[int] = ()) -> list[CodePart]:
+def read_other_code(
+    python: PythonFile, covered: Collection[int], branches: Collection[int], texts: ExpressionTexts
+) -> list[CodePart]:
     """Return the statements besides the actions in comparable form.
 
     The form lacks names of variables, imports, comments and layout.
@@ -45,8 +49,9 @@ def read_other_code(python: PythonFile, covered: Collection[int], branches: Coll
         python: the parsed file.
         covered: the identities of the calls that make actions.
         branches: the identities of the ``if`` statements whose conditions actions have.
+        texts: the texts of the expressions of the file.
     """
-    normalizer = _CodeNormalizer(python, covered, branches)
+    normalizer = _CodeNormalizer(python, covered, branches, texts)
     tests = find_failing_tests(python)
     scopes = _find_scopes(python.tree)
     parts = (
@@ -106,6 +111,15 @@ def _copy_header(node: ast.stmt) -> ast.stmt:
     return header
 
 
+def _find_owner_names(python: PythonFile, node: ast.expr) -> Iterator[str]:
+    """Yield the names through which an expression is an item of a value."""
+    for _ in range(_MAX_NAMES):
+        if not isinstance(node, ast.Subscript) or not isinstance(node.value, ast.Name):
+            break
+        yield node.value.id
+        node = python.resolved(node.value)
+
+
 class _CodeNormalizer:
     """A formatter of code in comparable form.
 
@@ -113,10 +127,17 @@ class _CodeNormalizer:
         python: the parsed file.
         covered: the identities of the calls that make actions.
         branches: the identities of the ``if`` statements whose conditions actions have.
+        texts: the texts of the expressions of the file.
     """
 
-    def __init__(self, python: PythonFile, covered: Collection[int], branches: Collection[int] = ()) -> None:
+    def __init__(
+        self, python: PythonFile, covered: Collection[int], branches: Collection[int], texts: ExpressionTexts
+    ) -> None:
         self._python = python
+        items = [node for node in ast.walk(python.tree) if isinstance(node, ast.Subscript)]
+        self._unknown_owners = {
+            name for node in items if texts.is_unknown_item(node) for name in _find_owner_names(python, node)
+        }
         self._branches = branches
         self._covered = covered
         self._texts: dict[int, str] = {}
@@ -165,11 +186,13 @@ class _CodeNormalizer:
     def is_definition(self, node: ast.Assign | ast.AnnAssign) -> bool:
         """Return whether a statement assigns a name that is assigned only once.
 
-        The value is compared where the name is used.
+        The value is compared where the name is used, unless the items of an unknown result are used there.
         """
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
         return all(
-            isinstance(target, ast.Name) and self._python.assigned_expression(target.id) is node.value
+            isinstance(target, ast.Name)
+            and self._python.assigned_expression(target.id) is node.value
+            and target.id not in self._unknown_owners
             for target in targets
         )
 

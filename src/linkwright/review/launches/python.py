@@ -50,12 +50,13 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
         python: the parsed file.
         helpers: the functions of the repository that make actions.
     """
-    reader = _Reader(python, helpers, ExpressionTexts(python))
+    texts = ExpressionTexts(python, helpers=helpers)
+    reader = _Reader(python, helpers, texts)
     reader.visit(python.tree)
     entries = sorted(reader.read_entries(), key=lambda entry: (entry.span.line, entry.span.column))
     covered = reader.covered | _find_covered_literals(python, helpers, reader.evaluated)
-    code = read_other_code(python, covered, reader.branches)
-    return LaunchOutline(entries, code, find_definitions(python), find_scope_sources(python))
+    code = read_other_code(python, covered, reader.branches, texts)
+    return LaunchOutline(entries, code, find_definitions(python, texts), find_scope_sources(python))
 
 
 def _find_covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: Sequence[ast.expr]) -> set[int]:
@@ -65,7 +66,7 @@ def _find_covered_literals(python: PythonFile, helpers: HelperFunctions, evaluat
     shown_literals = []
     for marks_keys in (False, True):
         literals = Literals(python, marks_keys=marks_keys)
-        reader = _Reader(python, helpers, ExpressionTexts(python), literals=literals)
+        reader = _Reader(python, helpers, ExpressionTexts(python, helpers=helpers), literals=literals)
         reader.visit(python.tree)
         shown_literals.append(literals.find_shown_literals(reader.read_entries()))
     parts = CoveredLiterals(python, *shown_literals)
@@ -333,7 +334,7 @@ class _Reader:
         if function is None:
             return
         bindings, values, extra = self._bind_arguments(call, function)
-        texts = ExpressionTexts(function.python, bindings, values)
+        texts = ExpressionTexts(function.python, bindings, values, self.helpers)
         reader = _Reader(function.python, self.helpers, texts, extra, self.depth + 1)
         if function.python is self.python:
             reader.covered, reader.branches = self.covered, self.branches
@@ -357,7 +358,7 @@ class _Reader:
         arguments = function.node.args
         names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
         defaults = find_parameter_defaults(function.node)
-        default_texts = ExpressionTexts(function.python)
+        default_texts = ExpressionTexts(function.python, helpers=self.helpers)
         bindings = {name: default_texts.text(value) for name, value in defaults.items()}
         if function.is_method:
             names = names[1:]

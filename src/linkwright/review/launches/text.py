@@ -9,11 +9,16 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
 from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS
 
 _MAX_DEPTH = 30
 _MAX_CHARACTERS = 10_000
 """The maximum number of characters kept of an expression. If names refer to names, the text can grow exponentially."""
+_MAX_FUNCTION_DEPTH = 3
+"""The maximum number of functions that return the value of each other."""
+_VALUES = (ast.BinOp, ast.Constant, ast.Dict, ast.JoinedStr, ast.List, ast.Tuple)
+"""The expressions of a function whose value is known, apart from calls and names."""
 _CONFIGURATIONS = "launch_configurations"
 """The attribute of a launch context with the values of the arguments."""
 _Formatter = Callable[[ast.expr | None], str]
@@ -50,6 +55,8 @@ class ExpressionTexts:
         python: the parsed file.
         bindings: the texts of the parameters of the function that is read, by name.
         values: the expressions of parameters and of variables of loops, by name.
+        helpers: the functions of the repository; None to leave their calls as they are.
+        depth: the number of functions through which the expressions are read.
     """
 
     def __init__(
@@ -57,8 +64,12 @@ class ExpressionTexts:
         python: PythonFile,
         bindings: Mapping[str, str] | None = None,
         values: Mapping[str, BoundExpression] | None = None,
+        helpers: HelperFunctions | None = None,
+        depth: int = 0,
     ) -> None:
         self._python = python
+        self._helpers = helpers
+        self._depth = depth
         self._bindings = bindings or {}
         self._values = values or {}
         self._texts: dict[int, tuple[ast.expr, str]] = {}
@@ -77,20 +88,60 @@ class ExpressionTexts:
             return None
         items_by_name = {name.id: value for name, value in zip(names, values, strict=True)}
         bindings = {name: value.texts.text(value.node) for name, value in items_by_name.items()}
-        return ExpressionTexts(self._python, {**self._bindings, **bindings}, {**self._values, **items_by_name})
+        return self._with_names({**self._bindings, **bindings}, {**self._values, **items_by_name})
 
     def with_unknown_item(self, target: ast.expr) -> ExpressionTexts:
         """Return the texts with expressions of unknown value for the variables of a loop."""
         names = [node.id for node in ast.walk(target) if isinstance(node, ast.Name)]
         unknown = {name: f"$(eval {name})" for name in names}
         values = {name: value for name, value in self._values.items() if name not in unknown}
-        return ExpressionTexts(self._python, {**self._bindings, **unknown}, values)
+        return self._with_names({**self._bindings, **unknown}, values)
+
+    def _with_names(self, bindings: Mapping[str, str], values: Mapping[str, BoundExpression]) -> ExpressionTexts:
+        return ExpressionTexts(self._python, bindings, values, self._helpers, self._depth)
 
     def resolve(self, node: ast.expr) -> BoundExpression:
-        """Return the value of a name, or any other expression unchanged."""
+        """Return the value of a name or of a call of a function, or any other expression unchanged."""
         node = self._python.resolved(node)
         bound = self._values.get(node.id) if isinstance(node, ast.Name) else None
+        if bound is None and isinstance(node, ast.Call) and (result := self._find_result(node)) is not None:
+            return result.texts.resolve(result.node)
         return bound or BoundExpression(self, node)
+
+    def _find_result(self, call: ast.Call) -> BoundExpression | None:
+        """Return the expression that a function of the repository returns, or None if its value is unknown."""
+        function = None
+        if self._helpers is not None and self._depth < _MAX_FUNCTION_DEPTH:
+            function = self._helpers.find_value_function(self._python, call)
+        if function is None or any(isinstance(argument, ast.Starred) for argument in call.args):
+            return None
+        parameters = function.node.args
+        names = [argument.arg for argument in (*parameters.posonlyargs, *parameters.args)]
+        passed = dict(zip(names, call.args, strict=False))
+        passed |= {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
+        defaults = find_parameter_defaults(function.node)
+        names += [argument.arg for argument in parameters.kwonlyargs]
+        is_complete = len(passed) == len(call.args) + len(call.keywords) and set(names) == passed.keys() | defaults
+        if not is_complete:
+            return None
+        module_texts = ExpressionTexts(function.python, helpers=self._helpers, depth=self._depth + 1)
+        bindings = {name: module_texts.text(value) for name, value in defaults.items()}
+        bindings |= {name: self.text(value) for name, value in passed.items()}
+        values = {name: module_texts.resolve(value) for name, value in defaults.items()}
+        values |= {name: self.resolve(value) for name, value in passed.items()}
+        texts = ExpressionTexts(function.python, bindings, values, self._helpers, self._depth + 1)
+        returned = function.node.body[-1]
+        value = returned.value if isinstance(returned, ast.Return) else None
+        return BoundExpression(texts, value) if value is not None and texts.is_known(value) else None
+
+    def is_known(self, node: ast.expr) -> bool:
+        """Return whether an expression is not a call of an unknown function, or a name of unknown value."""
+        node = self._python.resolved(node)
+        if isinstance(node, ast.Call):
+            return self._format_substitution(node, self.text) is not None or self._find_result(node) is not None
+        if isinstance(node, ast.Name):
+            return node.id in self._bindings
+        return isinstance(node, _VALUES)
 
     def find_items(self, node: ast.expr) -> list[BoundExpression] | None:
         """Return the items of a literal list or dictionary, or None for other expressions."""
@@ -247,6 +298,9 @@ class ExpressionTexts:
             return f"{{{', '.join(f'{part(key)}: {part(value)}' for key, value in pairs)}}}"
         if isinstance(node, ast.Call):
             substitution = self._format_substitution(node, part)
+            result = self._find_result(node) if substitution is None else None
+            if result is not None:
+                return result.texts.text(result.node, depth + 1)
             return _format_call(node, part) if substitution is None else substitution
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
             return f"{part(node.left)}{'' if self._is_string(node) else ' + '}{part(node.right)}"
@@ -257,18 +311,44 @@ class ExpressionTexts:
         if isinstance(node, ast.Subscript):
             if self._is_configurations(node.value):
                 return f"$(var {part(node.slice)})"
-            owner = self.resolve(node.value)
-            if isinstance(owner.node, ast.Dict):
-                pairs = zip(owner.node.keys, owner.node.values, strict=True)
-                matching_values = [
-                    value for key, value in pairs if key is not None and ast.dump(key) == ast.dump(node.slice)
-                ]
-                if matching_values:
-                    return owner.texts.text(matching_values[-1], depth + 1)
+            item = self._find_item(node)
+            if item.node is not node:
+                return item.texts.text(item.node, depth + 1)
+            if self.is_unknown_item(node):
+                owner = self._find_owner(node)
+                function = owner.node.func if isinstance(owner.node, ast.Call) else owner.node
+                return f"{owner.texts.text(function, depth + 1)}(...)[{part(node.slice)}]"
             return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
             return f"{part(node.value)}.{node.attr}"
         return " ".join(ast.unparse(node).split())
+
+    def is_unknown_item(self, node: ast.Subscript) -> bool:
+        """Return whether an expression is an item of the result of an unknown function that has a name.
+
+        The text of such an item has no arguments of the function. They are compared where the name gets the result.
+        """
+        owner = self._find_owner(node)
+        return (
+            isinstance(node.value, ast.Name)
+            and isinstance(owner.node, ast.Call)
+            and not owner.texts.is_known(owner.node)
+        )
+
+    def _find_owner(self, node: ast.Subscript) -> BoundExpression:
+        """Return the value whose item an expression is."""
+        owner = self.resolve(node.value)
+        return owner.texts._find_item(owner.node) if isinstance(owner.node, ast.Subscript) else owner
+
+    def _find_item(self, node: ast.Subscript) -> BoundExpression:
+        """Return the value of an item of a dictionary, or the expression itself if it is unknown."""
+        owner = self._find_owner(node)
+        if isinstance(owner.node, ast.Dict):
+            pairs = zip(owner.node.keys, owner.node.values, strict=True)
+            values = [value for key, value in pairs if key is not None and ast.dump(key) == ast.dump(node.slice)]
+            if values:
+                return owner.texts.resolve(values[-1])
+        return BoundExpression(self, node)
 
     def _format_substitution(self, node: ast.Call, part: _Formatter) -> str | None:
         """Return a substitution in the notation of XML launch files, or None for any other call."""
