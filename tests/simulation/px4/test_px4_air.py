@@ -78,6 +78,12 @@ async def test_distance_is_limited_as_by_the_plugin(height, parameters, expected
     assert message.max_range == pytest.approx(35.0 if "max" in parameters else 15.0)
 
 
+async def test_distance_sensor_has_an_older_name():
+    older = distance_sensor().replace("libgazebo_lidar_plugin.so", "librotors_gazebo_lidar_plugin.so")
+    (recording,) = await record(GROUND, with_sensor(older, "0 0 3 0 0 0"), topics=("/uav/link/uav",))
+    assert recording.last.range == pytest.approx(3.0, abs=1e-4)
+
+
 async def test_fog_hides_everything_beyond_two_meters():
     for height, expected, deviation in ((1.5, 1.5, 0.0), (10.0, 2.0, 0.1)):
         (recording,) = await record(

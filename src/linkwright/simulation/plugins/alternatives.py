@@ -110,7 +110,7 @@ _GROUPS = {
     _LIDAR_ALTERNATIVE: (
         *("MrsGazeboCommonResources_2DLidarPlugin", "MrsGazeboCommonResources_LivoxLaserSimulationPlugin"),
         *("rmagine_embree_ros_gzplugin", "rmagine_optix_ros_gzplugin", "ray"),
-        *("MrsGazeboCommonResources_3DLidarPlugin", "rotors_gazebo_lidar_plugin"),
+        *("MrsGazeboCommonResources_3DLidarPlugin",),
     ),
     _LIFT_ALTERNATIVE: ("asv_sim2-foil-lift-drag-system", "asv_sim2-sail-lift-drag-system"),
     _LIGHT_ALTERNATIVE: (
