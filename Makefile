@@ -53,7 +53,7 @@ LOCKED := .build/constraints.txt
 RELEASE_TOOLS := .build/release-tools$(if $(VERSION),-$(VERSION))
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-base test-page test-editor test-program test-quick test-python coverage test-browser test-ros test-zenoh-sdk test-train check bench soak soak-editor fuzz reference release docs page lock format clean
+.PHONY: demo test test-base test-page test-editor test-program test-quick test-python read-tests coverage test-browser test-ros test-zenoh-sdk test-train check bench soak soak-editor fuzz reference release docs page lock format clean
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
@@ -92,6 +92,10 @@ $(BASE)/.ready: pyproject.toml core/pyproject.toml core/engine_build.py hatch_bu
 # Those of the quick ones that may end otherwise with another Python.
 test-python: $(VENV)/.dev
 	$(PYTEST) $(WORKERS) -m "not browser and not slow" $$(grep '^tests/' tests/each_python.txt) $(ARGS)
+
+# Write the bytecode of all modules of tests, which several workers would each compile; see docs/decisions/0041.
+read-tests: $(VENV)/.dev
+	$(BIN)/pytest --collect-only -qq >.build/read-tests.log || { cat .build/read-tests.log; exit 1; }
 
 # The quick tests once more, with a look at which lines they reach; fails below the share named in pyproject.toml.
 coverage: $(VENV)/.dev

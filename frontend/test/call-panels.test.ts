@@ -32,6 +32,18 @@ describe("services", () => {
     expect(state.isCalling).toBe(false);
   });
 
+  it("chosen before the list arrives are asked for when it names them", () => {
+    const state = new ServicesState(connection);
+    const asked = { type: "choose_service", service: "/add" };
+    const list: ServerMessage = { type: "service_list", services: [{ name: "/add", kind: "a/srv/Add" }] };
+    state.choose("/add");
+    expect(sent).toEqual([]);
+    receive({ type: "service_list", services: [] });
+    receive(list);
+    receive(list);
+    expect(sent).toEqual([asked]);
+  });
+
   it("that no node offers cannot be called", () => {
     const state = new ServicesState(connection);
     state.choose("/missing");

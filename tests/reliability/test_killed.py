@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import psutil
 
-from tests.reliability.running import Machine, launch_file_text, program_text
+from tests.reliability.running import Machine, RunningProcess, launch_file_text, program_text
 from tests.waiting import wait_until
 
 TALKER = """
@@ -32,9 +32,15 @@ class Program(Node):
         say("heard", message.data, self.count)
 """
 
+# Each process has numbers of its own, which show who was heard.
+MESSAGES_OF_A_TALKER = 1000
+RESPAWNED_TALKER = TALKER.replace(
+    "self.number = 0", f"self.number = __import__('os').getpid() % 2_000_000 * {MESSAGES_OF_A_TALKER}"
+)
+
 
 def test_killed_node_is_respawned_and_heard_again(machine: Machine) -> None:
-    path = machine.write("talker.py", program_text(TALKER))
+    path = machine.write("talker.py", program_text(RESPAWNED_TALKER))
     launch = machine.launch(
         machine.write(
             "a.launch.py",
@@ -44,17 +50,27 @@ def test_killed_node_is_respawned_and_heard_again(machine: Machine) -> None:
     listener = machine.program(LISTENER)
     listener.wait_for("heard", times=3)
     for round_number in (1, 2):
-        before = listener.count("heard")
         (victim,) = [process for process in launch.left_behind() if str(path) in " ".join(_words(process))]
         victim.kill()
         launch.wait_for("has died", times=round_number)
         launch.wait_for("process started with pid", times=round_number + 1)
-        listener.wait_for("heard", times=before + 6)
+        _wait_for_talkers(listener, round_number + 1)
+        listener.wait_for("heard", times=listener.count("heard") + 6)
         # The killed node is not listed, although its lease of five seconds has not expired.
         assert machine.verb("node", "list").split() == ["/listener", "/talker"]
     assert launch.interrupt() == 130
     wait_until(lambda: not launch.left_behind())
     wait_until(lambda: machine.verb("node", "list").split() == ["/listener"])
+
+
+def _wait_for_talkers(listener: RunningProcess, count: int) -> None:
+    """Wait until the listener has heard a number of talkers, one after the other."""
+
+    def has_heard_all() -> bool:
+        numbers = [int(line.split()[1]) for line in tuple(listener.lines) if line.startswith("heard")]
+        return len({number // MESSAGES_OF_A_TALKER for number in numbers}) == count
+
+    wait_until(has_heard_all, what=lambda: listener.text)
 
 
 def _words(process: psutil.Process) -> list[str]:

@@ -32,16 +32,20 @@ export class ServicesPanel implements Panel {
       if (service !== state.service) state.choose(service);
     };
     this.field.addEventListener("change", () => choose(this.field.value.trim()));
-    this.field.addEventListener("input", () => {
-      if (state.services.some(({ name }) => name === this.field.value)) choose(this.field.value);
-    });
+    const chooseListed = (): void => {
+      if (state.isListed(this.field.value)) choose(this.field.value);
+    };
+    this.field.addEventListener("input", chooseListed);
     this.text.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) state.call(this.text.value);
     });
     const toolbar = h("div", { class: "toolbar" }, this.field, this.suggestions.element, this.kind, h("span", { class: "spacer" }), this.callButton);
     const columns = h("div", { class: "call-columns" }, this.text, h("div", { class: "scroll call-response" }, this.result, this.treeHost));
     this.element = h("div", { class: "panel monitor" }, toolbar, columns);
-    state.listChanged.on(() => this.suggestions.show(state.services.map(({ name, kind }) => [name, kind])));
+    state.listChanged.on(() => {
+      this.suggestions.show(state.services.map(({ name, kind }) => [name, kind]));
+      chooseListed(); // its name may have been typed before the list arrived
+    });
     state.changed.on(() => this.show());
     onVisibilityChange(this.element, (isVisible) => state.watch(isVisible));
     this.show();

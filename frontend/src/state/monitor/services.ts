@@ -21,7 +21,9 @@ export class ServicesState {
       this.changed.emit();
     });
     connection.on("service_list", ({ services }) => {
+      const wasListed = this.isListed(this.service);
       this.services = services;
+      if (!wasListed && this.request === null) this.askForRequest();
       this.listChanged.emit();
     });
     connection.on("service_request", (request) => {
@@ -48,8 +50,12 @@ export class ServicesState {
     this.request = null;
     this.response = null;
     this.isCalling = false;
-    if (this.services.some(({ name }) => name === service)) this.connection.send({ type: "choose_service", service });
+    this.askForRequest();
     this.changed.emit();
+  }
+
+  isListed(service: string): boolean {
+    return this.services.some(({ name }) => name === service);
   }
 
   call(text: string): void {
@@ -58,5 +64,9 @@ export class ServicesState {
     this.response = null;
     this.connection.send({ type: "call_service", service: this.service, text });
     this.changed.emit();
+  }
+
+  private askForRequest(): void {
+    if (this.isListed(this.service)) this.connection.send({ type: "choose_service", service: this.service });
   }
 }
