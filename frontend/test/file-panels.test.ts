@@ -20,6 +20,10 @@ class BareDock implements Arrangement {
     this.changePanels([...this.shownPanels, id]);
   }
 
+  close(id: PanelId): void {
+    this.changePanels(this.shownPanels.filter((panel) => panel !== id));
+  }
+
   isOpen(id: PanelId): boolean {
     return this.shownPanels.includes(id);
   }
@@ -136,6 +140,26 @@ describe("a course", () => {
     receivePanels(1, null, ["displays"], "/ws");
     receive(course);
     expect([dock.isClassroom, dock.resetCount, dock.shownPanels]).toEqual([true, 0, ["lesson", "plot"]]);
+  });
+});
+
+describe("a page for turtles alone", () => {
+  const turtles: ServerMessage = { type: "turtle_simulators", simulators: [{ number: 1, name: "/turtlesim" }] };
+
+  it.each([true, false])("has no panels for descriptions when it is shown for the first time", (isEarly) => {
+    if (isEarly) receive(turtles);
+    receivePanels(1, null, ["time"], "<window>");
+    if (!isEarly) receive(turtles);
+    expect(dock.shownPanels).toEqual(["time"]);
+    dock.open("links");
+    receive(turtles);
+    expect(dock.shownPanels).toEqual(["time", "links"]);
+  });
+
+  it("keeps them beside the displays of RViz", () => {
+    receive(turtles);
+    receivePanels(1, "/a.rviz", ["displays"]);
+    expect(dock.shownPanels).toEqual(["displays", "links"]);
   });
 });
 

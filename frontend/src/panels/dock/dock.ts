@@ -15,10 +15,6 @@ import { SceneTab } from "./scene-tab";
 import { bindTabKeys } from "./tab-keys";
 import { TimeStrip } from "./time-strip";
 
-/** Panels that files do not list: they open beside those that do, and not for a file that shows the scene alone. */
-const COMPANION_PANELS: readonly PanelId[] = ["links", "diagnostics"];
-const PANELS_WITH_COMPANIONS: readonly PanelName[] = ["displays", "views", "tool-properties", "selection"];
-
 /** The dockable panels; the browser stores their arrangement for each file. */
 export class Dock {
   /** Emitted when a panel is opened, closed, moved or brought to the front. */
@@ -167,7 +163,6 @@ export class Dock {
       if (panels.includes(id)) this.add(id);
       else this.close(id);
     }
-    if (!panels.some((id) => PANELS_WITH_COMPANIONS.includes(id))) COMPANION_PANELS.forEach((id) => this.close(id));
     this.columnWidths.restoreAfterChange();
   }
 

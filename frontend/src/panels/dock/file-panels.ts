@@ -16,6 +16,9 @@ export const FILE_PANELS: readonly PanelName[] = [
   "visual-tools",
 ];
 
+/** Panels that are open at first, and that files cannot list. */
+const DESCRIPTION_PANELS: readonly PanelId[] = ["links", "diagnostics"];
+
 /** The part of the dock that `FilePanels` uses. */
 export interface Arrangement {
   readonly changed: Signal;
@@ -27,6 +30,7 @@ export interface Arrangement {
   arrange(file: string): boolean;
   storeFor(file: string): void;
   open(id: PanelId): void;
+  close(id: PanelId): void;
   showOnly(panels: readonly PanelName[]): void;
   reset(): void;
 }
@@ -52,6 +56,7 @@ export class FilePanels {
   private isFirstVisit = false;
   private hasVoice = false;
   private hasCourse = false;
+  private hasTurtles = false;
 
   constructor(
     private readonly connection: Connection,
@@ -59,7 +64,7 @@ export class FilePanels {
   ) {
     connection.on("hello", () => {
       this.panelsMessage = this.configuration = this.shownNumber = null;
-      this.isDrivable = this.hasVoice = this.hasCourse = false;
+      this.isDrivable = this.hasVoice = this.hasCourse = this.hasTurtles = false;
     });
     connection.on("panels", (message) => {
       this.panelsMessage = message;
@@ -80,6 +85,10 @@ export class FilePanels {
     connection.on("course", () => {
       this.hasCourse = true;
       this.openCourse();
+    });
+    connection.on("turtle_simulators", ({ simulators }) => {
+      this.hasTurtles = simulators.length > 0;
+      this.makeRoomForTurtles();
     });
     dock.changed.on(() => this.sendOpenPanels());
   }
@@ -107,6 +116,13 @@ export class FilePanels {
     this.dock.reset();
   }
 
+  /** Closes the panels for descriptions in a page for turtles alone, if it is shown for the first time. */
+  private makeRoomForTurtles(): void {
+    if (!this.hasTurtles || !this.isFirstVisit || this.dock.isOpen("displays")) return;
+    this.isFirstVisit = false;
+    for (const id of DESCRIPTION_PANELS) this.dock.close(id);
+  }
+
   /** Applies the configuration once both messages about it have arrived. */
   private apply(): void {
     const { panelsMessage, configuration, dock } = this;
@@ -129,6 +145,7 @@ export class FilePanels {
     this.isFirstVisit = !isStored;
     this.openVoice();
     this.openCourse();
+    this.makeRoomForTurtles();
   }
 
   private sendOpenPanels(): void {
