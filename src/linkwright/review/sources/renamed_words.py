@@ -13,7 +13,7 @@ from linkwright.review.sources.names import CPP_SUFFIXES
 _TOKEN = re.compile(r""""(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|\w+|[^\w\s]""")
 _LITERAL_OR_WORD = re.compile(r""""(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|\w+""")
 _NAME = re.compile(r"[a-z_]\w*")
-_DECLARING_ENDS = frozenset({"=", ";", "(", "{", ",", ")", ":", "["})
+_DECLARING_ENDS = frozenset({"=", ";", "{", ",", ")", ":", "["})
 _TYPE_MARKS = frozenset({">", "&", "*"})
 _NO_TYPES = frozenset(
     {*("return", "new", "else", "throw", "delete", "case", "goto", "and", "or", "not", "in", "is", "if", "while"),
