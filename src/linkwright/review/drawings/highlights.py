@@ -19,7 +19,7 @@ _AXIS_LENGTH = 0.1
 """The length of the axes of a frame, as a fraction of the size of the robots."""
 _MAX_DISTANCE = 1.0
 """The distance from the robots, as a fraction of their size, up to which frames are shown."""
-_MAX_NAMES = 6
+_MAX_NAMES = 4
 """The maximum number of highlighted parts that all have their names in the images."""
 _MIN_SIZE_RATIO = 2.5
 """The minimum ratio of the sizes of the robots and of the changed parts for an image of these parts."""
