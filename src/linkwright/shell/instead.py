@@ -17,6 +17,11 @@ _COLCON_HINT = phrase("this is a ROS 1 command; build with `colcon build`")
 _ROS2_HINT = phrase(
     "this is a ROS 1 command; the commands of ROS 2 begin with `ros2`, as in `ros2 launch` and `ros2 topic list`"
 )
+_SIMULATION_HINT = phrase(
+    "run a launch file, which starts Linkwright's simulation instead: `ros2 launch "
+    "gazebo_ros gazebo.launch.py world:=FILE`"
+)
+
 HINTS: dict[str, Phrase] = {
     "rosdep": phrase(
         "Linkwright needs no system packages: put the sources of a missing package into the "
@@ -25,6 +30,11 @@ HINTS: dict[str, Phrase] = {
     **MISSING_PROGRAMS,
     "rviz": phrase("run `rviz2 -d FILE.rviz`, or `linkwright view FILE` for one robot"),
     "plotjuggler": _PAGE_HINT,
+    "gazebo": _SIMULATION_HINT,
+    "gzserver": _SIMULATION_HINT,
+    "gzclient": _SIMULATION_HINT,
+    "gz": _SIMULATION_HINT,
+    "ign": _SIMULATION_HINT,
     "catkin": _COLCON_HINT,
     "catkin_make": _COLCON_HINT,
     "roscore": phrase("this is a ROS 1 command; in ROS 2, nodes find each other without a master"),
