@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Phrase, counted, joined_first, phrase
 from linkwright.packages.launch_files import is_launch_file_name
@@ -117,13 +117,30 @@ def compare_launch_files(pair: FilePair) -> None:
         if pair.new_file.suffix == PYTHON_SUFFIX:
             compare_imports(pair)
         report_undefined_names(pair)
+    if old.is_ros1 and not new.is_ros1 and PurePosixPath(pair.old_path).name != PurePosixPath(pair.new_path).name:
+        _mark_unbreaking(pair, keeps_renaming=True)  # no user starts the file by its old name
 
 
 def compare_launch_tests(pair: FilePair) -> None:
     """Compare two versions of a test of ROS 1, whose names no other program uses."""
     compare_launch_files(pair)
     if not pair.is_lost:
-        pair.changes[:] = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
+        _mark_unbreaking(pair)
+
+
+def _mark_unbreaking(pair: FilePair, *, keeps_renaming: bool = False) -> None:
+    """Mark the changes of a file as changes that break nothing.
+
+    Args:
+        pair: both versions of the file.
+        keeps_renaming: whether the new name of the file stays breaking.
+    """
+    pair.changes[:] = [
+        change
+        if keeps_renaming and change.path_change is not None
+        else replace(change, effect=Effect.CHANGED, reason=None)
+        for change in pair.changes
+    ]
 
 
 def _report_undeclared(pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry]) -> None:
