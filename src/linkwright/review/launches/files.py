@@ -32,7 +32,7 @@ from linkwright.review.launches.included import (
 )
 from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
-from linkwright.review.launches.missing_programs import lacks_program
+from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renamed_programs import find_renamed_programs
@@ -167,7 +167,10 @@ def _report_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outline
     """Report an action that replaces a different one, or a parameter with a new name."""
     location = pair.location(new_entry.span)
     if old_entry.kind != SERVER_PARAMETER:
-        pair.add(phrase("{old} replaced by {new}", old=format_title(old_entry), new=format_title(new_entry)), location)
+        text = phrase("{old} replaced by {new}", old=format_title(old_entry), new=format_title(new_entry))
+        is_lost = lacks_included_file(pair.versions.new, new_entry)
+        is_lost = is_lost and not lacks_included_file(pair.versions.old, old_entry)
+        pair.add(text, location, phrase("the launch file does not find the file") if is_lost else None)
         return
     old, new = outlines
     text = phrase("{entry} renamed to '{name}'", entry=format_title(old_entry), name=new_entry.name)
