@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import sentences, subject
+from tests.review.conftest import breaking, sentences, subject
 
 HELPER = '''from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
@@ -99,3 +99,37 @@ def test_default_none_is_no_default(repository, compare):
     repository.write({"arm/arm/helper.py": HELPER})
     found = [line for item in compare(repository).subjects for line in sentences(item)]
     assert not [line for line in found if "default" in line and line.startswith("argument")]
+
+
+SETUP = "from setuptools import setup\nsetup(name='arm', packages=['arm'])\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "setup", "expected"),
+    [
+        ("Arguments", "Passed", SETUP, ["'Arguments' renamed to 'Passed'"]),
+        ("def declare(", "def _declare(", SETUP, ["'declare' removed"]),
+        ("Arguments", "Passed", "", []),
+    ],
+)
+def test_names_that_other_packages_import_are_compared(repository, compare, old, new, setup, expected):
+    files = {**FILES, "arm/arm/__init__.py": "", **({"arm/setup.py": setup} if setup else {})}
+    repository.commit(files)
+    repository.write({"arm/arm/helper.py": HELPER.replace(old, new)})
+    assert breaking(compare(repository)) == expected
+
+
+def test_ported_launch_file_of_another_name_is_told_once(repository, compare):
+    xml = """<launch>
+  <arg name="rate" default="5"/>
+  <node pkg="arm" type="drive" name="drive" output="screen"><param name="rate" value="$(arg rate)"/></node>
+  <node pkg="arm" type="watch" name="watch" output="screen"><param name="rate" value="$(arg rate)"/></node>
+</launch>
+"""
+    comment = "".join(f"<!-- This comment is in both versions of the launch file, line {n}. -->\n" for n in range(9))
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/launch/arm.launch": comment + xml})
+    ported = xml.replace("type=", "exec=").replace("$(arg", "$(var")
+    lines = [line for line in ported.splitlines(keepends=True) if "watch" not in line]
+    repository.write({"arm/launch/arm.launch": None, "arm/launch/robot_launch.xml": comment + "".join(lines)})
+    repository.commit({})
+    assert breaking(compare(repository, "HEAD~..HEAD")) == ["renamed from arm/launch/arm.launch"]

@@ -94,3 +94,24 @@ def test_changed_argument_of_an_unknown_function_is_one_line(repository, compare
     repository.write({PATH: text.replace("{'a': 1}", "{'a': 1, 'b': 2}")})
     (line,) = sentences(subject(compare(repository), PATH))
     assert line.startswith("other code: values = load(config_file('arm'), {'a': 1})")
+
+
+INSTALLING = """cmake_minimum_required(VERSION 3.8)
+project(arm)
+find_package(ament_cmake REQUIRED)
+install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})
+ament_package()
+"""
+
+
+def test_include_of_a_missing_file_that_a_function_chooses_is_breaking(repository, compare):
+    action = "IncludeLaunchDescription(source('arm', 'a.launch.py'))"
+    included = {"arm/launch/a.launch.py": LAUNCH.replace("ACTION", "Node(package='arm', executable='n')")}
+    files = {**FILES, **included, "arm/CMakeLists.txt": INSTALLING, PATH: LAUNCH.replace("ACTION", action)}
+    repository.commit(files)
+    text = files[PATH].replace("helper import", "helper import other_source,").replace("(source", "(other_source")
+    start = HELPER.index("def source(")
+    other = HELPER[start:].replace("def source(", "def other_source(").replace("'launch'", "'config'")
+    repository.write({PATH: text, "arm/arm/helper.py": HELPER + "\n\n" + other.partition("\n\n\n")[0] + "\n"})
+    found = f"include of '{FOUND}launch/a.launch.py' replaced by include of '{FOUND}config/a.launch.py'"
+    assert breaking(compare(repository)) == [found]

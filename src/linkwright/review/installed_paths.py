@@ -29,7 +29,7 @@ def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bo
     old_package, new_package = versions.old.package_of(old_path), versions.new.package_of(new_path)
     if old_package is None or old_package != new_package:
         return False
-    if _find_module(versions.old, old_package, old_path) != _find_module(versions.new, new_package, new_path):
+    if find_module(versions.old, old_package, old_path) != find_module(versions.new, new_package, new_path):
         return False
     old_installed_paths = find_installed_paths(versions.old, old_package, old_path)
     return old_installed_paths is not None and old_installed_paths == find_installed_paths(
@@ -37,7 +37,7 @@ def keeps_installed_path(versions: Versions, old_path: str, new_path: str) -> bo
     )
 
 
-def _find_module(version: Version, package: str, path: str) -> PurePosixPath | None:
+def find_module(version: Version, package: str, path: str) -> PurePosixPath | None:
     """Return the path by which other programs import a file, or None if it is in no installed Python package."""
     if not path.endswith(".py"):
         return None

@@ -46,6 +46,7 @@ from linkwright.review.files.worlds import compare_worlds, is_model, world_conte
 from linkwright.review.given_names import compare_parameters_with_sources
 from linkwright.review.launches.contents import launch_contents
 from linkwright.review.launches.files import compare_launch_files, compare_launch_tests
+from linkwright.review.launches.helper_modules import compare_launch_helpers
 from linkwright.review.robots.descriptions import compare_descriptions
 from linkwright.review.robots.semantics import SUFFIX, compare_expanded_semantics
 from linkwright.review.versions import TEST_FOLDERS, Version
@@ -252,7 +253,7 @@ def adapt_rule_to_contents(rule: KindRule, version: Version, path: str) -> KindR
 
 LAUNCH_HELPER = KindRule(
     SubjectKind.LAUNCH_FILE,
-    compare_launch_files,
+    compare_launch_helpers,
     (".py",),
     phrase("functions for launch files added"),
     phrase("functions for launch files removed"),

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Phrase, counted, joined_first, phrase
 from linkwright.packages.launch_files import is_launch_file_name
@@ -39,7 +39,7 @@ from linkwright.review.launches.included import (
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
 from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
-from linkwright.review.launches.missing_programs import lacks_program
+from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renamed_programs import find_renamed_programs
@@ -125,13 +125,30 @@ def compare_launch_files(pair: FilePair) -> None:
         if pair.new_file.suffix == PYTHON_SUFFIX:
             compare_imports(pair)
         report_undefined_names(pair)
+    if old.is_ros1 and not new.is_ros1 and PurePosixPath(pair.old_path).name != PurePosixPath(pair.new_path).name:
+        _mark_unbreaking(pair, keeps_renaming=True)  # no user starts the file by its old name
 
 
 def compare_launch_tests(pair: FilePair) -> None:
     """Compare two versions of a test of ROS 1, whose names no other program uses."""
     compare_launch_files(pair)
     if not pair.is_lost:
-        pair.changes[:] = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
+        _mark_unbreaking(pair)
+
+
+def _mark_unbreaking(pair: FilePair, *, keeps_renaming: bool = False) -> None:
+    """Mark the changes of a file as changes that break nothing.
+
+    Args:
+        pair: both versions of the file.
+        keeps_renaming: whether the new name of the file stays breaking.
+    """
+    pair.changes[:] = [
+        change
+        if keeps_renaming and change.path_change is not None
+        else replace(change, effect=Effect.CHANGED, reason=None)
+        for change in pair.changes
+    ]
 
 
 def _report_undeclared(pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry]) -> None:
@@ -158,7 +175,10 @@ def _report_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outline
     """Report an action that replaces a different one, or a parameter with a new name."""
     location = pair.location(new_entry.span)
     if old_entry.kind != SERVER_PARAMETER:
-        pair.add(phrase("{old} replaced by {new}", old=format_title(old_entry), new=format_title(new_entry)), location)
+        text = phrase("{old} replaced by {new}", old=format_title(old_entry), new=format_title(new_entry))
+        is_lost = lacks_included_file(pair.versions.new, new_entry)
+        is_lost = is_lost and not lacks_included_file(pair.versions.old, old_entry)
+        pair.add(text, location, phrase("the launch file does not find the file") if is_lost else None)
         return
     old, new = outlines
     text = phrase("{entry} renamed to '{name}'", entry=format_title(old_entry), name=new_entry.name)

@@ -52,6 +52,7 @@ _COMPUTED_NAME = re.compile(
 _PACKAGE_OF_PATH = re.compile(r"\$\(find(?:-pkg-share|-pkg-prefix)? (?P<package>[\w.-]+)\)")
 _UNKNOWN_PROGRAM = re.compile(r"[$/*:\s]")
 """A character of a name that is computed, or that is the class of a component."""
+_FILE_OF_PACKAGE = re.compile(r"\$\(find-pkg-share (?P<package>[\w.-]+)\)/(?P<path>[^$]+)")
 _SUBMODULE = re.compile(r"^\s*path\s*=\s*(?P<path>\S+)", re.MULTILINE)
 
 
@@ -197,6 +198,17 @@ def lacks_program(version: Version, entry: Entry) -> bool:
     if owner is None or not name or _UNKNOWN_PROGRAM.search(name):
         return False
     return owner.lacks(name) and (name.endswith(_SCRIPT_SUFFIXES) or not owner.may_compute_names)
+
+
+def lacks_included_file(version: Version, entry: Entry) -> bool:
+    """Return whether a launch action includes a file that its package in the repository certainly does not install."""
+    match = _FILE_OF_PACKAGE.fullmatch(entry.name) if entry.kind == "include" else None
+    owner = None if match is None else find_packages(version).get(match["package"])
+    if match is None or owner is None or owner.facts is None or owner.is_ros1:
+        return False
+    target = f"share/{owner.facts.project}/{match['path']}"
+    is_known = owner.facts.is_complete and not owner.may_generate and owner.facts.project == match["package"]
+    return is_known and bool(owner.facts.files) and target not in owner.facts.files
 
 
 def _translate_package(program: str, new_names: Mapping[str, str]) -> str:

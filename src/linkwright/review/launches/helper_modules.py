@@ -1,0 +1,61 @@
+"""Compare the functions and classes that a module with actions offers to launch files of other packages."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+from linkwright.diagnostics import phrase
+from linkwright.packages.readers.python_values import PythonFile
+from linkwright.review.file_pair import FilePair
+from linkwright.review.installed_paths import find_module
+from linkwright.review.launches.files import compare_launch_files
+from linkwright.review.sources.reading import try_read_source
+
+_Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+
+
+def compare_launch_helpers(pair: FilePair) -> None:
+    """Compare two versions of a Python module that makes actions for launch files."""
+    compare_launch_files(pair)
+    package = pair.versions.old.package_of(pair.old_path)
+    if pair.is_lost or package is None or find_module(pair.versions.old, package, pair.old_path) is None:
+        return
+    old, new = _try_parse(pair.old_file), _try_parse(pair.new_file)
+    if old is None or new is None:
+        return
+    left = _find_names(new)
+    definitions = {node.name: node for node in new.tree.body if isinstance(node, _Definition)}
+    old_names = _find_names(old)
+    for node in old.tree.body:
+        if not isinstance(node, _Definition) or node.name.startswith("_") or node.name in left:
+            continue
+        renamed = [name for name, other in definitions.items() if name not in old_names and _are_equal(node, other)]
+        text = phrase("'{name}' removed", name=node.name)
+        if len(renamed) == 1:
+            text = phrase("'{old}' renamed to '{new}'", old=node.name, new=renamed[0])
+        pair.add(text, pair.location(old.span(node), is_old=True), phrase("launch files that import it do not find it"))
+
+
+def _try_parse(path: Path) -> PythonFile | None:
+    source = try_read_source(path)
+    try:
+        return None if source is None else PythonFile(source)
+    except (SyntaxError, ValueError, RecursionError):
+        return None
+
+
+def _find_names(python: PythonFile) -> set[str]:
+    """Return the names that other modules can import from a module."""
+    names = {node.name for node in python.tree.body if isinstance(node, _Definition)}
+    for node in ast.walk(python.tree):
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            names |= {alias.asname or alias.name for alias in node.names}
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            names.add(node.id)
+    return names
+
+
+def _are_equal(old: _Definition, new: _Definition) -> bool:
+    """Return whether two definitions differ in their names only."""
+    return type(old) is type(new) and ast.unparse(old).replace(old.name, new.name) == ast.unparse(new)
