@@ -31,14 +31,16 @@ DURATIONS = {"deadline": "deadline", "lifespan": "lifespan", "lease": "livelines
 class QosPeer(Node):
     def __init__(self, name: str) -> None:
         super().__init__(name)
-        self._publishers: dict[str, Any] = {}
+        self._publishers_by_topic: dict[str, Any] = {}
         self._received: dict[str, list[str]] = {}
         self._events: dict[str, list[list[Any]]] = {}
-        self._timers: dict[str, Any] = {}
+        self._timers_by_topic: dict[str, Any] = {}
 
     def publisher(self, topic: str, qos: dict[str, Any]) -> None:
         callbacks = self._callbacks(PublisherEventCallbacks, topic)
-        self._publishers[topic] = self.create_publisher(String, topic, make_profile(qos), event_callbacks=callbacks)
+        self._publishers_by_topic[topic] = self.create_publisher(
+            String, topic, make_profile(qos), event_callbacks=callbacks
+        )
 
     def subscription(self, topic: str, qos: dict[str, Any]) -> None:
         texts = self._received.setdefault(topic, [])
@@ -51,16 +53,16 @@ class QosPeer(Node):
         )
 
     def publish(self, topic: str, text: str) -> None:
-        self._publishers[topic].publish(String(data=text))
+        self._publishers_by_topic[topic].publish(String(data=text))
 
     def keep_publishing(self, topic: str, period: float) -> None:
-        self._timers[topic] = self.create_timer(period, lambda: self.publish(topic, "again"))
+        self._timers_by_topic[topic] = self.create_timer(period, lambda: self.publish(topic, "again"))
 
     def stop_publishing(self, topic: str) -> None:
-        self._timers.pop(topic).cancel()
+        self._timers_by_topic.pop(topic).cancel()
 
     def assert_liveliness(self, topic: str) -> None:
-        self._publishers[topic].assert_liveliness()
+        self._publishers_by_topic[topic].assert_liveliness()
 
     def received(self, topic: str) -> list[str]:
         return self._received[topic]
@@ -71,7 +73,7 @@ class QosPeer(Node):
 
     def subscription_counts(self) -> dict[str, int]:
         """Return the number of matched subscriptions by topic."""
-        return {topic: publisher.get_subscription_count() for topic, publisher in self._publishers.items()}
+        return {topic: publisher.get_subscription_count() for topic, publisher in self._publishers_by_topic.items()}
 
     def publisher_count(self, topic: str) -> int:
         """Return the number of discovered publishers."""
