@@ -134,7 +134,11 @@ class _Reader:
         for call in find_calls(text):
             self._read_call(call)
         for use in self._caller_names.find_uses():
-            self._add_named_call(use.call, use.name, (use.begin, use.end), use.arguments)
+            name, offsets = use.name or self._get_literal(use.begin, use.end), (use.begin, use.end)
+            if name:
+                self._add_named_call(use.call, name, offsets, use.arguments)
+            else:
+                self._add_computed_call(use.call, offsets, use.arguments)
         for pattern, kind, index in ((_NODE, NameKind.NODE, 0), (_INIT, NameKind.NODE, 2)):
             for match in pattern.finditer(text):
                 self._names.makes_node = True
@@ -273,25 +277,34 @@ class _Reader:
         begin, end = candidates[0] if not call.is_action else candidates[min(1, len(candidates) - 1)]
         if call.start in self._caller_names.inner_calls:
             return  # the callers give the names
-        name, type_name = " ".join(text[begin:end].split()), call.type
-        listed = list(find_table_names(text, name, call.start)) if kind is NameKind.PARAMETER else []
-        if listed:
-            texts = [text[slice(*argument)].strip() for argument in call.arguments[1:]]
-            for item in listed:
-                self._add_named_call(call, item.name, (item.start, item.end), texts)
-            return
-        is_ros = self._add_default(kind, name) or call.function not in ROS1_CALLS
         texts = [text[slice(*argument)].strip() for argument in call.arguments[1:]]
+        name = " ".join(text[begin:end].split())
+        listed = list(find_table_names(text, name, call.start)) if kind is NameKind.PARAMETER else []
+        for item in listed:
+            self._add_named_call(call, item.name, (item.start, item.end), texts)
+        if not listed:
+            self._add_computed_call(call, (begin, end), texts)
+
+    def _add_computed_call(self, call: Call, offsets: tuple[int, int], texts: Sequence[str]) -> None:
+        """Add the expression in a call that gives a name.
+
+        Args:
+            call: the call.
+            offsets: the offsets of the expression.
+            texts: the arguments behind it.
+        """
+        kind, type_name = call.kind, call.type
+        name = " ".join(self._text[slice(*offsets)].split())
+        is_ros = self._add_default(kind, name) or call.function not in ROS1_CALLS
         details: tuple[tuple[Detail, str], ...] = ()
         if call.function == "param" and type_name and len(call.arguments) == _PARAM_ARGUMENTS:
             is_ros, type_name = True, self._parameter_defaults.find(call, texts)
         elif kind is not NameKind.PARAMETER:
-            end_of_call = call.arguments[-1][1]
-            is_ros = is_ros or bool(type_name) or _MEMBER_CALLBACK.search(text, end, end_of_call) is not None
+            is_ros = is_ros or bool(type_name) or _MEMBER_CALLBACK.search(", ".join(["", *texts])) is not None
             type_name = type_name or self._find_callback_type(kind, texts)
             details = tuple(self._find_qos(call, texts))
         if is_ros:
-            self._names.expressions.append(self._make_name(kind, name, type_name, begin, end, details))
+            self._names.expressions.append(self._make_name(kind, name, type_name, *offsets, details))
 
     def _add_default(self, kind: NameKind, expression: str) -> bool:
         """Add the name that an expression has by default, and return whether a parameter gives it."""
