@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 
@@ -20,6 +20,7 @@ from linkwright.review.sources.cpp_calls import (
     find_calls,
 )
 from linkwright.review.sources.cpp_conditions import Conditions
+from linkwright.review.sources.cpp_constant_texts import ConstantTexts
 from linkwright.review.sources.cpp_functions import (
     HIDDEN,
     PRIVATE,
@@ -42,14 +43,11 @@ from linkwright.review.sources.cpp_parameter_calls import (
 )
 from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
-from linkwright.review.sources.cpp_text_functions import TextFunctions
 from linkwright.review.sources.cpp_timers import FoundRate, find_rates
 from linkwright.review.sources.cpp_values import (
     TEXT,
     VARIABLE,
     InitialValues,
-    find_assigned_text,
-    find_constants,
     parse_literal,
 )
 from linkwright.review.sources.cpp_variable_types import VariableTypes
@@ -68,7 +66,6 @@ from linkwright.review.sources.parameter_helpers import (
     read_elements,
 )
 from linkwright.review.sources.registrations import find_registrations
-from linkwright.review.sources.shared_constants import read_header_constants
 
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds of names that a header declares, perhaps several times under different conditions."""
@@ -126,7 +123,6 @@ class _Reader:
         self._names = names
         self._text = blank_comments(source.text)
         self._conditions = Conditions(source.text)
-        self._constants = find_constants(self._text)
 
     def read(self) -> None:
         """Add the names."""
@@ -134,7 +130,7 @@ class _Reader:
         for call in find_calls(text):
             self._read_call(call)
         for use in self._caller_names.find_uses():
-            name, offsets = use.name or self._get_literal(use.begin, use.end), (use.begin, use.end)
+            name, offsets = use.name or self._texts.evaluate(use.begin, use.end), (use.begin, use.end)
             if name:
                 self._add_named_call(use.call, name, offsets, use.arguments)
             else:
@@ -269,10 +265,12 @@ class _Reader:
             kind in COMMUNICATION_KINDS and self._add_format_pattern(kind, call.type, *candidates[0])
         ):
             return
-        offsets = next(((begin, end) for begin, end in candidates if self._get_literal(begin, end) is not None), None)
+        offsets = next(
+            ((begin, end) for begin, end in candidates if self._texts.evaluate(begin, end) is not None), None
+        )
         if offsets is not None:
             texts = [text[begin:end].strip() for begin, end in call.arguments[1:]]
-            self._add_named_call(call, self._get_literal(*offsets) or "", offsets, texts)
+            self._add_named_call(call, self._texts.evaluate(*offsets) or "", offsets, texts)
             return
         begin, end = candidates[0] if not call.is_action else candidates[min(1, len(candidates) - 1)]
         if call.start in self._caller_names.inner_calls:
@@ -450,7 +448,7 @@ class _Reader:
 
     @cached_property
     def _parameter_defaults(self) -> ParameterDefaults:
-        return ParameterDefaults(self._text, self._constants, self._initial_values)
+        return ParameterDefaults(self._text, self._texts.own, self._initial_values)
 
     def _read_members(self) -> None:
         """Add the topics and actions with which members and variables are constructed."""
@@ -491,20 +489,9 @@ class _Reader:
             self._names.timers.append(Timer(callback, text, span, rate.clock))
             self._add_callback(None, "", rate.arguments)
 
-    def _get_literal(self, begin: int, end: int) -> str | None:
-        """Return the text of a literal or constant, or None for other expressions."""
-        literal = TEXT.fullmatch(self._text[begin:end])
-        if literal is not None:
-            return literal["text"]
-        variable = VARIABLE.fullmatch(self._text[begin:end])
-        if variable is None:
-            return self._text_functions.evaluate(self._text[begin:end])
-        if variable["name"] in self._constants:
-            return self._constants[variable["name"]]
-        name = variable["name"]
-        constant = self._shared_constants.get(name)
-        constant = self._initial_values.find_text(name) if constant is None else constant
-        return find_assigned_text(self._text, name, begin) if constant is None else constant
+    @cached_property
+    def _texts(self) -> ConstantTexts:
+        return ConstantTexts(self._text, self._headers, self._initial_values)
 
     @cached_property
     def _initial_values(self) -> InitialValues:
@@ -514,17 +501,6 @@ class _Reader:
     def _variable_types(self) -> VariableTypes:
         return VariableTypes(Path(self._source.name), self._text, self._headers)
 
-    @cached_property
-    def _text_functions(self) -> TextFunctions:
-        return TextFunctions([self._text, *self._headers], {**self._shared_constants, **self._constants})
-
-    @cached_property
-    def _shared_constants(self) -> Mapping[str, str]:
-        """The constants of included headers that the source does not define otherwise."""
-        constants = read_header_constants(self._headers)
-        assigned = set(re.findall(r"\b(\w+)\s*(?:\[[^\]]*\]\s*)?(?:=(?!=)|[{(]\s*\")", self._text))
-        return {name: text for name, text in constants.items() if name not in assigned}
-
     def _add_argument(self, kind: NameKind, start: int, index: int) -> None:
         arguments = list(find_arguments(self._text, start))
         if index < len(arguments):
@@ -532,7 +508,7 @@ class _Reader:
 
     def _add_literal(self, kind: NameKind, begin: int, end: int, type_name: str = "") -> bool:
         """Add the name in an argument if it is a literal, and return whether it is."""
-        text = self._get_literal(begin, end)
+        text = self._texts.evaluate(begin, end)
         if text:
             self._add(kind, text, begin, end, type_name)
         return bool(text)
