@@ -73,7 +73,9 @@ def test_thousand_calls_from_real_client_get_their_own_responses(processes, star
     process = processes("ours")
     process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     peer = start_real_node()
-    assert ask_while_spinning(process, peer, "echoes_are_right", "/linkwright_echo", "call", CALL_COUNT) == CALL_COUNT
+    assert (
+        ask_while_spinning(process, peer, "count_correct_echoes", "/linkwright_echo", "call", CALL_COUNT) == CALL_COUNT
+    )
 
 
 def test_first_call_of_first_real_node_is_answered(processes, start_real_node):
@@ -98,7 +100,7 @@ def test_simultaneous_real_and_linkwright_clients_are_answered(processes, start_
     threads = [
         threading.Thread(
             target=lambda peer=peer, number=number: counts.append(
-                peer.ask("echoes_are_right", "/linkwright_echo", f"client {number}", CALL_COUNT // 5)
+                peer.ask("count_correct_echoes", "/linkwright_echo", f"client {number}", CALL_COUNT // 5)
             )
         )
         for number, peer in enumerate(peers)

@@ -29,7 +29,7 @@ SUBSCRIPTION_QOS, STATIC_SUBSCRIPTION_QOS = (
 class TfPeer(Node):
     def __init__(self, name: str) -> None:
         super().__init__(name)
-        self._publishers = {
+        self._publishers_by_topic = {
             "/tf": self.create_publisher(TFMessage, "/tf", PUBLISHER_QOS),
             "/tf_static": self.create_publisher(TFMessage, "/tf_static", STATIC_PUBLISHER_QOS),
         }
@@ -40,7 +40,7 @@ class TfPeer(Node):
             )
 
     def publish_transform(self, topic: str, parent: str, child: str, x: float) -> None:
-        self._publishers[topic].publish(TFMessage(transforms=[self._transform(parent, child, x)]))
+        self._publishers_by_topic[topic].publish(TFMessage(transforms=[self._transform(parent, child, x)]))
 
     def keep_publishing(self, parent: str, child: str, x: float) -> None:
         self.create_timer(0.02, lambda: self.publish_transform("/tf", parent, child, x))

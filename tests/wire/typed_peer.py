@@ -28,7 +28,7 @@ class TypedPeer(Node):
         self._received: dict[str, list[Any]] = {}
         self._requests: dict[str, list[Any]] = {}
         self._large: list[list[Any]] = []
-        self._publishers: dict[str, Any] = {}
+        self._publishers_by_topic: dict[str, Any] = {}
 
     def available_types(self, types: list[str]) -> list[str]:
         """Return the given types that this interpreter has."""
@@ -47,7 +47,9 @@ class TypedPeer(Node):
 
     def publish(self, types: list[str], seeds: int) -> None:
         for name in types:
-            publisher = self._publishers[name] = self.create_publisher(load_interface(name), _topic(name), LATCHED)
+            publisher = self._publishers_by_topic[name] = self.create_publisher(
+                load_interface(name), _topic(name), LATCHED
+            )
             for seed in range(seeds):
                 publisher.publish(message_from_seed(load_interface(name), seed))
 
@@ -150,9 +152,9 @@ class TypedPeer(Node):
         return [str(endpoint.topic_type_hash) for endpoint in self.get_publishers_info_by_topic(_topic(name))]
 
     def _images(self, topic: str) -> Any:
-        if topic not in self._publishers:
-            self._publishers[topic] = self.create_publisher(load_interface("sensor_msgs/msg/Image"), topic, 10)
-        return self._publishers[topic]
+        if topic not in self._publishers_by_topic:
+            self._publishers_by_topic[topic] = self.create_publisher(load_interface("sensor_msgs/msg/Image"), topic, 10)
+        return self._publishers_by_topic[topic]
 
     def _server(self, name: str) -> Any:
         requests = self._requests.setdefault(name, [])

@@ -201,10 +201,10 @@ class LifecycleNodeMixin(ManagedEntity):
         """
         initial = self._state_machine.state
         self._enter_state(transition)
-        result = self._call(initial)
+        result = self._run_callback(initial)
         self._end_transition(result)
         if result == TransitionCallbackReturn.ERROR:
-            self._end_transition(self._call(initial))
+            self._end_transition(self._run_callback(initial))
         return result
 
     def _end_transition(self, result: TransitionCallbackReturn) -> None:
@@ -212,7 +212,7 @@ class LifecycleNodeMixin(ManagedEntity):
         assert following_transition is not None
         self._enter_state(following_transition)
 
-    def _call(self, initial: LifecycleState) -> TransitionCallbackReturn:
+    def _run_callback(self, initial: LifecycleState) -> TransitionCallbackReturn:
         node: Any = self
         name = _CALLBACKS[self._state_machine.state]
         try:
