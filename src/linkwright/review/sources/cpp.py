@@ -156,7 +156,8 @@ class _Reader:
             end = element.start + len(element.name)
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for interface in find_hardware_interfaces(text):
-            self._add(interface.kind, interface.name, interface.start, interface.end)
+            details = ((Detail.REQUIRED, YES),) if interface.is_required else ()
+            self._add(interface.kind, interface.name, interface.start, interface.end, details=details)
         for option in find_options(text, find_arguments):
             self._add(NameKind.OPTION, option.name, option.start, option.end, option.default, option.details)
         for rate in find_rates(text):
