@@ -144,3 +144,33 @@ def test_a_call_may_have_its_arguments_in_the_next_line(repository, compare):
     repository.write({"arm/src/arm.cpp": source.replace("flag", "stop")})
     (found,) = compare(repository).subjects
     assert sentences(found) == ["subscription 'flag' (Bool) renamed to 'stop' (Bool)"]
+
+
+PUBLISHING = """#define PUB(p, T, name, ...) \\
+  do { \\
+    p = create_publisher<T>(name, __VA_ARGS__); \\
+  } while (0)
+#define LISTEN(s, T, name) s = create_subscription<T>(name, 10, f)
+void Arm::start() {
+  PUB(imu_, sensor_msgs::msg::Imu, "imu", 5);
+  PUB(raw_, sensor_msgs::msg::Imu, space_ + "/raw", 5, options);
+  LISTEN(flag_, std_msgs::msg::Bool, "flag");
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('Imu, "imu"', 'MagneticField, "imu"', "publisher 'imu': type Imu -> MagneticField"),
+        ('"imu", 5', '"imu", 6', "publisher 'imu': QoS 5 -> 6"),
+        ("Imu, space_", "MagneticField, space_",
+         "publisher 'space_ + \"/raw\"': type Imu -> MagneticField"),
+        ('"flag"', '"stop"', "subscription 'flag' (Bool) renamed to 'stop' (Bool)"),
+    ],
+)  # fmt: skip
+def test_a_macro_gets_the_type_of_a_topic(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": PUBLISHING})
+    repository.write({"arm/src/arm.cpp": PUBLISHING.replace(old, new)})
+    (found,) = compare(repository).subjects
+    assert expected in sentences(found)

@@ -121,3 +121,24 @@ def test_declared_parameter_of_the_same_type_breaks_nothing(repository, compare,
     repository.commit({**MANIFEST, "arm/a.cpp": DECLARED.format(old)})
     repository.write({"arm/a.cpp": DECLARED.format(new)})
     assert breaking(compare(repository)) == []
+
+
+JOINED = """class Drive {{
+  Drive() : ns_("drive/") {{
+    nh_.param(ns_ + "{0}", gain_, 1.0);
+    out_ = nh_.advertise<Bool>(ns_ + NAME + "/done", 1);
+  }}
+  std::string ns_;
+}};
+"""
+
+
+def test_a_name_may_be_a_sum_of_constants(repository, compare):
+    text = 'const std::string NAME = "left";\n' + JOINED
+    repository.commit({**MANIFEST, "arm/a.cpp": text.format("gain")})
+    repository.write({"arm/a.cpp": text.format("force").replace('"left"', '"right"')})
+    (found,) = compare(repository).subjects
+    assert breaking(compare(repository)) == [
+        "publisher 'drive/left/done' (Bool) renamed to 'drive/right/done' (Bool)",
+        "parameter 'drive/gain' (1.0) renamed to 'drive/force' (1.0)",
+    ], sentences(found)

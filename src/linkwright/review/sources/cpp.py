@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 
@@ -20,6 +20,7 @@ from linkwright.review.sources.cpp_calls import (
     find_calls,
 )
 from linkwright.review.sources.cpp_conditions import Conditions
+from linkwright.review.sources.cpp_constant_texts import ConstantTexts
 from linkwright.review.sources.cpp_functions import (
     HIDDEN,
     PRIVATE,
@@ -42,14 +43,11 @@ from linkwright.review.sources.cpp_parameter_calls import (
 )
 from linkwright.review.sources.cpp_qos import find_assigned_qos
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments
-from linkwright.review.sources.cpp_text_functions import TextFunctions
 from linkwright.review.sources.cpp_timers import FoundRate, find_rates
 from linkwright.review.sources.cpp_values import (
     TEXT,
     VARIABLE,
     InitialValues,
-    find_assigned_text,
-    find_constants,
     parse_literal,
 )
 from linkwright.review.sources.cpp_variable_types import VariableTypes
@@ -68,7 +66,6 @@ from linkwright.review.sources.parameter_helpers import (
     read_elements,
 )
 from linkwright.review.sources.registrations import find_registrations
-from linkwright.review.sources.shared_constants import read_header_constants
 
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 """The kinds of names that a header declares, perhaps several times under different conditions."""
@@ -126,7 +123,6 @@ class _Reader:
         self._names = names
         self._text = blank_comments(source.text)
         self._conditions = Conditions(source.text)
-        self._constants = find_constants(self._text)
 
     def read(self) -> None:
         """Add the names."""
@@ -134,7 +130,11 @@ class _Reader:
         for call in find_calls(text):
             self._read_call(call)
         for use in self._caller_names.find_uses():
-            self._add_named_call(use.call, use.name, (use.begin, use.end), use.arguments)
+            name, offsets = use.name or self._texts.evaluate(use.begin, use.end), (use.begin, use.end)
+            if name:
+                self._add_named_call(use.call, name, offsets, use.arguments)
+            else:
+                self._add_computed_call(use.call, offsets, use.arguments)
         for pattern, kind, index in ((_NODE, NameKind.NODE, 0), (_INIT, NameKind.NODE, 2)):
             for match in pattern.finditer(text):
                 self._names.makes_node = True
@@ -156,7 +156,8 @@ class _Reader:
             end = element.start + len(element.name)
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for interface in find_hardware_interfaces(text):
-            self._add(interface.kind, interface.name, interface.start, interface.end)
+            details = ((Detail.REQUIRED, YES),) if interface.is_required else ()
+            self._add(interface.kind, interface.name, interface.start, interface.end, details=details)
         for option in find_options(text, find_arguments):
             self._add(NameKind.OPTION, option.name, option.start, option.end, option.default, option.details)
         for rate in find_rates(text):
@@ -265,33 +266,44 @@ class _Reader:
             kind in COMMUNICATION_KINDS and self._add_format_pattern(kind, call.type, *candidates[0])
         ):
             return
-        offsets = next(((begin, end) for begin, end in candidates if self._get_literal(begin, end) is not None), None)
+        offsets = next(
+            ((begin, end) for begin, end in candidates if self._texts.evaluate(begin, end) is not None), None
+        )
         if offsets is not None:
             texts = [text[begin:end].strip() for begin, end in call.arguments[1:]]
-            self._add_named_call(call, self._get_literal(*offsets) or "", offsets, texts)
+            self._add_named_call(call, self._texts.evaluate(*offsets) or "", offsets, texts)
             return
         begin, end = candidates[0] if not call.is_action else candidates[min(1, len(candidates) - 1)]
         if call.start in self._caller_names.inner_calls:
             return  # the callers give the names
-        name, type_name = " ".join(text[begin:end].split()), call.type
-        listed = list(find_table_names(text, name, call.start)) if kind is NameKind.PARAMETER else []
-        if listed:
-            texts = [text[slice(*argument)].strip() for argument in call.arguments[1:]]
-            for item in listed:
-                self._add_named_call(call, item.name, (item.start, item.end), texts)
-            return
-        is_ros = self._add_default(kind, name) or call.function not in ROS1_CALLS
         texts = [text[slice(*argument)].strip() for argument in call.arguments[1:]]
+        name = " ".join(text[begin:end].split())
+        listed = list(find_table_names(text, name, call.start)) if kind is NameKind.PARAMETER else []
+        for item in listed:
+            self._add_named_call(call, item.name, (item.start, item.end), texts)
+        if not listed:
+            self._add_computed_call(call, (begin, end), texts)
+
+    def _add_computed_call(self, call: Call, offsets: tuple[int, int], texts: Sequence[str]) -> None:
+        """Add the expression in a call that gives a name.
+
+        Args:
+            call: the call.
+            offsets: the offsets of the expression.
+            texts: the arguments behind it.
+        """
+        kind, type_name = call.kind, call.type
+        name = " ".join(self._text[slice(*offsets)].split())
+        is_ros = self._add_default(kind, name) or call.function not in ROS1_CALLS
         details: tuple[tuple[Detail, str], ...] = ()
         if call.function == "param" and type_name and len(call.arguments) == _PARAM_ARGUMENTS:
             is_ros, type_name = True, self._parameter_defaults.find(call, texts)
         elif kind is not NameKind.PARAMETER:
-            end_of_call = call.arguments[-1][1]
-            is_ros = is_ros or bool(type_name) or _MEMBER_CALLBACK.search(text, end, end_of_call) is not None
+            is_ros = is_ros or bool(type_name) or _MEMBER_CALLBACK.search(", ".join(["", *texts])) is not None
             type_name = type_name or self._find_callback_type(kind, texts)
             details = tuple(self._find_qos(call, texts))
         if is_ros:
-            self._names.expressions.append(self._make_name(kind, name, type_name, begin, end, details))
+            self._names.expressions.append(self._make_name(kind, name, type_name, *offsets, details))
 
     def _add_default(self, kind: NameKind, expression: str) -> bool:
         """Add the name that an expression has by default, and return whether a parameter gives it."""
@@ -437,7 +449,7 @@ class _Reader:
 
     @cached_property
     def _parameter_defaults(self) -> ParameterDefaults:
-        return ParameterDefaults(self._text, self._constants, self._initial_values)
+        return ParameterDefaults(self._text, self._texts.own, self._initial_values)
 
     def _read_members(self) -> None:
         """Add the topics and actions with which members and variables are constructed."""
@@ -478,20 +490,9 @@ class _Reader:
             self._names.timers.append(Timer(callback, text, span, rate.clock))
             self._add_callback(None, "", rate.arguments)
 
-    def _get_literal(self, begin: int, end: int) -> str | None:
-        """Return the text of a literal or constant, or None for other expressions."""
-        literal = TEXT.fullmatch(self._text[begin:end])
-        if literal is not None:
-            return literal["text"]
-        variable = VARIABLE.fullmatch(self._text[begin:end])
-        if variable is None:
-            return self._text_functions.evaluate(self._text[begin:end])
-        if variable["name"] in self._constants:
-            return self._constants[variable["name"]]
-        name = variable["name"]
-        constant = self._shared_constants.get(name)
-        constant = self._initial_values.find_text(name) if constant is None else constant
-        return find_assigned_text(self._text, name, begin) if constant is None else constant
+    @cached_property
+    def _texts(self) -> ConstantTexts:
+        return ConstantTexts(self._text, self._headers, self._initial_values)
 
     @cached_property
     def _initial_values(self) -> InitialValues:
@@ -501,17 +502,6 @@ class _Reader:
     def _variable_types(self) -> VariableTypes:
         return VariableTypes(Path(self._source.name), self._text, self._headers)
 
-    @cached_property
-    def _text_functions(self) -> TextFunctions:
-        return TextFunctions([self._text, *self._headers], {**self._shared_constants, **self._constants})
-
-    @cached_property
-    def _shared_constants(self) -> Mapping[str, str]:
-        """The constants of included headers that the source does not define otherwise."""
-        constants = read_header_constants(self._headers)
-        assigned = set(re.findall(r"\b(\w+)\s*(?:\[[^\]]*\]\s*)?(?:=(?!=)|[{(]\s*\")", self._text))
-        return {name: text for name, text in constants.items() if name not in assigned}
-
     def _add_argument(self, kind: NameKind, start: int, index: int) -> None:
         arguments = list(find_arguments(self._text, start))
         if index < len(arguments):
@@ -519,7 +509,7 @@ class _Reader:
 
     def _add_literal(self, kind: NameKind, begin: int, end: int, type_name: str = "") -> bool:
         """Add the name in an argument if it is a literal, and return whether it is."""
-        text = self._get_literal(begin, end)
+        text = self._texts.evaluate(begin, end)
         if text:
             self._add(kind, text, begin, end, type_name)
         return bool(text)

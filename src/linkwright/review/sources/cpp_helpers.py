@@ -22,6 +22,7 @@ _PARAMETER = re.compile(r".*?\b(?P<name>\w+)\s*(?:=\s*(?P<default>.*?)\s*)?", re
 _JOINED = r"(?:\"(?P<before>[^\"\\]*)\"\s*\+\s*)?{name}(?:\.c_str\(\))?(?:\s*\+\s*\"(?P<after>[^\"\\]*)\")?"
 _MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(?P<name>\w+)(?=\()", re.MULTILINE)
 _IDENTIFIER = re.compile(r"\s*(?P<text>[A-Za-z_]\w*)\s*")
+_VARIADIC, _REST = "...", "__VA_ARGS__"
 _END_OF_MACRO = re.compile(r"(?<!\\)\n|\Z")
 _TEMPLATE = re.compile(r"\btemplate\s*<(?P<names>[^;{}()]*)>[^;{}()]*\Z")
 _MAX_HEAD_CHARACTERS = 300
@@ -41,7 +42,7 @@ class Helper(NamedTuple):
 
     Attributes:
         name: the name of the function.
-        is_lambda: whether it is a lambda.
+        is_macro: whether it is a macro, whose parameters may also be types.
         is_stringified: whether it is a macro that makes a text of the parameter with the name, as ``#x`` does.
         position: the index of the parameter with the name.
         call: the call inside of it that takes the name.
@@ -57,7 +58,7 @@ class Helper(NamedTuple):
     """
 
     name: str
-    is_lambda: bool
+    is_macro: bool
     is_stringified: bool
     position: int
     call: Call
@@ -73,11 +74,11 @@ class Helper(NamedTuple):
 
 
 class HelperUse(NamedTuple):
-    """A call of a helper with a literal name.
+    """A call of a helper with a literal name, or of a macro with any.
 
     Attributes:
         call: the call inside of the helper, with the type that this call of the helper gives.
-        name: the name, with the texts that the helper puts around it.
+        name: the name, with the texts that the helper puts around it; empty for an expression.
         begin: the offset of the argument with the name.
         end: the end of that argument.
         arguments: the texts of the arguments of the inner call behind its name.
@@ -115,8 +116,7 @@ def _read_helper(text: str, match: re.Match[str], name: str, calls: Sequence[Cal
     body = opening.end(), find_closing_bracket(text, opening.end() - 1)
     start = match.start("lambda" if match["lambda"] else "name")
     own = [call for call in calls if body[0] <= call.start < body[1]]
-    for helper in make_helpers(text, name, (start, match.end()), own, body):
-        yield helper._replace(is_lambda=match["lambda"] is not None)
+    yield from make_helpers(text, name, (start, match.end()), own, body)
 
 
 def make_helpers(
@@ -158,7 +158,7 @@ def make_helpers(
                 continue
             yield Helper(
                 name,
-                is_lambda=False,
+                is_macro=False,
                 is_stringified=False,
                 position=index,
                 call=call,
@@ -187,7 +187,7 @@ def _read_macro(text: str, match: re.Match[str], calls: Sequence[Call]) -> Itera
         if name in names:
             yield Helper(
                 name=match["name"],
-                is_lambda=False,
+                is_macro=True,
                 is_stringified=given.startswith("#"),
                 position=names.index(name),
                 call=call,
@@ -232,18 +232,20 @@ def make_use(text: str, helper: Helper, arguments: Sequence[tuple[int, int]], ty
         arguments: the offsets of the arguments.
         types: the template arguments in angle brackets; empty if there are none.
     """
-    if not helper.position < len(arguments) <= len(helper.parameters):
+    is_variadic = helper.parameters[-1:] == (_VARIADIC,)
+    if not helper.position < len(arguments) <= (len(arguments) if is_variadic else len(helper.parameters)):
         return None
     begin, end = arguments[helper.position]
     literal = (_IDENTIFIER if helper.is_stringified else TEXT).fullmatch(text[begin:end])
-    if literal is None or not literal["text"]:
+    if not helper.is_macro and (literal is None or not literal["text"]):
         return None
+    given = [text[slice(*argument)].strip() for argument in arguments]
     values = dict(zip(helper.parameters, helper.defaults, strict=True))
-    values.update(
-        (name, text[slice(*argument)].strip()) for name, argument in zip(helper.parameters, arguments, strict=False)
-    )
-    given = dict(zip(helper.templates, [item.strip() for item in types.strip()[1:-1].split(",")], strict=False))
-    type_name = given.get(helper.call.type, "" if helper.call.type in helper.templates else helper.call.type)
+    values.update(zip(helper.parameters, given, strict=False))
+    values[_REST] = ", ".join(given[len(helper.parameters) - 1 :])
+    values.update(zip(helper.templates, [item.strip() for item in types.strip()[1:-1].split(",")], strict=False))
+    unknown = "" if helper.call.type in helper.templates else helper.call.type
+    type_name = values.get(helper.call.type, unknown) if helper.call.type else ""
     texts = [values.get(item, item) for item in helper.arguments]
-    name = f"{helper.before}{literal['text']}{helper.after}"
+    name = "" if literal is None else f"{helper.before}{literal['text']}{helper.after}"
     return HelperUse(helper.call._replace(type=type_name), name, begin, end, texts)

@@ -81,7 +81,7 @@ def find_assigned_text(text: str, name: str, position: int) -> str | None:
 
 def _is_output(text: str, name: str) -> bool:
     """Return whether a call that reads a parameter or another value may write a variable."""
-    output = rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b"
+    output = rf"\b(?:\w*[pP]aram\w*|get\w*)\s*(?:<[^<>]*>)?\([^;()]*\b{name}\b(?!\s*\+)"
     return re.search(output, text) is not None
 
 

@@ -1,4 +1,4 @@
-"""Find classes of C++ sources whose constructor makes a topic, service or parameter from a name that it is given."""
+"""Find classes of C++ whose constructor makes a topic, service, parameter or node with a name that it is given."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.packages import enclosing_package
 from linkwright.review.sources.cpp_calls import Call, find_calls
 from linkwright.review.sources.cpp_helpers import KINDS_OF_NAMES, Helper, HelperUse, make_helpers, make_use
 from linkwright.review.sources.cpp_text import blank_comments, find_arguments, find_closing_bracket
-from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES
+from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, NameKind
 
 _CLASS = re.compile(r"\b(?:class|struct)\s+(?:[A-Z]\w*_\w+\s+)?(?P<name>\w+)\s*(?:final\s*)?(?::(?!:)[^;{}()]*)?\{")
 _DEFINED_CONSTRUCTOR = re.compile(r"\b(?P<name>[A-Za-z_]\w*)\s*(?:<[^<>;(){}]*>)?\s*::\s*(?P=name)\s*(?=\()")
@@ -31,6 +31,7 @@ _CONSTRUCTION = (
 )
 """The construction of an object, before its arguments: a variable, a temporary object or one behind a pointer."""
 _DECLARATION = rf"(?<![\w~.>])(?:\w+::)*{{name}}\s*{_TYPES}\s(?P<variable>\w+)\s*;"
+_NODE_BASE = re.compile(r"(?<!:)[:,]\s*(?:rclcpp(?:_lifecycle)?\s*::\s*)?(?P<name>(?:Lifecycle)?Node)\s*(?=[({])")
 _MAX_BYTES = 1 << 20
 
 
@@ -40,12 +41,21 @@ def find_wrappers(text: str) -> list[Helper]:
     Constructors of a class that take the name in different places are left out.
     """
     calls = [call for call in find_calls(text) if call.kind in KINDS_OF_NAMES and call.arguments]
+    calls += _find_node_constructions(text)
     found = [
         helper
         for name, start, end in _find_constructors(text, calls)
         for helper in _read(text, name, start, end, calls)
     ]
     return [item for item in found if all(item.position == other.position for other in found if _is_same(item, other))]
+
+
+def _find_node_constructions(text: str) -> Iterator[Call]:
+    """Yield the constructions of a node in the initializer lists of classes that derive from it."""
+    for match in _NODE_BASE.finditer(text):
+        arguments = list(find_arguments(text, match.end()))
+        if arguments:
+            yield Call(NameKind.NODE, "Node", "", "", arguments, "", match.start("name"), is_action=False)
 
 
 def _is_same(first: Helper, second: Helper) -> bool:

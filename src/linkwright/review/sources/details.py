@@ -271,6 +271,8 @@ def make_required_reason(kind: NameKind, names: Phrase | str) -> Phrase:
     """Return the reason why an option or parameter without a default is breaking."""
     if kind is NameKind.PARAMETER:
         return phrase("the program fails where '{name}' is not set", name=names)
+    if kind is NameKind.HARDWARE_PARAMETER:
+        return phrase("the hardware fails where the description does not give '{name}'", name=names)
     return phrase("callers that do not pass '{name}' get an error", name=names)
 
 

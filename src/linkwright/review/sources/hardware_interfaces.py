@@ -14,7 +14,8 @@ _OFFERED = re.compile(
 """The construction of an interface with a literal name, such as ``CommandInterface("gripper", "position", &value)``."""
 _CLAIMED = re.compile(r"\bnames\s*\.\s*(?:push|emplace)_back\s*\(\s*\"(?P<name>[\w.-]+/[\w./-]+)\"\s*\)")
 _PARAMETER = re.compile(
-    r"\b(?:hardware_parameters|\bparameters)\s*(?:\[\s*|\.\s*(?:at|find|count|contains)\s*\(\s*)\"(?P<name>[\w.-]+)\"\s*[\])]"
+    r"\b(?:hardware_parameters|parameters)\s*(?:\[\s*|\.\s*(?P<call>at|find|count|contains)\s*\(\s*)"
+    r"\"(?P<name>[\w.-]+)\"\s*[\])]"
 )
 """A parameter that hardware reads from its description, such as ``info_.hardware_parameters["port"]``."""
 _HARDWARE = re.compile(r"\bhardware_interface\b|\bHardwareInfo\b")
@@ -29,8 +30,13 @@ def find_hardware_interfaces(text: str) -> Iterator[FoundName]:
         yield FoundName(kind, name, match.start("kind"), match.end())
     for match in _CLAIMED.finditer(text) if _CONTROLLER.search(text) else ():
         yield FoundName(NameKind.CLAIMED_INTERFACE, match["name"], match.start("name"), match.end("name"))
-    for match in _PARAMETER.finditer(text) if _HARDWARE.search(text) else ():
-        yield FoundName(NameKind.HARDWARE_PARAMETER, match["name"], match.start("name"), match.end("name"))
+    reads = list(_PARAMETER.finditer(text)) if _HARDWARE.search(text) else []
+    optional = {match["name"] for match in reads if match["call"] != "at"}
+    is_caught = re.search(r"\bcatch\b", text) is not None
+    for match in reads:
+        is_required = match["name"] not in optional and not is_caught
+        name, start, end = match["name"], match.start("name"), match.end("name")
+        yield FoundName(NameKind.HARDWARE_PARAMETER, name, start, end, is_required=is_required)
 
 
 def _get_word(match: re.Match[str], group: str) -> str:

@@ -126,6 +126,7 @@ class FoundName(NamedTuple):
         start: the offset of the name.
         end: the end of the name.
         base: the base class as which programs load an exported class; empty if there is none.
+        is_required: whether a program fails without the parameter.
     """
 
     kind: NameKind
@@ -133,6 +134,7 @@ class FoundName(NamedTuple):
     start: int
     end: int
     base: str = ""
+    is_required: bool = False
 
 
 @dataclass(frozen=True)

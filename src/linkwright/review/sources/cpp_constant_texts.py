@@ -1,0 +1,77 @@
+"""Evaluate the expressions of C++ sources that always have the same text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+from linkwright.review.sources.cpp_text_functions import TextFunctions
+from linkwright.review.sources.cpp_values import TEXT, VARIABLE, InitialValues, find_assigned_text, find_constants
+from linkwright.review.sources.parameter_defaults import split_sum
+from linkwright.review.sources.shared_constants import read_header_constants
+
+_PART = re.compile(r'"[^"\\]*"|[A-Za-z_]\w*')
+
+
+class ConstantTexts:
+    """The texts, constants, and variables with a certain text in a C++ source.
+
+    Args:
+        text: the source without comments.
+        headers: the texts of the included headers of the repository.
+        initial_values: the initial values of members and variables.
+    """
+
+    def __init__(self, text: str, headers: Sequence[str], initial_values: InitialValues) -> None:
+        self._text = text
+        self._headers = headers
+        self._initial_values = initial_values
+        self.own = find_constants(text)
+        """The texts of the constants of the source, by name."""
+
+    def evaluate(self, begin: int, end: int) -> str | None:
+        """Return the text of the expression between two offsets, or None if it is not certain.
+
+        The expression is a literal, a constant, a sum of these, or the call of a function that only returns a text.
+        """
+        expression = self._text[begin:end]
+        literal = TEXT.fullmatch(expression)
+        if literal is not None:
+            return literal["text"]
+        parts = split_sum(expression)
+        if len(parts) > 1 and all(map(_PART.fullmatch, parts)):
+            return self._join(parts, begin)
+        variable = VARIABLE.fullmatch(expression)
+        if variable is None:
+            return self._functions.evaluate(expression)
+        return self._find(variable["name"], begin)
+
+    def _join(self, parts: Sequence[str], position: int) -> str | None:
+        """Return the sum of literals and constants, or None if one of them is unknown."""
+        literals = [TEXT.fullmatch(part) for part in parts]
+        texts = [
+            self._find(part, position) if literal is None else literal["text"]
+            for part, literal in zip(parts, literals, strict=True)
+        ]
+        known = [text for text in texts if text is not None]
+        return "".join(known) if len(known) == len(texts) else None
+
+    def _find(self, name: str, position: int) -> str | None:
+        """Return the text that a variable has at an offset, or None if it is not certain."""
+        if name in self.own:
+            return self.own[name]
+        constant = self._shared.get(name)
+        constant = self._initial_values.find_text(name) if constant is None else constant
+        return find_assigned_text(self._text, name, position) if constant is None else constant
+
+    @cached_property
+    def _functions(self) -> TextFunctions:
+        return TextFunctions([self._text, *self._headers], {**self._shared, **self.own})
+
+    @cached_property
+    def _shared(self) -> Mapping[str, str]:
+        """The constants of included headers that the source does not define otherwise."""
+        constants = read_header_constants(self._headers)
+        assigned = set(re.findall(r"\b(\w+)\s*(?:\[[^\]]*\]\s*)?(?:=(?!=)|[{(]\s*\")", self._text))
+        return {name: text for name, text in constants.items() if name not in assigned}
