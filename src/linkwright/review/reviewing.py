@@ -72,6 +72,7 @@ from linkwright.review.other_files import find_file_states
 from linkwright.review.parts import compare_parts
 from linkwright.review.removed_headers import drop_told_headers
 from linkwright.review.removed_programs import merge_removed_options
+from linkwright.review.renamed_findings import drop_renamed_findings
 from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import match_moved_files, remove_consequences
 from linkwright.review.required_packages import is_named
@@ -193,6 +194,7 @@ class _Reviewer:
             file for file in self._changed_files if file.path in moved or not {file.old_path, file.new_path} & reported
         ]
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
+        added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)
         readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
         return Review(
             self._versions.old.name,
