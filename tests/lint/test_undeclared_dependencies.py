@@ -42,6 +42,12 @@ def test_packages_that_the_build_requires(tmp_path, command, names):
     assert find(tmp_path, {"CMakeLists.txt": f"project(p)\n{command}\n"}) == names
 
 
+@pytest.mark.parametrize(("build_type", "names"), [("ament_python", []), ("ament_cmake", ["rosbag2_cpp"])])
+def test_build_file_that_the_build_type_does_not_use_requires_nothing(tmp_path, build_type, names):
+    export = f"<export><build_type>{build_type}</build_type></export>"
+    assert find(tmp_path, {"CMakeLists.txt": "project(p)\nfind_package(rosbag2_cpp REQUIRED)\n"}, export) == names
+
+
 @pytest.mark.parametrize(
     "more",
     [
