@@ -133,3 +133,15 @@ def test_invalid_escapes_in_a_file_give_no_warnings(tmp_path, recwarn):
     text = "import re\nfrom nav2_msgs.srv import Clear\nPATTERN = re.compile('\\d')\n"
     assert find(tmp_path, {"p/__init__.py": "", "p/node.py": text}) == ["nav2_msgs"]
     assert not recwarn.list
+
+
+@pytest.mark.parametrize(
+    ("used", "codes"), [("p4_description", ["LW848"]), ("p_description", ["LW848"]), ("p3_descripton", [])]
+)
+def test_package_of_another_robot_of_a_family_is_no_misspelling(tmp_path, used, codes):
+    tmp_path.joinpath("package.xml").write_text(MANIFEST.format(more="").replace("<name>p<", "<name>p3_description<"))
+    launch = tmp_path / "launch" / "show.launch"
+    launch.parent.mkdir()
+    launch.write_text(f'<launch><node pkg="{used}" exec="show"/></launch>')
+    findings = examine_package(tmp_path, Settings(select=("LW848",))).diagnostics
+    assert [finding.code for finding in findings] == codes
