@@ -19,7 +19,7 @@ _EXPORTED_KINDS = frozenset(
 """The kinds of facts with which other packages may be built, or that dependents get with the package."""
 _EXPORTS = re.compile(
     r"^[^#\n]*(?:\b(?:ament_export_|ament_auto_package|rosidl_|generate_messages|install_python|CONFIG_EXTRAS|CFG_EXTRAS)"
-    r"|\.cmake\b|\binclude/)",
+    r"|\.cmake\b)|^[ \t]*install\s*\([^)]*\binclude\b",
     re.MULTILINE | re.IGNORECASE,
 )
 """A command or file that may export something, which the facts may not show."""
