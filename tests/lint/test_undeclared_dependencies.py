@@ -42,6 +42,12 @@ def test_packages_that_the_build_requires(tmp_path, command, names):
     assert find(tmp_path, {"CMakeLists.txt": f"project(p)\n{command}\n"}) == names
 
 
+@pytest.mark.parametrize(("build_type", "names"), [("ament_python", []), ("ament_cmake", ["rosbag2_cpp"])])
+def test_build_file_that_the_build_type_does_not_use_requires_nothing(tmp_path, build_type, names):
+    export = f"<export><build_type>{build_type}</build_type></export>"
+    assert find(tmp_path, {"CMakeLists.txt": "project(p)\nfind_package(rosbag2_cpp REQUIRED)\n"}, export) == names
+
+
 @pytest.mark.parametrize(
     "more",
     [
@@ -127,3 +133,15 @@ def test_invalid_escapes_in_a_file_give_no_warnings(tmp_path, recwarn):
     text = "import re\nfrom nav2_msgs.srv import Clear\nPATTERN = re.compile('\\d')\n"
     assert find(tmp_path, {"p/__init__.py": "", "p/node.py": text}) == ["nav2_msgs"]
     assert not recwarn.list
+
+
+@pytest.mark.parametrize(
+    ("used", "codes"), [("p4_description", ["LW848"]), ("p_description", ["LW848"]), ("p3_descripton", [])]
+)
+def test_package_of_another_robot_of_a_family_is_no_misspelling(tmp_path, used, codes):
+    tmp_path.joinpath("package.xml").write_text(MANIFEST.format(more="").replace("<name>p<", "<name>p3_description<"))
+    launch = tmp_path / "launch" / "show.launch"
+    launch.parent.mkdir()
+    launch.write_text(f'<launch><node pkg="{used}" exec="show"/></launch>')
+    findings = examine_package(tmp_path, Settings(select=("LW848",))).diagnostics
+    assert [finding.code for finding in findings] == codes

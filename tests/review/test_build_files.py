@@ -339,6 +339,31 @@ def find_dependency_changes(repository, compare, *replacements):
     return sentences(subject(result, "a/package.xml")), breaking(result)
 
 
+@pytest.mark.parametrize(
+    ("more", "tag", "is_breaking"),
+    [
+        ("", "depend", False),
+        ("install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})", "depend", False),
+        ("", "build_export_depend", True),
+        ("install(DIRECTORY include/ DESTINATION include)", "depend", True),
+        ("ament_export_dependencies(gears)", "depend", True),
+        ("add_library(core src/core.cpp)", "depend", True),
+        ("ament_auto_package()", "depend", True),
+        ("ament_package(CONFIG_EXTRAS cmake/core.cmake)", "depend", True),
+    ],
+)
+def test_dependency_of_a_package_that_exports_nothing_breaks_nobody(repository, compare, more, tag, is_breaking):
+    depend = f"  <{tag}>gears</{tag}>\n"
+    cmake = "project(arm)\nadd_executable(driver src/driver.cpp)\n"
+    install = "install(TARGETS driver RUNTIME DESTINATION lib/${PROJECT_NAME})\n"
+    manifest = EXPORTS.replace("  <exec_depend>xacro", f"{depend}  <exec_depend>xacro")
+    files = {"a/src/driver.cpp": "int main() {}\n", "a/launch/a.launch": "<launch/>\n"}
+    repository.commit({"a/package.xml": manifest, "a/CMakeLists.txt": f"{cmake}{install}{more}\n", **files})
+    repository.write({"a/package.xml": manifest.replace(depend, "")})
+    result = compare(repository)
+    assert breaking(result) == [f"{tag} removed: gears"] * is_breaking
+
+
 def test_dependencies_with_the_same_tags_are_one_line(repository, compare):
     found, _ = find_dependency_changes(repository, compare, (">gears<", ">wheels<"), (">levers<", ">cranks<"))
     assert found == [

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from linkwright.diagnostics import Diagnostic, phrase
 from linkwright.review.folders import finding_with_package_uris
 from tests.repositories import ARM, MACRO, PACKAGE_XML
@@ -99,6 +101,19 @@ def test_finding_with_other_number_is_not_new(package, compare):
     package.commit({SEGMENT: text.replace('upper="-2"', 'upper="-3"')})
     result = compare(package, "HEAD~1..HEAD")
     assert (finding_codes(result.new_findings), finding_codes(result.fixed_findings)) == ([], [])
+
+
+@pytest.mark.parametrize("has_other", [False, True])
+def test_finding_about_a_renamed_joint_is_neither_new_nor_fixed(package, compare, has_other):
+    macro = MACRO.replace("<axis", '<friction value="1"/><axis')
+    package.commit({SEGMENT: macro})
+    other = '<joint name="tip_joint" type="fixed"><friction/><parent link="hand"/><child link="tip"/></joint>'
+    text = ARM.replace('name="lower"', 'name="hand"').replace('"lower"', '"hand"')
+    package.commit({PATH: text.replace("</robot>", f'<link name="tip"/>{other}</robot>') if has_other else text})
+    result = compare(package, "HEAD~1..HEAD")
+    new = [finding for finding in result.new_findings if finding.code == "LW107"]
+    assert ["'tip_joint'" in str(finding.message) for finding in new] == [True] * has_other
+    assert "LW107" not in finding_codes(result.fixed_findings)
 
 
 def test_finding_that_names_a_renamed_file_is_not_new(package, compare):

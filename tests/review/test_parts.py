@@ -327,6 +327,48 @@ def test_link_that_a_macro_makes_now_is_not_lost(library, compare):
     assert breaking(result) == []
 
 
+HARDWARE = '<ros2_control name="${side}_${name}" type="system"><hardware><plugin>arm/Driver</plugin></hardware>'
+CALLING = GRIPPER.replace(
+    "</robot>",
+    f"""  <xacro:macro name="driver" params="name side">{HARDWARE}</ros2_control></xacro:macro>
+  <xacro:macro name="camera" params="name side"><link name="${{name}}"/></xacro:macro>
+  <xacro:macro name="tool" params="side"><xacro:driver name="fast" side="left"/></xacro:macro>
+</robot>""",
+)
+
+
+@pytest.mark.parametrize(
+    ("macro", "name", "lost"),
+    [
+        ("driver", "slow", None),
+        ("camera", "slow", "programs that use the frames and topics of 'fast' do not find them"),
+        ("absent", "slow", "programs that use the frames and topics of 'fast' do not find them"),
+    ],
+)
+def test_call_with_another_name_is_one_change(package, compare, macro, name, lost):
+    text = CALLING.replace("<xacro:driver name", f"<xacro:{macro} name")
+    package.commit({TOOL: text})
+    package.write({TOOL: text.replace('name="fast"', f'name="{name}"')})
+    found = subject(compare(package), TOOL)
+    assert sentences(found) == [f"macro 'tool': {macro} slow name: fast -> slow"]
+    assert [None if change.reason is None else str(change.reason) for change in found.changes] == [lost]
+
+
+@pytest.mark.parametrize(
+    ("macro", "reason"),
+    [
+        ("driver", "controllers of this hardware do not find its interfaces"),
+        ("camera", "programs that use the frames and topics of 'fast' do not find them"),
+    ],
+)
+def test_removed_call_is_breaking_by_what_the_macro_makes(package, compare, macro, reason):
+    text = CALLING.replace("<xacro:driver name", f"<xacro:{macro} name")
+    package.commit({TOOL: text})
+    package.write({TOOL: text.replace(f'<xacro:{macro} name="fast" side="left"/>', "")})
+    (change,) = subject(compare(package), TOOL).changes
+    assert str(change.reason) == reason
+
+
 INSIDE = """<collision>
         <xacro:if value="${side == 'left'}"><geometry><box size="1 1 1"/></geometry></xacro:if>
         <xacro:unless value="${side == 'left'}"><geometry><box size="2 2 2"/></geometry></xacro:unless>

@@ -243,6 +243,25 @@ def test_removed_submodule_that_nothing_uses_breaks_nobody(package, compare, tmp
     assert "submodule removed" in sentences(subject(result, "vendor"))
 
 
+@pytest.mark.parametrize("name", ["arm_description", "arm"])
+def test_submodule_that_files_replace_is_not_removed(package, compare, tmp_path, name):
+    """A package that is renamed at the same time has the files in its new folder."""
+    other = Repository(tmp_path / "other")
+    other.commit({"tof.h": "#pragma once\n"})
+    package.git("submodule", "--quiet", "add", other.root.as_uri(), "arm_description/src/sensor")
+    package.commit({"arm_description/src/driver.cpp": '#include "sensor/tof.h"\nint read() { return 1; }\n'})
+    package.git("rm", "--quiet", "arm_description/src/sensor")
+    if name != "arm_description":
+        package.git("mv", "arm_description", name)
+        manifest = (package.root / name / "package.xml").read_text(encoding="utf-8")
+        package.write({f"{name}/package.xml": manifest.replace("arm_description", name)})
+    package.commit({f"{name}/src/sensor/tof.h": "#pragma once\n"})
+    result = compare(package, "HEAD~1..HEAD")
+    assert "submodule removed" not in breaking(result)
+    assert "submodule 'arm_description/src/sensor' replaced by files of the repository" in map(str, result.notes)
+    assert [text for found in result.subjects for text in sentences(found) if "included" in text] == []
+
+
 def lose_contents(repository, commit, path):
     """Remove the contents of a file, which a partial clone may lack."""
     blob = repository.git("rev-parse", f"{commit}:{path}")

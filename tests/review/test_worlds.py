@@ -72,6 +72,13 @@ def test_renamed_world_is_compared_with_the_old_one(repository, compare):
     ]
 
 
+def test_worlds_of_stage_are_not_compared(repository, compare):
+    repository.commit({"w/worlds/yard.world": 'include "robot.inc"\nwindow ( size [ 600 700 ] )\n'})
+    repository.write({"w/worlds/yard.world": 'include "robot.inc"\nwindow ( size [ 800 700 ] )\n'})
+    result = compare(repository)
+    assert (result.subjects, result.other_files) == ([], ["w/worlds/yard.world"])
+
+
 def test_equal_numbers_are_no_change(repository, compare):
     repository.commit({PATH: WORLD})
     repository.write({PATH: WORLD.replace(">1.0<", ">1<").replace(">1 1 1<", ">1.0 1 1e0<")})

@@ -37,6 +37,7 @@ from linkwright.review.files.mesh_groups import group_meshes
 from linkwright.review.files.plugin_files import compare_plugin_files
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, compare_rosbuild_manifests
 from linkwright.review.files.templates import is_template
+from linkwright.review.files.worlds import is_other_world
 from linkwright.review.findings import Findings, compare_findings, find_findings, find_findings_singly
 from linkwright.review.folders import review_without_folder
 from linkwright.review.kinds import (
@@ -72,8 +73,9 @@ from linkwright.review.other_files import find_file_states
 from linkwright.review.parts import compare_parts
 from linkwright.review.removed_headers import drop_told_headers
 from linkwright.review.removed_programs import merge_removed_options
+from linkwright.review.renamed_findings import drop_renamed_findings
 from linkwright.review.renamed_folders import merge_renamed_folders
-from linkwright.review.renamed_packages import match_moved_files, remove_consequences
+from linkwright.review.renamed_packages import find_renamed_packages, match_moved_files, remove_consequences
 from linkwright.review.required_packages import is_named
 from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.comparing import source_subjects
@@ -193,6 +195,7 @@ class _Reviewer:
             file for file in self._changed_files if file.path in moved or not {file.old_path, file.new_path} & reported
         ]
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
+        added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)
         readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
         return Review(
             self._versions.old.name,
@@ -275,22 +278,28 @@ class _Reviewer:
         return sorted(drop_told_headers(merge_removed_options(result)), key=lambda subject: subject.path)
 
     def _find_removed_submodules(self) -> Iterator[Subject]:
-        """Yield the removed submodules with their packages.
+        """Yield the removed submodules, whose contents are unknown.
 
         One that the files no longer name, although they did, is not breaking.
         """
-        packages_reason = phrase("packages that depend on the packages in it do not build or start")
+        reason_of_use = phrase("packages and programs that use the files in it do not build or start")
         for file in self._changed_files:
             if self._is_removed_submodule(file):
                 name = PurePosixPath(file.path).name
                 is_dropped = is_named(self._versions.old, name) and not is_named(self._versions.new, name)
-                effect, reason = (Effect.CHANGED, None) if is_dropped else (Effect.BREAKING, packages_reason)
+                effect, reason = (Effect.CHANGED, None) if is_dropped else (Effect.BREAKING, reason_of_use)
                 change = Change(phrase("submodule removed"), effect, reason)
                 yield Subject(SubjectKind.MANIFEST, file.path, file.old_path, None, [change])
 
     def _is_removed_submodule(self, file: ChangedFile) -> bool:
-        """Return whether the new version has neither the submodule nor files at its path."""
-        return file.is_submodule and file.new_path is None and not self._versions.new.file(file.path).is_dir()
+        """Return whether the new version has neither the submodule nor files at its path.
+
+        A renamed package has them in its new folder.
+        """
+        if not file.is_submodule or file.new_path is not None:
+            return False
+        moved = (package.new_path(file.path) for package in find_renamed_packages(self._versions))
+        return not any(self._versions.new.file(path).is_dir() for path in (file.path, *filter(None, moved)))
 
     def _is_complete(self, path: str) -> bool:
         """Return whether a path is a complete description or world in one of the versions."""
@@ -339,6 +348,8 @@ class _Reviewer:
             rule = rule if any(is_launch_yaml(version.file(name)) for version, name in sides if name) else PARAMETERS
         if rule is not None and rule.kind is SubjectKind.PARAMETERS:
             return MAP if any(is_map(version.file(path)) for version, path in sides if path) else rule
+        if rule is not None and all(is_other_world(version.file(name)) for version, name in sides if name):
+            return None
         if rule is None and path.endswith(LAUNCH_TEMPLATE_SUFFIXES):
             is_launch = all(is_launch_xml(version.file(name)) for version, name in sides if name)
             return LAUNCH_FILE if is_launch else None
@@ -431,7 +442,9 @@ class _Reviewer:
             if file.is_submodule:
                 if file.old_path is None:
                     yield phrase("submodule '{path}' added; its files are not compared", path=file.path)
-                elif not self._is_removed_submodule(file):
+                elif file.new_path is None and not self._is_removed_submodule(file):
+                    yield phrase("submodule '{path}' replaced by files of the repository", path=file.path)
+                elif file.new_path is not None:
                     yield phrase("submodule '{path}' changed; its files are not compared", path=file.path)
         yield from make_checkout_notes([self._versions.old, self._versions.new])
 

@@ -83,6 +83,7 @@ _TEST_FOLDERS = frozenset({"test", "tests"})
 _COMMENT = lazy_pattern(r"<!--.*?-->", re.DOTALL)
 _STARTED_PACKAGE = lazy_pattern(r"""<(?:node|composable_node)\b[^>]*?\bpkg\s*=\s*["']([\w-]+)["']""")
 _WORD = lazy_pattern(r"[\w-]+")
+_DIGIT = lazy_pattern(r"\d")
 _FOUND_PACKAGE = lazy_pattern(r"\$\(find(?:-pkg-share|-pkg-prefix)?\s+([\w-]+)\s*\)")
 _PYTHON_PACKAGES = frozenset({"launch", "launch_ros", "ament_index_python", "launch_xml", "launch_yaml", "xacro"})
 
@@ -373,11 +374,13 @@ def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:
 def _find_intended_package(name: str, package: PackageContext, subject: Subject) -> str | None:
     """Return the known package whose name was probably misspelled, or None.
 
-    The result is None if a package with the given name exists.
+    The result is None if a package with the given name exists. Packages whose names differ from that of the package
+    itself only in digits are those of other robots of a family.
     """
     if not name or name in WELL_KNOWN_PACKAGES or _is_known(name, package, subject):
         return None
-    similar_name = next(iter(nearest(name, [*WELL_KNOWN_PACKAGES, package.name], 1)), None)
+    own_names = [] if _DIGIT.sub("", name) == _DIGIT.sub("", package.name) else [package.name]
+    similar_name = next(iter(nearest(name, [*WELL_KNOWN_PACKAGES, *own_names], 1)), None)
     return similar_name if similar_name is not None and _is_typo(name, similar_name) else None
 
 

@@ -11,6 +11,7 @@ from linkwright.diagnostics import Diagnostic, Phrase, Severity, SourceText, Spa
 from linkwright.lint.dependencies import is_covered
 from linkwright.lint.package_fixes import make_dependency_fix
 from linkwright.lint.rule import Rule, Scope
+from linkwright.lint.rules.package_python import is_ament_python
 from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
@@ -97,7 +98,8 @@ class UndeclaredBuildDependency(_DependencyRule):
     rosdep installs the packages that `package.xml` names, and colcon builds them first. On another machine, or in
     another order, `find_package` does not find the package, and the build fails. Some packages are not reported: those
     of every ROS installation, such as `rclcpp` and `std_msgs`, dependencies of declared packages, and those that only a
-    branch of an `if` requires.
+    branch of an `if` requires. A `CMakeLists.txt` is not read in a package of the build type `ament_python`, which
+    colcon builds without it.
 
     ## Example
 
@@ -119,6 +121,8 @@ class UndeclaredBuildDependency(_DependencyRule):
 
     def find_uses(self, package: PackageContext, subject: Subject) -> Iterator[_Use]:
         """Yield the packages that the build file requires."""
+        if is_ament_python(package):
+            return
         for command in package.cmake_commands:
             if command.is_conditional:
                 continue

@@ -10,11 +10,13 @@ from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_facts import EnvironmentVariables
+from linkwright.review.files.exports import exports_nothing
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.xmltree import Element
 
 _VERSION_SIGNS = {"version_lt": "<", "version_lte": "<=", "version_eq": "=", "version_gte": ">=", "version_gt": ">"}
-_EXPORTED_TAGS = frozenset({"depend", "build_export_depend", "buildtool_export_depend"})
+_DEPEND = "depend"
+_EXPORTED_TAGS = frozenset({_DEPEND, "build_export_depend", "buildtool_export_depend"})
 """The tags of dependencies that dependents of the package also need to build."""
 _EXECUTION_TAGS = frozenset({"depend", "exec_depend", "run_depend"})
 _VARIABLE = re.compile(r"\$(\w+)")
@@ -46,6 +48,7 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
         _Dependency(tag, names.translate_package(name)): elements
         for (tag, name), elements in _group_elements(old).items()
     }
+    is_private = exports_nothing(pair.versions.old, pair.old_path)
     changes: dict[_DependencyChange, list[_Dependency]] = {}
     for package in dict.fromkeys(key.package for key in (*new_elements, *old_elements)):
         before, after = (
@@ -55,7 +58,8 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
             [key for key in keys if key not in others] for keys, others in ((before, after), (after, before))
         )
         if removed or added:
-            change = _DependencyChange(_format_tags(removed), _format_tags(added), _is_lost(before, after, old))
+            is_lost = _is_lost(before, after, old, is_private=is_private)
+            change = _DependencyChange(_format_tags(removed), _format_tags(added), is_lost)
             changes.setdefault(change, []).append((added or removed)[0])
         if not (removed and added):
             for key in (key for key in after if key in before):
@@ -96,7 +100,7 @@ def _append_conditions(package: str, elements: list[Element]) -> str:
     return f"{package} ({conditions})" if conditions else package
 
 
-def _is_lost(before: list[_Dependency], after: list[_Dependency], manifest: Manifest) -> bool:
+def _is_lost(before: list[_Dependency], after: list[_Dependency], manifest: Manifest, *, is_private: bool) -> bool:
     """Return whether dependents no longer get a package through this one.
 
     An execution dependency is installed with the package, also for building other packages.
@@ -105,11 +109,13 @@ def _is_lost(before: list[_Dependency], after: list[_Dependency], manifest: Mani
         before: the old dependencies on the package.
         after: the new dependencies on the package.
         manifest: the old manifest.
+        is_private: whether nothing of the package can be used to build others.
     """
     old_tags, new_tags = ({key.tag for key in keys} for keys in (before, after))
     if _is_metapackage(manifest):
         return not old_tags.isdisjoint(_EXECUTION_TAGS) and new_tags.isdisjoint(_EXECUTION_TAGS)
-    is_exported = not old_tags.isdisjoint(_EXPORTED_TAGS) and manifest.build_type != "ament_python"
+    exported_tags = _EXPORTED_TAGS - {_DEPEND} if is_private else _EXPORTED_TAGS
+    is_exported = not old_tags.isdisjoint(exported_tags) and manifest.build_type != "ament_python"
     return is_exported and new_tags.isdisjoint(_EXPORTED_TAGS | _EXECUTION_TAGS)
 
 

@@ -51,6 +51,8 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
 
+_WORLD_SUFFIX = ".world"
+"""The suffix of worlds of Gazebo Classic, and of those of Stage."""
 _NAMED_TAGS = ("world", "model", "include", "link", "joint", "sensor", "frame")
 _NAMED_ELEMENT = re.compile(rf"(?:^|.* )(?P<tag>{'|'.join(_NAMED_TAGS)}) (?P<name>\S+)")
 """The path of an element whose name programs and other models use."""
@@ -69,6 +71,14 @@ _INVISIBLE_TAGS = frozenset(
 """The tags of elements that images do not show, with their contents."""
 _MIN_EQUAL_CHANGES = 3
 """The minimum number of equal changes to different elements that are summarized in one line."""
+
+
+def is_other_world(file: Path) -> bool:
+    """Return whether a world is not XML, such as one of Stage."""
+    try:
+        return file.suffix == _WORLD_SUFFIX and b"<" not in file.read_bytes()
+    except OSError:
+        return False
 
 
 def compare_worlds(pair: FilePair) -> None:

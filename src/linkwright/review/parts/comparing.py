@@ -139,6 +139,7 @@ class _Comparer:
         if pair is not None and file.old_path and file.new_path:
             pair.is_complete = is_compared or self._is_complete(file.new_path)
             pair.renamed_macros = self._renamed_macros
+            pair.find_old_macros = self._graphs.old.find_macro_outlines
             pair.robots = self._graphs.new.find_outlines_of_robots(file.new_path) or ()
             self._compare(pair)
             changes += pair.changes

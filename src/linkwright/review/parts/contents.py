@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from linkwright.descriptions.comparison import Difference
+from linkwright.descriptions.comparison import ROS2_CONTROL, Difference
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.breaking import (
     MOVING_TYPES,
@@ -299,7 +299,8 @@ class _ReportedDifference:
             return self._find_joint_reason(old)
         if len(difference.path) == 1 and difference.value == "name" and old.tag == "world":
             return world_reason(old.attributes.get("name", ""))
-        if difference.new_element is None and old.tag.startswith(_XACRO):
+        is_call_changed = difference.new_element is None or (len(difference.path) == 1 and difference.value == "name")
+        if is_call_changed and old.tag.startswith(_XACRO):
             return self._find_lost_call_reason(old)
         if len(difference.path) == 1 and is_removed and old.tag in ("group", "group_state", "end_effector"):
             return find_removal_reason(old.tag, old.attributes.get("name", ""))
@@ -357,9 +358,15 @@ class _ReportedDifference:
         return None if owner is None else find_sensor_reason(owner)
 
     def _find_lost_call_reason(self, old: Element) -> Phrase | None:
-        """Return the reason why removing a call of a macro is breaking; None if its name is still used."""
+        """Return the reason why a removed call of a macro, or its other name, is breaking.
+
+        The result is None if the name is still used, and for another name of hardware, which nothing looks up.
+        """
         name = old.attributes.get("name", "")
         is_call = old.tag not in STATEMENTS and bool(name)
+        if is_call and self.pair.names_hardware(old):
+            removed = Difference("extension", f"{ROS2_CONTROL} {name}", "removed")
+            return find_extension_reason(removed) if self.difference.new_element is None else None
         return call_reason(name) if is_call and name not in _collect_words(self.pair.new.root) else None
 
     def _find_lost_name_reason(self, old: Element) -> Phrase | None:

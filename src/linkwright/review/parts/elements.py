@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from linkwright.descriptions.comparison import GAZEBO
-from linkwright.review.parts.name_substitution import NameSubstitution
-from linkwright.review.parts.outline import Item, iterate_items, join_items
+from linkwright.review.parts.name_substitution import CALL, NameSubstitution
+from linkwright.review.parts.outline import STATEMENTS, Item, iterate_items, join_items
 from linkwright.xmltree import Element
 
 CONDITION_SEPARATOR = " and "
@@ -172,6 +172,12 @@ class ItemComparison:
                 old.remove(candidates[0])
                 new.remove(new_item)
                 continue
+            calls = [item for item in candidates if self._are_calls_with_other_name(item, new_item)]
+            if len(calls) == sum(self._are_calls_with_other_name(calls[0], item) for item in rivals if calls) == 1:
+                pairs.append((calls[0], new_item))
+                old.remove(calls[0])
+                new.remove(new_item)
+                continue
             best = max(candidates, key=lambda item: self._compute_similarity(item, new_item), default=None)
             if best is not None and self._compute_similarity(best, new_item) >= _MIN_SIMILARITY:
                 pairs.append((best, new_item))
@@ -182,6 +188,20 @@ class ItemComparison:
     def _are_bare_links(self, old: Item, new: Item) -> bool:
         """Return whether two elements are frames: links without contents."""
         return old.element.tag == "link" and not any((*old.element.elements(), *new.element.elements()))
+
+    def _are_calls_with_other_name(self, old: Item, new: Item) -> bool:
+        """Return whether two elements call one macro under equal conditions, with equal arguments except the name."""
+        contents = [
+            substitution.normalize_element(item.element) for substitution, item in ((self.old, old), (self.new, new))
+        ]
+        if not contents[1].tag.startswith(CALL) or new.element.tag in STATEMENTS or len(contents[1].attributes) < 2:
+            return False
+        before, after = (
+            content._replace(attributes=frozenset(item for item in content.attributes if item[0] != "name"))
+            for content in contents
+        )
+        conditions = (" ".join(item.conditions) for item in (old, new))
+        return before == after and self.are_equal_texts(*conditions)
 
     def _compute_similarity(self, old: Item, new: Item) -> float:
         """Return the share of equal children of two elements, from 0 to 1."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from linkwright.lint.inclusions import folders_by_package
 from linkwright.lint.targets import DESCRIPTION_SUFFIXES, find_files_and_packages
-from linkwright.review.parts.outline import Outline, try_read_outline
+from linkwright.review.parts.outline import MacroOutline, Outline, try_read_outline
 from linkwright.review.versions import Version
 
 
@@ -50,6 +50,10 @@ class IncludeGraph:
     def find_files_with_macro(self, macro: str) -> list[str]:
         """Return the files that define a macro."""
         return [path for path, outline in self._outlines.items() if macro in outline.macros]
+
+    def find_macro_outlines(self, macro: str) -> list[MacroOutline]:
+        """Return the definitions of a macro in all files."""
+        return [self._outlines[path].macros[macro] for path in self.find_files_with_macro(macro)]
 
     def find_macros(self, path: str) -> Collection[str]:
         """Return the names of the macros that a file defines."""

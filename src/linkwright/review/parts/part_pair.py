@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from linkwright.descriptions.comparison import ROS2_CONTROL
 from linkwright.diagnostics import Phrase
 from linkwright.review.changes import FILE, Change, Effect, ExpandedElement, Location
-from linkwright.review.parts.outline import Outline
+from linkwright.review.parts.name_substitution import CALL
+from linkwright.review.parts.outline import MacroOutline, Outline, uses_name
 from linkwright.review.versions import Versions
 from linkwright.xmltree import Element
 
@@ -26,6 +28,7 @@ class PartPair:
         expanded: the elements of changed files that the compared robots show.
         renamed_macros: the new names of the macros that changed files rename, by old name.
         robots: the new outlines of all files of the robots that include the file; empty if some are not known.
+        find_old_macros: a function that returns the definitions of a macro in the old repository.
         changes: the changes found so far.
     """
 
@@ -38,6 +41,7 @@ class PartPair:
     expanded: Collection[ExpandedElement]
     renamed_macros: Mapping[str, str] = field(default_factory=dict)
     robots: Sequence[Outline] = ()
+    find_old_macros: Callable[[str], Sequence[MacroOutline]] = field(default=lambda _name: ())
     changes: list[Change] = field(default_factory=list)
 
     def add(self, sentence: Phrase, old: Element | None, new: Element | None, reason: Phrase | None = None) -> None:
@@ -67,6 +71,12 @@ class PartPair:
             for outline in self.robots
             for element in outline.root.elements()
         )
+
+    def names_hardware(self, call: Element) -> bool:
+        """Return whether the name in an old call of a macro of the repository is only that of a ``<ros2_control>``."""
+        macros = self.find_old_macros(call.tag.removeprefix(CALL))
+        uses = [element for macro in macros for element in macro.element.walk() if uses_name(element, "name")]
+        return bool(uses) and all(element.tag == ROS2_CONTROL for element in uses)
 
     def is_read(self, *, is_old: bool) -> bool:
         """Return whether the expansion of a compared robot read the file in one of the versions."""

@@ -68,11 +68,14 @@ class UsedPackages:
 
     def read(self, path: str) -> dict[str, Span]:
         """Return the headers or modules of other packages that a source uses, each with its first location."""
+        return {name: span for name, span in self.read_all(path).items() if get_package(name) not in self._own_names}
+
+    def read_all(self, path: str) -> dict[str, Span]:
+        """Return the headers or modules that a source uses, also those of its own package."""
         source = try_read_source(self._version.file(path))
         if source is None:
             return {}
-        uses = _read_imports(source) if is_python_source(path) else _read_includes(source)
-        return {name: span for name, span in uses.items() if get_package(name) not in self._own_names}
+        return _read_imports(source) if is_python_source(path) else _read_includes(source)
 
     def uses(self, name: str, *, is_python: bool) -> bool:
         """Return whether a source of the package uses a package, header or module."""
@@ -143,11 +146,17 @@ def _compare_packages(
     old: UsedPackages, new: UsedPackages, old_path: str | None, new_path: str | None
 ) -> Iterator[UsageChange]:
     is_python = is_python_source(new_path or old_path or "")
-    for sides, path, is_old in (((new, old), new_path, False), ((old, new), old_path, True)):
+    for sides, path, other_path, is_old in (
+        ((new, old), new_path, old_path, False),
+        ((old, new), old_path, new_path, True),
+    ):
         if path is None:
             continue
         uses = {get_package(name): span for name, span in reversed(sides[0].read(path).items())}
         packages = [name for name in reversed(uses) if not sides[1].uses(name, is_python=is_python)]
+        if packages and other_path is not None:
+            kept = {get_package(name) for name in sides[1].read_all(other_path)}  # now in the package, or before
+            packages = [name for name in packages if name not in kept]
         packages = [name for name in packages if sides[0].claim(name)]
         if packages:
             names = joined_first([f"'{name}'" for name in packages], MAX_NAMES)
