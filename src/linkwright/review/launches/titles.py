@@ -102,6 +102,7 @@ def find_served_names(entry: Entry) -> list[str]:
     words = list_items(text) if text.startswith("[") else text.split()
     if words == [text] and text.startswith("["):
         return []  # an expression that is not known
+    words = words[: next((index for index, word in enumerate(words) if word in _END_OF_OPTIONS), len(words))]
     if _SPAWNER.fullmatch(entry.name):
         return list(_find_spawned_controllers(words))
     if not entry.name.startswith(TRANSFORM_PUBLISHERS):
@@ -118,8 +119,6 @@ def _find_spawned_controllers(words: Sequence[str]) -> Iterator[str]:
     """Yield the words of a spawner's command line that are neither options nor their values."""
     is_value = False
     for word in words:
-        if word in _END_OF_OPTIONS:
-            return
         if not word.startswith("-") and not is_value:
             yield word
         is_value = word.startswith("-") and word not in _SPAWNER_FLAGS
