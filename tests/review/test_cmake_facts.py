@@ -239,6 +239,25 @@ def test_version_of_a_downloaded_project_is_compared_by_its_keyword(repository, 
     assert sentences(found) == ["externalproject_add GIT_TAG 1.0.0 -> devel"]
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("GIT_SHALLOW TRUE", "GIT_SHALLOW FALSE", ["fetchcontent_declare GIT_SHALLOW TRUE -> FALSE"]),
+        ("GIT_TAG MAIN", "GIT_TAG STABLE", ["fetchcontent_declare GIT_TAG MAIN -> STABLE"]),
+        ("", "EXCLUDE_FROM_ALL", ["fetchcontent_declare EXCLUDE_FROM_ALL added"]),
+        ("EXCLUDE_FROM_ALL", "", ["fetchcontent_declare EXCLUDE_FROM_ALL removed"]),
+    ],
+)
+def test_values_in_capital_letters_and_switches_of_a_downloaded_project_are_told(
+    repository, compare, old, new, expected
+):
+    project = "FetchContent_Declare(core URL https://example.org/core.zip {})\n"
+    repository.commit({**MANIFEST, "a/CMakeLists.txt": AMENT + project.format(old)})
+    repository.write({"a/CMakeLists.txt": AMENT + project.format(new)})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == expected
+
+
 INTERFACES = CATKIN.replace("FILES State.msg Load.msg", "DIRECTORY msg/FOLDER FILES State.msg")
 
 

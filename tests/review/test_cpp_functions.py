@@ -162,6 +162,7 @@ class Arm : public Node {
         ("  int n_[3];\n", "  int n_[3];\n  std::shared_ptr<Foo<int>> foo_;\n", "code changed in 'Arm' (added: foo_)"),
         ("items_;\n  double rate_{10.0};\n", "items_;\n", "code changed in 'Arm' (removed: rate_)"),
         ("void f(", "void g(", "code changed in 'Arm' (added: g; removed: f)"),
+        ("int n_[3]", "int n_[3], *m_, k_ = f(1, 2)", "code changed in 'Arm' (added: m_, k_)"),
         ("int n_[3]", "long n_[3]", "code changed in 'Arm'"),
     ],
 )

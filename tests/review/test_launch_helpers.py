@@ -181,3 +181,74 @@ def test_actions_imported_from_a_module_of_the_repository_belong_to_the_file(
     if module == MODULE:
         changes = sentences(subject(result, "arm/launch/arm.launch.py"))
         assert not any("other code" in sentence for sentence in changes)
+
+
+SPAWNERS = """import os
+
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+distro = os.environ["ROS_DISTRO"]
+if distro == "iron" or distro == "humble":
+    spawner = "spawner"
+else:
+    spawner = "spawner.py"
+
+
+def generate_launch_description():
+    arm = Node(package="controller_manager", executable=spawner, arguments=["arm", "-c", "/manager"])
+    hand = Node(package="controller_manager", executable=spawner, arguments=["hand", "-c", "/manager"])
+    return LaunchDescription([arm, hand])
+"""
+SPAWNER_FUNCTION = """    def spawn(name, *options):
+        words = [name] + [option for option in options]
+        return Node(package="controller_manager", executable=spawner, arguments=words)
+
+    nodes = [spawn(name, "-c", "/manager") for name in ["arm", "hand"]]
+    return LaunchDescription(nodes)
+"""
+SPAWNER_BODY = SPAWNERS[SPAWNERS.index("    arm = ") :]
+NEW_TEST = 'if distro in ("humble", "iron")'
+NAME = "node 'controller_manager/'spawner' if distro in ['humble', 'iron'] else 'spawner.py''"
+
+
+@pytest.mark.parametrize(
+    ("function", "nodes", "expected"),
+    [
+        (SPAWNER_FUNCTION, [], []),
+        (
+            SPAWNER_FUNCTION.replace('["arm", "hand"]', '["arm"]'),
+            [f"{NAME} of 'hand' removed: arguments [hand, -c, /manager]"],
+            [f"{NAME} of 'hand' removed: arguments [hand, -c, /manager]"],
+        ),
+        (
+            SPAWNER_FUNCTION.replace('"-c", "/manager"', '"--inactive" if distro == "iron" else "--stopped"'),
+            [
+                f"{NAME} of '{name}': arguments [{name}, -c, /manager] -> "
+                f"[{name}, '--inactive' if distro == 'iron' else '--stopped']"
+                for name in ("arm", "hand")
+            ],
+            [],
+        ),
+    ],
+)
+def test_nodes_of_a_function_inside_of_the_function_that_returns_them_are_read(
+    review_changes, function, nodes, expected
+):
+    changes, found = review_changes("arm.launch.py", SPAWNERS, SPAWNER_BODY, function)
+    assert [change for change in changes if change.startswith("node ")] == nodes
+    assert found == expected
+
+
+def test_the_values_that_a_condition_allows_have_one_notation(review_changes):
+    old = 'if distro == "iron" or distro == "humble"'
+    changes, _ = review_changes("arm.launch.py", SPAWNERS, old, NEW_TEST)
+    assert not [change for change in changes if change.startswith("node ")]
+
+
+def test_code_outside_of_functions_is_not_told_as_code_of_the_function_that_changes_too(review_changes):
+    helper = "def get():\n    print({})\n\n\ndef gen"
+    old = "import os\nprint(1)\n" + SPAWNERS.removeprefix("import os\n").replace("def gen", helper.format(1))
+    new = "import os\nprint(2)\nprint(3)\n" + SPAWNERS.removeprefix("import os\n").replace("def gen", helper.format(2))
+    changes, _ = review_changes("arm.launch.py", old, old, new)
+    assert [change for change in changes if "other code" in change] == ["other code changed, such as print(2)"]

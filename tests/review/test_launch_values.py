@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tests.review.conftest import breaking, subject
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
 
 FRAME = """<launch>
   <node pkg="arm" type="arm" name="arm"/>
@@ -87,3 +88,50 @@ def test_a_namespace_with_the_variable_of_a_loop_is_breaking(repository, compare
     repository.write({"arm/launch/arm.launch.py": LOOP.replace('"screen"', '"screen", namespace="arm" + str(number)')})
     (change,) = subject(compare(repository), "arm/launch/arm.launch.py").changes
     assert change.reason is not None
+
+
+ROS1_FILE = """<launch>
+  <node pkg="arm" type="buttons.py" name="{name}" output="screen">
+    <param name="is_slow" value="true"/>
+    <param name="path" value="$(find arm)/etc/a.txt"/>
+  </node>
+</launch>
+"""
+ROS2_FILE = """from launch import LaunchDescription
+from launch.substitutions import PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    path = PathJoinSubstitution([FindPackageShare("arm"), "etc/a.txt"])
+    return LaunchDescription([
+        Node(package="arm", executable="buttons.py", output="screen", parameters=[{{"is_slow": {value}, "path": path}}])
+    ])
+"""
+SCRIPT = """from rclpy.node import Node
+
+
+class A(Node):
+    def __init__(self):
+        super().__init__("buttons")
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "expected"),
+    [
+        ("buttons", "True", []),
+        ("keys", "True", ["node 'arm/buttons.py': name keys removed"]),
+        ("buttons", "False", ["node 'arm/buttons.py': parameter is_slow true -> False"]),
+    ],
+)
+def test_values_in_the_notation_of_ros2_and_the_name_that_the_script_gives_are_no_change(
+    repository, compare, name, value, expected
+):
+    manifest = PACKAGE_XML.replace("arm_description", "arm")
+    files = {"arm/package.xml": manifest, "arm/scripts/buttons.py": SCRIPT}
+    repository.commit({**files, "arm/launch/arm.launch": ROS1_FILE.format(name=name)})
+    repository.write({"arm/launch/arm.launch": None, "arm/launch/arm.launch.py": ROS2_FILE.format(value=value)})
+    found = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert [line for line in found if line.startswith("node ")] == expected

@@ -70,3 +70,16 @@ def test_python_2_finds_a_module_beside_the_file(review_lines):
         "</package>", "  <buildtool_depend>catkin</buildtool_depend>\n</package>"
     )
     assert review_lines(INIT, INIT + "from driver import park\n", {**FILES, "package.xml": manifest}) == ([], [])
+
+
+@pytest.mark.parametrize(
+    ("old", "lost"),
+    [
+        ("from . import driver\n", []),
+        ("from arm import driver\n", []),
+        ("from .driver import Driver as driver\n", ["names of the package removed: 'driver'"]),
+        ("from . import other\n", ["names of the package removed: 'other'"]),
+    ],
+)
+def test_a_module_of_the_package_can_be_imported_although_the_package_no_longer_does(review_lines, old, lost):
+    assert review_lines(old, "import os\n") == (lost, lost)

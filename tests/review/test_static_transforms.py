@@ -98,3 +98,16 @@ def test_another_child_frame_is_still_breaking(repository, compare):
     assert breaking(compare(repository)) == [
         "node 'tf2_ros/static_transform_publisher' of 'a2': child frame 'a' -> 'a2'"
     ]
+
+
+LOGGING = ", '--ros-args', '--log-level', 'warn'"
+
+
+def test_arguments_of_ros_behind_the_transform_are_no_frame(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/launch/a.launch.py": make_launch(OLD + LOGGING, {"a": 1})})
+    repository.write({"arm/launch/a.launch.py": make_launch(NEW + LOGGING, {"a": 1})})
+    result = compare(repository)
+    assert [line for found in result.subjects for line in sentences(found)] == [
+        "node 'tf2_ros/static_transform_publisher' of 'a': the same transform in another notation"
+    ]
+    assert breaking(result) == []

@@ -25,7 +25,7 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
     words = compare_words(old, new) if max(len(old), len(new)) > LONG_VALUE else None
     if words is not None:
         return phrase("{parameter}: {changes}", parameter=name, changes=words)
-    old_items, new_items = _split_nested_list(old), _split_nested_list(new)
+    old_items, new_items = nested_list_items(old), nested_list_items(new)
     are_lists = all(value.startswith("[") and items != [value] for value, items in ((old, old_items), (new, new_items)))
     are_names = are_lists and all(len(item) <= _LONG_NAME for item in (*old_items, *new_items))
     is_cut = are_names and max(len(old), len(new)) > LONG_VALUE
@@ -55,7 +55,7 @@ def list_items(text: str) -> list[str]:
     return [item.strip() for item in _split_at_commas(content) if item.strip()]
 
 
-def _split_nested_list(text: str) -> list[str]:
+def nested_list_items(text: str) -> list[str]:
     """Return the items of a list, which may contain lists, or the value itself."""
     if not (text.startswith("[") and text.endswith("]")):
         return [text]

@@ -18,7 +18,9 @@ _MIN_LONG_LIST_WORDS = 5
 """The minimum number of words of a command of which only the differing words are shown."""
 _DOWNLOAD_COMMANDS = ("externalproject_add", "fetchcontent_declare")
 """The commands that download other projects, with a URL and a version after keywords."""
-_KEYWORD = re.compile(r"[A-Z][A-Z_]{2,}")
+_KEYWORD = re.compile(r"(?!(?:TRUE|FALSE|OFF|YES)\Z)[A-Z][A-Z_]{2,}")
+_ONE_VALUE_KEYWORDS = frozenset({"GIT_REPOSITORY", "GIT_TAG", "GIT_REMOTE_NAME", "HG_TAG", "SVN_REVISION", "CVS_TAG"})
+"""The keywords that always have one value, which may be in capital letters, such as the name of a tag."""
 
 
 def compare_other_commands(pair: FilePair, old: Sequence[tuple[str, str]], new: Sequence[tuple[str, str]]) -> None:
@@ -60,8 +62,15 @@ def _compare_keywords(name: str, old_words: Sequence[str], new_words: Sequence[s
     old, new = _group_by_keyword(old_words), _group_by_keyword(new_words)
     for keyword in dict.fromkeys([*old, *new]):
         before, after = old.get(keyword), new.get(keyword)
-        if before != after:
-            yield change_text(f"{name} {keyword}".strip(), before or EMPTY, after or EMPTY)
+        title = f"{name} {keyword}".strip()
+        if before == after:
+            continue
+        if before or after:
+            yield change_text(title, before or EMPTY, after or EMPTY)
+        elif before is None:
+            yield phrase("{parameter} added", parameter=title)
+        else:
+            yield phrase("{parameter} removed", parameter=title)
 
 
 def _group_by_keyword(words: Sequence[str]) -> dict[str, str]:
@@ -69,7 +78,8 @@ def _group_by_keyword(words: Sequence[str]) -> dict[str, str]:
     values: dict[str, list[str]] = {}
     keyword = ""
     for word in words:
-        if _KEYWORD.fullmatch(word):
+        is_value = keyword in _ONE_VALUE_KEYWORDS and not values[keyword]
+        if _KEYWORD.fullmatch(word) and not is_value:
             keyword = word
             values.setdefault(keyword, [])
         else:

@@ -12,6 +12,8 @@ from linkwright.review.launches.outlines import Entry, LaunchOutline, extract_co
 
 _INLINE_DEFAULT = re.compile(r"(\$\((?:var|arg) [^() ]+) [^()]*\)")
 """An argument of a launch file with its default."""
+_ROS1_SUBSTITUTION = re.compile(r"\$\((?P<kind>find|arg) ")
+_ROS2_SUBSTITUTIONS = {"find": "$(find-pkg-share ", "arg": "$(var "}
 _BOOLEAN = re.compile(r"\b(True|False)\b")
 
 
@@ -61,12 +63,25 @@ def find_changed_settings(
 
 
 def keeps_meaning(old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline) -> bool:
-    """Return whether two values only differ in where the defaults of their arguments are written."""
-    if old is None or new is None or _INLINE_DEFAULT.sub(r"\1)", old) != _INLINE_DEFAULT.sub(r"\1)", new):
+    """Return whether two values only differ in notation.
+
+    The defaults of their arguments may be written elsewhere. In a file of ROS 1 and one of ROS 2, the folder of a
+    package and booleans are written otherwise.
+    """
+    if old is None or new is None:
+        return False
+    if old_outline.is_ros1 != new_outline.is_ros1:
+        old, new = (_write_for_ros2(text) for text in (old, new))
+    if _INLINE_DEFAULT.sub(r"\1)", old) != _INLINE_DEFAULT.sub(r"\1)", new):
         return False
     texts = (outline.resolve(text) for outline, text in ((old_outline, old), (new_outline, new)))
     before, after = (_BOOLEAN.sub(lambda match: match[0].lower(), text) for text in texts)
     return before == after
+
+
+def _write_for_ros2(text: str) -> str:
+    text = _ROS1_SUBSTITUTION.sub(lambda match: _ROS2_SUBSTITUTIONS[match["kind"]], text)
+    return _BOOLEAN.sub(lambda match: match[0].lower(), text)
 
 
 def _group_by_name(settings: Mapping[str, str]) -> dict[str, dict[str, str]]:

@@ -26,7 +26,11 @@ def find_default_name(root: Path, program: str) -> str | None:
     folder = find_package_folders(root).get(package)
     if folder is None or not name:
         return None
-    files = _find_class_sources(folder, name.rpartition("::")[2]) if "::" in name else _find_module_paths(folder, name)
+    if "::" in name:
+        files = _find_class_sources(folder, name.rpartition("::")[2])
+    else:
+        script = find_script(root, program)
+        files = [] if script is None else [script]
     names = {item.name for file in files for item in read_source_names(file).names if item.kind is NameKind.NODE}
     return names.pop() if len(names) == 1 else None
 

@@ -394,7 +394,9 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
             )
     else:
         removed, added = _add_definitions(removed, old, new), _add_definitions(added, new, old)
+        is_shown_in_function = any(_find_functions(pair.new_file, added[:1]))
         functions = [*_find_functions(pair.new_file, added), *_find_functions(pair.old_file, removed)]
+        functions = functions if is_shown_in_function else []
         pair.add(_format_code_change(removed, added, list(dict.fromkeys(functions))), location)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -36,11 +37,13 @@ class Function:
         python: the parsed file that defines it.
         node: its definition.
         is_method: whether its first parameter is an object or a class.
+        is_nested: whether another function defines it, whose names it uses.
     """
 
     python: PythonFile
     node: ast.FunctionDef
     is_method: bool = False
+    is_nested: bool = False
 
 
 def imports_actions(path: Path) -> bool:
@@ -124,7 +127,8 @@ class HelperFunctions:
             statements = [statement for statement in python.tree.body if id(statement) != skipped]
             nodes = (node for statement in statements for node in ast.walk(statement))
             called = {called_name(node) for node in nodes if isinstance(node, ast.Call)}
-            functions = (node for node in _index_definitions(python).values() if isinstance(node, ast.FunctionDef))
+            definitions = (*_index_definitions(python).values(), *_index_nested_functions(python).values())
+            functions = (node for node in definitions if isinstance(node, ast.FunctionDef))
             names = frozenset(
                 node.name for node in functions if node.name in called and self._makes_actions(python, node)
             )
@@ -202,6 +206,9 @@ class HelperFunctions:
         first_name, _, method = name.partition(".")
         if not first_name or "." in method:
             return None
+        nested = _index_nested_functions(python).get(name)
+        if nested is not None:
+            return Function(python, nested, is_nested=True) if self._makes_actions(python, nested) else None
         definition = self._find_definition(python, first_name, 0)
         if definition is None:
             return None
@@ -299,6 +306,21 @@ def find_parameter_defaults(function: ast.FunctionDef) -> dict[str, ast.expr]:
 
 def _index_definitions(python: PythonFile) -> dict[str, ast.FunctionDef | ast.ClassDef]:
     return {node.name: node for node in python.tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+
+
+def _index_nested_functions(python: PythonFile) -> dict[str, ast.FunctionDef]:
+    """Return the functions that the functions of a file define, by names that nothing else has."""
+    outer = _index_definitions(python)
+    nested = [
+        node
+        for function in outer.values()
+        if isinstance(function, ast.FunctionDef)
+        for statement in function.body
+        for node in ast.walk(statement)
+        if isinstance(node, ast.FunctionDef)
+    ]
+    names = Counter(node.name for node in nested)
+    return {node.name: node for node in nested if names[node.name] == 1 and node.name not in outer}
 
 
 def _find_import_sources(python: PythonFile, name: str) -> Iterator[tuple[str, str]]:

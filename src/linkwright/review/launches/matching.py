@@ -125,6 +125,8 @@ def _compute_replacement_score(
     name = old.settings.get("name")
     if name and name == new.settings.get("name") and _have_same_namespace(old, new, outlines):
         return 3.0 + similarity
+    if old_package == new_package and _serve_same_names(old, new) and _stops(old_program) == _stops(new_program):
+        return 2.0 + similarity
     old_file, new_file = (entry.name.rpartition("/")[2] for entry in (old, new))
     if old_package == new_package and old_file != new_file and new_names.get(old_file) == new_file:
         return 2.0 + similarity
@@ -292,6 +294,11 @@ def _have_same_node_name(old: Entry, new: Entry) -> bool:
 def _serve_same_names(old: Entry, new: Entry) -> bool:
     names = find_served_names(new)
     return bool(names) and find_served_names(old) == names
+
+
+def _stops(spawner: str) -> bool:
+    """Return whether a spawner stops controllers."""
+    return "unspawner" in spawner
 
 
 def _compute_settings_similarity(old: Entry, new: Entry) -> float:

@@ -334,7 +334,10 @@ class _Reader:
         if function is None:
             return
         bindings, values, extra = self._bind_arguments(call, function)
-        texts = ExpressionTexts(function.python, bindings, values, self.helpers)
+        if function.is_nested:
+            texts = self.texts.with_names(bindings, values)
+        else:
+            texts = ExpressionTexts(function.python, bindings, values, self.helpers)
         reader = _Reader(function.python, self.helpers, texts, extra, self.depth + 1)
         if function.python is self.python:
             reader.covered, reader.branches = self.covered, self.branches
@@ -363,6 +366,9 @@ class _Reader:
         if function.is_method:
             names = names[1:]
         passed = dict(zip(names, map(self._mark_literals, call.args), strict=False))
+        if arguments.vararg is not None and not any(isinstance(value, ast.Starred) for value in call.args):
+            rest = list(map(self._mark_literals, call.args[len(names) :]))
+            passed[arguments.vararg.arg] = ast.Tuple(rest, ast.Load())
         bindings |= {name: self.texts.text(value) for name, value in passed.items()}
         extra: dict[str, BoundExpression] = {}
         known = {*names, *(argument.arg for argument in arguments.kwonlyargs)}
@@ -531,8 +537,8 @@ class _Reader:
         others = {key: BoundExpression(self.texts, value) for key, value in keywords.items()} | dict(extra or {})
         parts: dict[str, str] = {}
         arguments = others.get("arguments")
-        if arguments is not None and isinstance(arguments.texts.resolve(arguments.node).node, (ast.List, ast.Tuple)):
-            words = arguments.texts.find_list_parts(arguments.node)
+        words = None if arguments is None else arguments.texts.find_words(arguments.node)
+        if arguments is not None and words is not None:
             texts = [word.texts.format_joined(word.node) for word in words]
             if arguments.texts is self.texts:
                 texts += self._read_added_items(arguments.node)

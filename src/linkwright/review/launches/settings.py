@@ -31,7 +31,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
 )
 from linkwright.review.launches.renames import rename_in_text
-from linkwright.review.launches.static_transforms import compare_transforms
+from linkwright.review.launches.static_transforms import SAME_TRANSFORM, compare_transforms
 from linkwright.review.launches.titles import format_distinct_title, format_title, join_phrases, join_titles
 from linkwright.review.list_changes import change_text
 from linkwright.review.merging import name_edit
@@ -194,7 +194,7 @@ class SettingChanges:
             old_text = None if pair.old is None else rename_in_text(pair.old, self._old_names)
             transform = compare_transforms(old.name, new.name, old_text, pair.new) if pair.name == "arguments" else None
             if transform is not None:
-                self._collect(new, transform, reason)
+                self._collect(new, transform, None if transform == SAME_TRANSFORM else reason)
                 continue
             keeps_names = keeps_names and new.kind == "include"
             includer = self._including_files.find_opposite_change(new, pair.name, *defaults) if reason else None

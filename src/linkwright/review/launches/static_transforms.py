@@ -18,6 +18,8 @@ _ANGLES = ("yaw", "pitch", "roll")
 _QUATERNION = ("qx", "qy", "qz", "qw")
 _FRAMES = {"--frame-id": "parent", "--child-frame-id": "child"}
 _END_OF_OPTIONS = "--ros-args"
+SAME_TRANSFORM = phrase("the same transform in another notation")
+"""The change of a publisher whose transform is the same."""
 _LENGTH_TOLERANCE = 1e-9
 _ANGLE_TOLERANCE = 1e-6
 """The angle in rad up to which two rotations in one notation are equal."""
@@ -64,7 +66,7 @@ def compare_transforms(old_program: str, new_program: str, old: str | None, new:
     except ValueError:
         return None
     if not changes:
-        return phrase("the same transform in another notation")
+        return SAME_TRANSFORM
     return joined(changes)
 
 

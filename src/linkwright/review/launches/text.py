@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
 from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS
 
@@ -88,17 +89,25 @@ class ExpressionTexts:
             return None
         items_by_name = {name.id: value for name, value in zip(names, values, strict=True)}
         bindings = {name: value.texts.text(value.node) for name, value in items_by_name.items()}
-        return self._with_names({**self._bindings, **bindings}, {**self._values, **items_by_name})
+        return self.with_names(bindings, items_by_name)
 
     def with_unknown_item(self, target: ast.expr) -> ExpressionTexts:
         """Return the texts with expressions of unknown value for the variables of a loop."""
         names = [node.id for node in ast.walk(target) if isinstance(node, ast.Name)]
         unknown = {name: f"$(eval {name})" for name in names}
-        values = {name: value for name, value in self._values.items() if name not in unknown}
-        return self._with_names({**self._bindings, **unknown}, values)
+        return self.with_names(unknown, {})
 
-    def _with_names(self, bindings: Mapping[str, str], values: Mapping[str, BoundExpression]) -> ExpressionTexts:
-        return ExpressionTexts(self._python, bindings, values, self._helpers, self._depth)
+    def with_names(self, bindings: Mapping[str, str], values: Mapping[str, BoundExpression]) -> ExpressionTexts:
+        """Return the texts with other names, such as the parameters of a function inside of the function.
+
+        Args:
+            bindings: the texts of the names.
+            values: the expressions of the names whose values are known.
+        """
+        known = {name: value for name, value in self._values.items() if name not in bindings}
+        return ExpressionTexts(
+            self._python, {**self._bindings, **bindings}, {**known, **values}, self._helpers, self._depth
+        )
 
     def resolve(self, node: ast.expr) -> BoundExpression:
         """Return the value of a name or of a call of a function, or any other expression unchanged."""
@@ -186,6 +195,25 @@ class ExpressionTexts:
         for item in node.elts:
             parts += texts.find_list_parts(item.value) if isinstance(item, ast.Starred) else [texts.resolve(item)]
         return parts
+
+    def find_words(self, node: ast.expr) -> list[BoundExpression] | None:
+        """Return the items of a command line, or None if it is not a list.
+
+        Of a sum of lists, or a list that repeats an expression for each item of another one, all items must be known.
+        """
+        value = self.resolve(node)
+        node, texts = value.node, value.texts
+        if isinstance(node, (ast.List, ast.Tuple)):
+            return texts.find_list_parts(node)
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            left, right = texts.find_words(node.left), texts.find_words(node.right)
+            return None if left is None or right is None else left + right
+        if not isinstance(node, ast.ListComp) or len(node.generators) != 1 or node.generators[0].ifs:
+            return None
+        items = texts.find_items(node.generators[0].iter)
+        passes = [texts.with_item(node.generators[0].target, item) for item in items or ()]
+        known = [item.resolve(node.elt) for item in passes if item is not None]
+        return None if items is None or len(known) != len(items) else known
 
     def text(self, node: ast.expr | None, depth: int = 0) -> str:
         """Return an expression as text, with the values of names that are assigned once."""
@@ -321,7 +349,7 @@ class ExpressionTexts:
             return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
             return f"{part(node.value)}.{node.attr}"
-        return " ".join(ast.unparse(node).split())
+        return unparse_on_one_line(node)
 
     def is_unknown_item(self, node: ast.Subscript) -> bool:
         """Return whether an expression is an item of the result of an unknown function that has a name.
@@ -438,7 +466,7 @@ class ExpressionTexts:
 
 def format_branches(test: ast.expr) -> tuple[str, str]:
     """Return the conditions of both branches of a test."""
-    source = " ".join(ast.unparse(test).split())
+    source = unparse_on_one_line(test)
     return f"if `{source}`", f"unless `{source}`"
 
 

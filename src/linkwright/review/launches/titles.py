@@ -21,7 +21,7 @@ from linkwright.review.launches.outlines import (
     TEST,
     Entry,
 )
-from linkwright.review.list_changes import EMPTY, list_items
+from linkwright.review.list_changes import EMPTY, list_items, nested_list_items
 
 _MAX_SETTINGS = 16
 """The maximum number of settings in the line about an added or removed action."""
@@ -42,7 +42,13 @@ _SPAWNER_FLAGS = frozenset(
 )
 """The options of a spawner without a value."""
 _END_OF_OPTIONS = ("--ros-args",)
-_SPAWNER = re.compile(r"controller_manager/(spawner|spawner\.py|unspawner|unspawner\.py)")
+_SPAWNER_PROGRAM = r"(?:un)?spawner(?:\.py)?"
+_SPAWNER = re.compile(
+    rf"controller_manager/(?:{_SPAWNER_PROGRAM}|'{_SPAWNER_PROGRAM}' if .+ else '{_SPAWNER_PROGRAM}')", re.DOTALL
+)
+"""The programs that start and stop controllers, also one of two, such as those of different versions of ROS."""
+_CHOSEN_OPTION = "'-"
+"""The start of an expression that chooses one of two options."""
 
 
 def format_title(entry: Entry) -> Phrase:
@@ -99,10 +105,15 @@ def find_served_names(entry: Entry) -> list[str]:
     The list is empty if they are unknown.
     """
     text = entry.settings.get("arguments", "")
-    words = list_items(text) if text.startswith("[") else text.split()
+    is_spawner = _SPAWNER.fullmatch(entry.name) is not None
+    split = nested_list_items if is_spawner else list_items
+    words = split(text) if text.startswith("[") else text.split()
+    if is_spawner and text.startswith("[") and any(word.startswith(("[", "{")) for word in words):
+        return []
     if words == [text] and text.startswith("["):
         return []  # an expression that is not known
-    if _SPAWNER.fullmatch(entry.name):
+    words = words[: next((index for index, word in enumerate(words) if word in _END_OF_OPTIONS), len(words))]
+    if is_spawner:
         return list(_find_spawned_controllers(words))
     if not entry.name.startswith(TRANSFORM_PUBLISHERS):
         return []
@@ -118,9 +129,7 @@ def _find_spawned_controllers(words: Sequence[str]) -> Iterator[str]:
     """Yield the words of a spawner's command line that are neither options nor their values."""
     is_value = False
     for word in words:
-        if word in _END_OF_OPTIONS:
-            return
-        if not word.startswith("-") and not is_value:
+        if not word.startswith(("-", _CHOSEN_OPTION)) and not is_value:
             yield word
         is_value = word.startswith("-") and word not in _SPAWNER_FLAGS
 

@@ -20,11 +20,13 @@ from linkwright.review.sources.statements import (
     Difference,
     Literal,
     Statement,
+    add_context,
+    find_expression,
     find_expression_difference,
     find_literal_differences,
     normalize_number,
 )
-from linkwright.review.sources.tokens import Token, TokenKind
+from linkwright.review.sources.tokens import Token, TokenKind, match_brackets
 
 _DEFINITION = re.compile(r"\b([A-Z]\w+)(?=\s*(?:=(?!=)|[{\[,]))|define\s+(\w+)")
 _QUOTED = re.compile("\"[^\"]*\"|'[^']*'")
@@ -39,6 +41,8 @@ _Mask = Callable[[str], str]
 _COUNTERS = frozenset({"0", "1"})
 """Numbers that also change with the form of a statement, such as in ``i + 1``."""
 _COMPARISONS = frozenset({"<", "<=", ">", ">=", "==", "!="})
+_MAX_EXPRESSIONS = 120
+"""The maximum number of characters of two expressions that are shown in full."""
 _MAX_COMPARED_PAIRS = 4_000_000
 """The maximum number of pairs of statements of a compared function."""
 _DECLARATION = re.compile(r"declare_parameter\(\s*(?:name\s*=\s*)?[\"']([^\"']+)[\"']")
@@ -196,7 +200,27 @@ def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
     )
     if SequenceMatcher(None, old_words, new_words, autojunk=False).ratio() >= _MIN_SIMILARITY:
         token = next(token for token in numbers[1] if token.text == after)
-        yield Difference(f"{before} -> {after}", before, after, token)
+        factors = [_find_expression_around(statement, text) for statement, text in ((old, before), (new, after))]
+        if len({_count_factors(old.tokens, factors[0]), _count_factors(new.tokens, factors[1])}) == 1:
+            yield Difference(f"{before} -> {after}", before, after, token)
+            return
+        # the number became part of another product, so that the numbers alone say nothing about the value
+        shown = old.get_text(*factors[0]), new.get_text(*factors[1])
+        if sum(map(len, shown)) <= _MAX_EXPRESSIONS:
+            expression = add_context(new, *factors[1], " -> ".join(shown), match_brackets(new.tokens))
+            yield Difference(expression, *shown, new.tokens[factors[1][0]])
+
+
+def _find_expression_around(statement: Statement, number: str) -> tuple[int, int]:
+    """Return the first and last token of the expression around a number."""
+    index = next(index for index, token in enumerate(statement.tokens) if token.text == number)
+    return find_expression(statement.tokens, Literal(number, index, index), match_brackets(statement.tokens))
+
+
+def _count_factors(tokens: Sequence[Token], expression: tuple[int, int]) -> int:
+    """Return the number of products and quotients in an expression."""
+    first, last = expression
+    return sum(token.kind is TokenKind.OPERATOR and token.text in ("*", "/") for token in tokens[first : last + 1])
 
 
 def _are_in_same_place(old: Sequence[Token], new: Sequence[Token], before: str, after: str) -> bool:

@@ -46,7 +46,17 @@ def _list_members(statements: Iterable[str]) -> dict[str, None]:
         while (inner := _TEMPLATE.sub("", text)) != text:
             text = inner
         is_other = _NO_MEMBERS.match(text.strip()) or _OPERATOR.search(text)
-        match = None if is_other else _NAME.search(text.strip())
-        if match is not None:
-            names["".join(match["name"].split())] = None
+        for declarator in () if is_other else _split_declarators(text):
+            match = _NAME.search(declarator.strip())
+            if match is not None:
+                names["".join(match["name"].split())] = None
     return names
+
+
+def _split_declarators(text: str) -> list[str]:
+    """Return the declarators of a statement without templates, the first with its type: ``int a`` and ``b``."""
+    masked, depth = "", 0
+    for character in text:
+        depth += (character in "([{") - (character in ")]}")
+        masked += "\0" if character == "," and depth == 0 else character
+    return masked.split("\0")

@@ -212,7 +212,10 @@ class _SourcePair(WholeSourcePair):
     ) -> tuple[list[SourceName], list[SourceName]]:
         """Return the removed and added names without those of classes that only one version has."""
         if kind is NameKind.IMPORT:
-            return drop_defined_imports(removed, new_names), drop_defined_imports(added, old_names)
+            return (
+                drop_defined_imports(removed, old_names, new_names, self.new.version.file(self.file.new_path or "")),
+                drop_defined_imports(added, new_names, old_names, self.old.version.file(self.file.old_path or "")),
+            )
         is_python = self.file.path.endswith(PYTHON_SUFFIX)
         if kind not in (NameKind.FUNCTION, NameKind.MEMBER) or (is_python and kind is NameKind.MEMBER):
             return removed, added

@@ -236,6 +236,8 @@ class SourceNames:
         hidden_classes: the names of the protected and private classes in a C++ source.
         wrapper_arguments: the expressions that name topics and services in classes of a Python source, for which the
             callers of the classes pass the names.
+        imported_objects: the names that an ``__init__.py`` imports from modules of its package. The other names may be
+            modules themselves.
         has_star_import: whether an ``__init__.py`` imports all names of a module, so that it may have other names.
     """
 
@@ -273,6 +275,7 @@ class SourceNames:
     ignoring_keywords: set[str] = field(default_factory=set)
     hidden_classes: set[str] = field(default_factory=set)
     wrapper_arguments: set[str] = field(default_factory=set)
+    imported_objects: set[str] = field(default_factory=set)
     has_star_import: bool = False
 
     def add(self, name: SourceName) -> None:

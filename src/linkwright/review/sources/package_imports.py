@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Iterator, Sequence
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.packages.manifest import MANIFEST
@@ -37,8 +37,11 @@ def read_imports(python: PythonFile, names: SourceNames) -> None:
         if isinstance(statement, ast.ImportFrom):
             is_own = statement.level > 0 or (statement.module or "").partition(".")[0] == package
             names.has_star_import |= any(alias.name == "*" for alias in statement.names)
+            has_objects = statement.module is not None and statement.module.rpartition(".")[2] != package
             for alias in statement.names if is_own else ():
                 _add_name(python, names, alias.asname or alias.name, alias)
+                if has_objects or alias.asname not in (None, alias.name):
+                    names.imported_objects.add(alias.asname or alias.name)
             if statement.level == 0 and statement.module is not None:
                 names.absolute_imports.append((statement.module.partition(".")[0], python.span(statement)))
         elif isinstance(statement, ast.Import):
@@ -110,15 +113,34 @@ def find_failing_imports(version: Version, package: str, path: str, names: Sourc
     folder = version.file(path).parent
     installed = {name.partition("/")[0] for name in find_python_packages(version, package)}
     for index, (name, _) in enumerate(names.absolute_imports):
-        is_sibling = (folder / f"{name}.py").is_file() or (folder / name / PACKAGE_FILE).is_file()
-        if is_sibling and name not in installed | sys.stdlib_module_names | {folder.name}:
+        if _has_module(folder, name) and name not in installed | sys.stdlib_module_names | {folder.name}:
             yield index
 
 
-def drop_defined_imports(items: Sequence[SourceName], names: SourceNames) -> list[SourceName]:
-    """Return the imported names that the other version does not define.
+def drop_defined_imports(
+    items: Sequence[SourceName], own_names: SourceNames, other_names: SourceNames, other_file: Path
+) -> list[SourceName]:
+    """Return the imported names that the other version does not offer.
 
-    The result is empty if that version imports all names of a module.
+    That version offers a name if it defines it, or if it is a module of the package, which programs can import whether
+    or not the ``__init__.py`` does. The result is empty if that version imports all names of a module.
+
+    Args:
+        items: the imported names that only one version has.
+        own_names: the names of this version.
+        other_names: the names of the other version.
+        other_file: the ``__init__.py`` of the other version.
     """
-    defined = {item.name for kind in (NameKind.CLASS, NameKind.FUNCTION) for item in names.of_kind(kind)}
-    return [] if names.has_star_import else [item for item in items if item.name not in defined]
+    if other_names.has_star_import:
+        return []
+    defined = {item.name for kind in (NameKind.CLASS, NameKind.FUNCTION) for item in other_names.of_kind(kind)}
+    return [
+        item
+        for item in items
+        if item.name not in defined
+        and (item.name in own_names.imported_objects or not _has_module(other_file.parent, item.name))
+    ]
+
+
+def _has_module(folder: Path, name: str) -> bool:
+    return (folder / f"{name}.py").is_file() or (folder / name / PACKAGE_FILE).is_file()

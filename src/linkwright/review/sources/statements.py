@@ -317,7 +317,7 @@ def find_literal_differences(old: Statement, new: Statement) -> Iterator[Differe
     index = 0
     while index < len(changed):
         (old_literal, new_literal) = changed[index]
-        start, end = _find_expression(new.tokens, new_literal, brackets)
+        start, end = find_expression(new.tokens, new_literal, brackets)
         group = [pair for pair in changed[index:] if pair[1].last <= end]
         index += len(group)
         texts = (old.get_text(old_literal.first, old_literal.last), new.get_text(new_literal.first, new_literal.last))
@@ -383,18 +383,18 @@ def format_literal(statement: Statement, literal: Literal) -> str:
     """
     tokens = statement.tokens
     brackets = match_brackets(tokens)
-    start, end = _find_expression(tokens, literal, brackets)
+    start, end = find_expression(tokens, literal, brackets)
     end -= tokens[end].text == "not"
     if (start, end) != (literal.first, literal.last):
         return statement.get_text(start, end)
     before, after = start - 1, end + 1
     if before > 0 and tokens[before].text == "in":
         before -= tokens[before - 1].text == "not"
-        start, _ = _find_expression(tokens, Literal("", before - 1, before - 1), brackets)
+        start, _ = find_expression(tokens, Literal("", before - 1, before - 1), brackets)
         return statement.get_text(start, end)
     after += after < len(tokens) and tokens[after].text == "not"
     if after + 1 < len(tokens) and tokens[after].text == "in":
-        _, end = _find_expression(tokens, Literal("", after + 1, after + 1), brackets)
+        _, end = find_expression(tokens, Literal("", after + 1, after + 1), brackets)
         return statement.get_text(start, end)
     return add_context(statement, start, end, statement.get_text(start, end), brackets)
 
@@ -403,7 +403,7 @@ def _format_list(text: str) -> str:
     return f"[{text.strip()[1:-1].strip().rstrip(',')}]"
 
 
-def _find_expression(tokens: Sequence[Token], literal: Literal, brackets: dict[int, int]) -> tuple[int, int]:
+def find_expression(tokens: Sequence[Token], literal: Literal, brackets: dict[int, int]) -> tuple[int, int]:
     """Return the first and last token of the expression around a literal.
 
     The expression ends at the brackets around the literal.
