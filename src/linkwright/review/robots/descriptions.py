@@ -40,8 +40,8 @@ from linkwright.review.robots.collisions import compare_collisions, may_change_c
 from linkwright.review.robots.figures import RobotMeasures, compare_figures
 from linkwright.review.robots.joined_values import JoinedDifferences, join_value_differences
 from linkwright.review.robots.omitted_calls import find_lost_call_reason, find_passed_name_reason, find_title
-from linkwright.review.robots.switched_parts import SwitchedParts
 from linkwright.review.robots.parent_changes import ParentChanges
+from linkwright.review.robots.switched_parts import SwitchedParts
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
@@ -164,6 +164,10 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
         if added_links.is_in_line_of_link(difference):
             continue
         if partial is not None and not partial.is_certain(difference):
+            if partial.may_be_defined_elsewhere(difference):
+                removal = format_difference(difference)
+                text = phrase("{change}, unless a missing package defines it", change=removal)
+                yield Change(text, location=_find_difference_location(pair, difference))
             continue
         if has_other_root and (difference.subject, difference.kind, difference.name) == ("link", "removed", old.root):
             continue
