@@ -111,7 +111,24 @@ def test_part_that_moves_into_missing_package_is_not_called_removed(package, com
     package.write({PATH: WITH_SENSOR})
     result = compare(package)
     assert breaking(result) == []
-    assert "link 'lidar' removed" not in sentences(subject(result, PATH))
+    found = sentences(subject(result, PATH))
+    assert "link 'lidar' removed" not in found
+    assert "link 'lidar' removed, unless a missing package defines it" in found
+    assert "joint 'lidar_joint' removed, unless a missing package defines it" in found
+    assert not any("lidar_base" in text or " to " in text for text in found if "unless" in text)
+
+
+def test_plugin_that_a_call_of_a_missing_macro_may_replace_is_told(sensor_package, compare):
+    plugin = '<plugin name="imu" filename="libgazebo_ros_imu.so"><topicName>imu</topicName></plugin>'
+    text = WITH_SENSOR.replace("</robot>", f"<gazebo>{plugin}</gazebo></robot>")
+    sensor_package.commit({PATH: text})
+    call = '<xacro:lidar parent="upper" rate="5"><origin xyz="0 0 2"/></xacro:lidar></robot>'
+    sensor_package.write({PATH: WITH_SENSOR.replace("</robot>", call)})
+    (found,) = [text for text in sentences(subject(compare(sensor_package), PATH)) if "unless" in text]
+    assert found == (
+        "extension 'gazebo' removed: plugin 'imu' (filename=libgazebo_ros_imu.so, topicName imu), "
+        "unless a missing package defines it"
+    )
 
 
 def test_package_that_commit_removes_is_not_left_out(package, compare):

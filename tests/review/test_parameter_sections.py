@@ -105,3 +105,40 @@ def test_launch_files_of_tests_are_not_breaking_in_ros_1_either(repository, comp
     repository.commit({"arm/package.xml": package, "arm/CMakeLists.txt": cmake, path: launch})
     repository.write({path: "<launch/>\n"})
     assert bool(breaking(compare(repository))) is bool(install)
+
+
+GAINS = {"/**": ["rho: 1.2", "p: 2.0", "i: 0.1", "d: 0.01", "limit: 5"]}
+SPLIT = {"/**": ["rho: 1.2"], "/pilot": ["p: 2.0", "i: 0.1", "d: 0.02", "limit: 5"]}
+
+
+def format_sections(sections: dict[str, list[str]]) -> str:
+    return "".join(
+        f"{node}:\n  ros__parameters:\n" + "".join(f"    {value}\n" for value in values)
+        for node, values in sections.items()
+    )
+
+
+def test_parameters_that_move_to_another_node_are_one_change(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: format_sections(GAINS)})
+    repository.write({PATH: format_sections(SPLIT)})
+    found = sentences(subject(compare(repository), PATH))
+    assert found == [
+        "moved from /** to /pilot: p, i, limit",
+        "/pilot.ros__parameters.d 0.02 added",
+        "/**.ros__parameters.d 0.01 removed",
+    ]
+
+
+@pytest.mark.parametrize("values", [["p: 2.0", "i: 0.1"], ["p: 1.0", "i: 1.1", "limit: 6"]])
+def test_few_equal_values_of_another_node_have_not_moved(repository, compare, values):
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: format_sections(GAINS)})
+    repository.write({PATH: format_sections({"/**": ["rho: 1.2"], "/pilot": values})})
+    assert not any(text.startswith("moved") for text in sentences(subject(compare(repository), PATH)))
+
+
+def test_topic_that_moves_to_another_node_stays_breaking(repository, compare):
+    old = {"/lidar": ["scan_topic: front/scan", "rate: 12", "range: 30", "noise: 0.1"]}
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: format_sections({**old, "/camera": ["width: 3"]})})
+    repository.write({PATH: format_sections({"/lidar": [], "/camera": ["width: 3", *old["/lidar"]]})})
+    result = compare(repository)
+    assert any("scan_topic" in text for text in breaking(result))

@@ -24,6 +24,7 @@ from linkwright.review.files.parameter_names import (
     is_parameter,
     list_part_paths,
 )
+from linkwright.review.files.parameters_between_nodes import find_parameter_moves
 from linkwright.review.files.plugin_packages import PluginPackages
 from linkwright.review.files.renamed_parts import find_edit, find_renamed_parts, get_parent, rename_parts
 from linkwright.review.files.value_changes import ValueChange, merge_values
@@ -151,7 +152,22 @@ def _find_changes(
             reason = reason or plugins.find_change_reason(name, old_value, value)
             reason = reason or find_name_reason(name, old_value, value)
             yield ValueChange(name, "changed", value_texts, location, reason)
-    for name, values_below in _find_unpaired_parts(new, old):
+    moves = list(
+        find_parameter_moves(
+            old,
+            new,
+            lambda name, value: any(
+                (
+                    moveit.find_removal_reason(name),
+                    rules.find_removal_reason(name, value.text),
+                    rules.find_addition_reason(name, value.text),
+                )
+            ),
+        )
+    )
+    pair.changes += (move.describe(pair.new_path, new) for move in moves)
+    moved = {path for move in moves for path in (*move.paths, *move.paths.values())}
+    for name, values_below in _find_unpaired_parts(_leave_out(new, moved), old):
         first = next(iter(values_below.values()))
         location = Location(pair.new_path, first.line, first.column)
         reason = plugins.find_addition_reason(values_below) if old else None
@@ -160,7 +176,7 @@ def _find_changes(
         )
         reason = reason or next((found for found in added_reasons if found is not None), None)
         yield ValueChange(name, "added", _list_values(name, values_below), location, reason)
-    for name, values_below in _find_unpaired_parts(old, new):
+    for name, values_below in _find_unpaired_parts(_leave_out(old, moved), new):
         first = next(iter(values_below.values()))
         location = Location(pair.old_path, first.line, first.column, is_old=True)
         reasons = (
@@ -171,6 +187,10 @@ def _find_changes(
         reason = reason or readers.find_key_reason(_find_lost_keys(next(iter(values_below)), new_keys))
         reason = reason or find_group_reason(pair, name, values_below)
         yield ValueChange(name, "removed", _list_values(name, values_below), location, reason)
+
+
+def _leave_out(values: Mapping[str, YamlValue], paths: Collection[str]) -> dict[str, YamlValue]:
+    return {path: value for path, value in values.items() if path not in paths}
 
 
 def _format_value_pair(old: YamlValue, new: YamlValue) -> tuple[str, str]:

@@ -30,6 +30,7 @@ from linkwright.review.parts.name_substitution import NameSubstitution, iterate_
 from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.plugins import find_sensor_reason
+from linkwright.review.simulators import find_simulator_reason
 from linkwright.xmltree import Element
 
 _MAX_CHARACTERS = 80
@@ -315,7 +316,11 @@ class _ReportedDifference:
         if difference.is_whole and not name:
             return find_extension_reason(Difference("extension", root, "removed"))
         changed = Difference("extension", root, "changed", name, difference.old or "-", difference.new)
-        return find_extension_reason(changed) or find_controller_file_reason(changed, self.pair.versions)
+        return (
+            find_extension_reason(changed)
+            or find_controller_file_reason(changed, self.pair.versions)
+            or find_simulator_reason(changed, self.pair.versions.new, self.pair.new_path)
+        )
 
     def _is_passed_to_macro(self, name: str) -> bool:
         """Return whether a call of a macro newly has a name, so that the macro may make the link or joint."""

@@ -40,8 +40,9 @@ from linkwright.review.robots.collisions import compare_collisions, may_change_c
 from linkwright.review.robots.figures import RobotMeasures, compare_figures
 from linkwright.review.robots.joined_values import JoinedDifferences, join_value_differences
 from linkwright.review.robots.omitted_calls import find_lost_call_reason, find_passed_name_reason, find_title
-from linkwright.review.robots.switched_parts import SwitchedParts
 from linkwright.review.robots.parent_changes import ParentChanges
+from linkwright.review.robots.switched_parts import SwitchedParts
+from linkwright.review.simulators import find_simulator_reason
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
@@ -164,6 +165,10 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
         if added_links.is_in_line_of_link(difference):
             continue
         if partial is not None and not partial.is_certain(difference):
+            if partial.may_be_defined_elsewhere(difference):
+                removal = format_difference(difference)
+                text = phrase("{change}, unless a missing package defines it", change=removal)
+                yield Change(text, location=_find_difference_location(pair, difference))
             continue
         if has_other_root and (difference.subject, difference.kind, difference.name) == ("link", "removed", old.root):
             continue
@@ -174,6 +179,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             or find_lost_call_reason(difference, comparison.differences)
             or find_passed_name_reason(difference)
             or find_controller_file_reason(difference, pair.versions)
+            or _find_simulator_reason(pair, difference)
             or _find_expression_reason(difference)
             or find_limits_reason(
                 difference.values if isinstance(difference, JoinedDifferences) else (difference,), new
@@ -205,6 +211,13 @@ def _make_root_change(old: Robot, new: Robot, frames: SharedFrames) -> Change:
         reason = phrase("programs that use '{old}' as the base frame of the robot get other transforms", old=old.root)
         return Change(text, Effect.BREAKING, reason)
     return Change(text, Effect.BREAKING, frame_reason(old.root))
+
+
+def _find_simulator_reason(pair: FilePair, difference: Difference) -> Phrase | None:
+    """Return the reason why hardware for another simulator is breaking, or None if it is not."""
+    location = _find_difference_location(pair, difference)
+    path = None if location is None or location.is_old else location.file
+    return find_simulator_reason(difference, pair.versions.new, path)
 
 
 def _find_expression_reason(difference: Difference) -> Phrase | None:

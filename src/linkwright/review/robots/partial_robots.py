@@ -75,12 +75,21 @@ class PartialPair:
         """Return whether both versions omit the same parts."""
         return not _has_more_omissions(self.old, self.new) and not _has_more_omissions(self.new, self.old)
 
+    def may_be_defined_elsewhere(self, difference: Difference) -> bool:
+        """Return whether a removed part may be among those that only the new version omits."""
+        is_removed = difference.kind == "removed" and not self._is_of_stand_in(difference)
+        return is_removed and _has_more_omissions(self.new, self.old)
+
+    def _is_of_stand_in(self, difference: Difference) -> bool:
+        """Return whether a difference is about a link or joint that replaces a missing one."""
+        names = {difference.name, difference.old or "" if difference.kind == "renamed" else ""}
+        return difference.subject in ("link", "joint") and bool(names & (self.old.stand_ins | self.new.stand_ins))
+
     def is_certain(self, difference: Difference) -> bool:
         """Return whether a difference cannot be due to omitted parts."""
         if difference.subject == "extension" and difference.name.startswith(_XACRO_PREFIX):
             return True
-        names = {difference.name, difference.old or "" if difference.kind == "renamed" else ""}
-        if difference.subject in ("link", "joint") and names & (self.old.stand_ins | self.new.stand_ins):
+        if self._is_of_stand_in(difference):
             return False
         if difference.kind == "added":
             return not _has_more_omissions(self.old, self.new)
@@ -109,11 +118,12 @@ def read_partial_robot(model: Model) -> PartialRobot | None:
     incomplete = frozenset(
         (element.tag, element.attributes.get("name", ""))
         for element in root.elements()
-        if element.tag in ("link", "joint")
-        and any(part.tag.startswith(_XACRO_PREFIX) for part in element.walk())
+        if element.tag in ("link", "joint") and any(part.tag.startswith(_XACRO_PREFIX) for part in element.walk())
     )
     stand_ins = frozenset(_connect_links(root))
-    return PartialRobot(Description.of_expansion(str(model.path), expansion), omissions, stand_ins, unevaluated, incomplete)
+    return PartialRobot(
+        Description.of_expansion(str(model.path), expansion), omissions, stand_ins, unevaluated, incomplete
+    )
 
 
 def _has_more_omissions(one: PartialRobot, other: PartialRobot) -> bool:
