@@ -50,6 +50,14 @@ def test_collada_keeps_mesh_with_unreadable_material(materials: str) -> None:
 
 
 @pytest.mark.extra("mesh")
+def test_collada_keeps_mesh_beside_an_element_at_an_unknown_place() -> None:
+    geometry = '<instance_geometry url="#g"/>'
+    misplaced = "<bind_material><technique_common/></bind_material>"
+    assert geometry in COLLADA
+    assert len(read_placed_meshes(COLLADA.replace(geometry, geometry + misplaced).encode(), "dae")) == 1
+
+
+@pytest.mark.extra("mesh")
 @pytest.mark.parametrize(
     ("proper", "malformed"),
     [

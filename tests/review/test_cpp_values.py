@@ -142,3 +142,28 @@ def test_a_name_may_be_a_sum_of_constants(repository, compare):
         "publisher 'drive/left/done' (Bool) renamed to 'drive/right/done' (Bool)",
         "parameter 'drive/gain' (1.0) renamed to 'drive/force' (1.0)",
     ], sentences(found)
+
+
+EMPTY = """class Drive : public rclcpp::Node {{
+public:
+  Drive() : Node("drive") {{
+{}    declare_parameter<std::string>("topic", topic_);
+  }}
+private:
+  std::string topic_;
+}};
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "expected"),
+    [("", "parameters added: 'topic' (\"\")"), ("    load(topic_);\n", "parameters added: 'topic'")],
+)
+def test_a_text_without_a_value_is_an_empty_default(repository, compare, before, expected):
+    text = EMPTY.format(before)
+    manifest = PACKAGE_XML.replace("arm_description", "arm")
+    declaration = '    declare_parameter<std::string>("topic", topic_);\n'
+    repository.commit({"arm/package.xml": manifest, "arm/src/drive.cpp": text.replace(declaration, "")})
+    repository.write({"arm/src/drive.cpp": text})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert [line for line in lines if line.startswith("parameters")] == [expected]

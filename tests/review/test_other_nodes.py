@@ -136,3 +136,43 @@ def test_the_only_node_of_a_source_is_renamed_although_another_node_has_the_old_
     repository.commit({"arm/package.xml": PACKAGE_XML, **files})
     repository.write({"arm/src/can.cpp": text.format("can")})
     assert breaking(compare(repository)) == ["node 'serial' renamed to 'can'"]
+
+
+BUILD = """project(arm)
+find_package(catkin REQUIRED COMPONENTS roscpp)
+catkin_package()
+add_library(drive src/drive.cpp)
+add_library(arm src/arm.cpp)
+add_executable(drive_node src/drive_main.cpp)
+target_link_libraries(drive_node drive)
+add_executable(arm_node src/arm_main.cpp)
+target_link_libraries(arm_node arm{})
+add_library(arm_plugins src/plugins.cpp)
+target_link_libraries(arm_plugins drive arm)
+"""
+READER = 'Drive::Drive(ros::NodeHandle & nh) {\n  nh.param<std::string>("frame_id", frame_, "base");\n}\n'
+PANEL = 'void Panel::load() {\n  nh_.param<std::string>("frame_id", frame_, "");\n}\n'
+
+
+@pytest.mark.parametrize(
+    ("linked", "plugin", "is_lost"),
+    [
+        ("", "PLUGINLIB_EXPORT_CLASS(arm::Panel, rviz::Panel)\n", True),
+        (" drive", "PLUGINLIB_EXPORT_CLASS(arm::Panel, rviz::Panel)\n", False),  # a program has both
+        ("", "PLUGINLIB_EXPORT_CLASS(arm::Panel, arm::Part)\n", False),  # the node may load the plugin
+    ],
+)
+def test_parameter_that_a_class_loses_although_programs_without_it_have_the_same(review_node, linked, plugin, is_lost):
+    main = "int main() {{ {} node; }}\n"
+    files = {
+        "arm/CMakeLists.txt": BUILD.format(linked),
+        "arm/src/drive.cpp": READER,
+        "arm/src/arm.cpp": READER.replace("Drive", "Arm"),
+        "arm/src/drive_main.cpp": main.format("Drive"),
+        "arm/src/arm_main.cpp": main.format("Arm"),
+        "arm/src/plugins.cpp": PANEL + plugin,
+    }
+    lines, broken = review_node(files, {"arm/src/drive.cpp": READER.replace('"frame_id"', '"target_frame_id"')})
+    renamed = "parameter 'frame_id' (\"base\") renamed to 'target_frame_id' (\"base\")"
+    assert (renamed in lines) is is_lost
+    assert bool(broken) is is_lost

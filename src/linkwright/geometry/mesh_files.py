@@ -174,16 +174,18 @@ def _load_scene(data: bytes, kind: str, **options: Any) -> Any:
 
 
 def _load_collada_scene(data: bytes, **options: Any) -> Any:
-    """Load the scene of a COLLADA file, ignoring materials that cannot be read.
+    """Load the scene of a COLLADA file, ignoring materials that cannot be read and elements at unknown places.
 
     pycollada can skip broken materials, but also skips the geometry that uses them. The first attempt is therefore
-    strict, and a file that it rejects is read again without the references to these materials.
+    strict, and a file that it rejects is read again without the references to these materials. In the strict attempt,
+    pycollada rejects an element that does not belong into a node, such as `bind_material` beside `instance_geometry`,
+    by a bare `raise`, which fails with RuntimeError.
     """
     from collada.common import DaeError  # type: ignore[import-untyped]  # pycollada has no types
 
     try:
         return _load_scene(data, "dae", ignore_broken=False, **options)
-    except DaeError:
+    except (DaeError, RuntimeError):
         return _load_scene(_remove_broken_materials(data), "dae", ignore_broken=True, **options)
 
 

@@ -63,6 +63,7 @@ from linkwright.review.sources.reasons import find_message_frame_reason, find_re
 from linkwright.review.sources.renamed_classes import find_renamed_classes
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
+from linkwright.review.sources.type_variants import TypeVariants
 from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.unmet_conditions import find_unmet_parameter
 from linkwright.review.sources.whole_sources import WholeSourcePair
@@ -122,13 +123,14 @@ class _SourcePair(WholeSourcePair):
         before = {get_comparison_name(item): item for item in old_names.of_kind(kind)}
         after = {get_comparison_name(item): item for item in new_names.of_kind(kind)}
         scoped = find_scoped(before, after, old_names, new_names) if kind is NameKind.PARAMETER else []
+        variants = TypeVariants(kind, old_names, new_names)
         shown = {get_comparison_name(item): item.type for _, item in scoped}  # the lines of these have their defaults
         changed = [
             NameChange(item, *detail)
             for name, item in after.items()
             if name in before and not has_same_types(before[name], item, old_names, new_names)
             for detail in compare_details(
-                replace(before[name], type=shown.get(name, before[name].type)),
+                variants.align(replace(before[name], type=shown.get(name, before[name].type)), item),
                 item,
                 has_other_class=has_other_class(before[name], item, old_names, new_names),
             )
@@ -182,6 +184,7 @@ class _SourcePair(WholeSourcePair):
             removed = [item for item in removed if item is not old_item]
             added = [item for item in added if item is not new_item]
         yield from self._compare_expressions(kind, removed, added)
+        removed, added = [*removed, *variants.removed], [*added, *variants.added]
         yield from self._report_unpaired(kind, removed, added, old_names)
 
     def _compare_moved(self, items: Sequence[SourceName]) -> Iterator[NameChange]:

@@ -85,6 +85,10 @@ def _is_output(text: str, name: str) -> bool:
     return re.search(output, text) is not None
 
 
+_EMPTY_TEXT = re.compile(r"(?<![\w:<])(?:std::)?string\s+(?P<name>\w+)\s*;")
+"""The declaration of a text without a value, which is empty."""
+
+
 class InitialValues:
     """The literals with which a C++ source initializes members and variables.
 
@@ -106,6 +110,8 @@ class InitialValues:
                 listed.setdefault(match["name"], set()).add(match["value"])
         values = initial | {name: found for name, found in listed.items() if name in declared}
         self._values = {name: next(iter(found)) for name, found in values.items() if len(found) == 1}
+        texts = {match["name"] for source in (*headers, text) for match in _EMPTY_TEXT.finditer(source)}
+        self._empty_texts = texts - initial.keys() - listed.keys()
 
     def find_default(self, expression: str, position: int) -> str | None:
         """Return the literal that a member has where a call passes it, or None if it is unknown.
@@ -116,6 +122,8 @@ class InitialValues:
         """
         match = _MEMBER.fullmatch(expression)
         value = None if match is None else self._values.get(match["name"])
+        if match is not None and value is None and self._is_empty_text(match["name"], position):
+            return '""'
         if match is None or value is None:
             return None
         start = max(self._text.rfind(mark, 0, position) for mark in ";{}") + 1
@@ -124,6 +132,15 @@ class InitialValues:
         read = re.compile(rf"\b{_READ}[^;()]*[,&.>\s]{name}\s*[,)]")
         is_changed = any(pattern.search(self._text, 0, start) for pattern in (assigned, read))
         return None if is_changed else value
+
+    def _is_empty_text(self, name: str, position: int) -> bool:
+        """Return whether a member or variable is a text without a value, and nothing uses it before a call."""
+        if name not in self._empty_texts:
+            return False
+        start = max(self._text.rfind(mark, 0, position) for mark in ";{}") + 1
+        before = _EMPTY_TEXT.sub("", self._text[:start])
+        initialized = re.search(rf"[:,]\s*{re.escape(name)}\s*[({{]", self._text)
+        return initialized is None and re.search(rf"\b{re.escape(name)}\b", before) is None
 
     def find_text(self, name: str) -> str | None:
         """Return the text with which a member is initialized and that nothing else sets; None for others."""

@@ -198,6 +198,7 @@ class SourceNames:
 
     Attributes:
         names: the distinct literal names.
+        typed_names: the literal names with a type, one for each place.
         expressions: the names that are expressions, whose values are unknown.
         defaults: the names that expressions have by default, by the text of the expression.
         counts: the number of places with a literal name, by kind and name.
@@ -242,6 +243,7 @@ class SourceNames:
     """
 
     names: list[SourceName] = field(default_factory=list)
+    typed_names: list[SourceName] = field(default_factory=list)
     expressions: list[SourceName] = field(default_factory=list)
     defaults: dict[str, str] = field(default_factory=dict)
     counts: Counter[tuple[NameKind, str]] = field(default_factory=Counter)
@@ -281,6 +283,8 @@ class SourceNames:
     def add(self, name: SourceName) -> None:
         """Add a literal name, or complete an equal name."""
         self.counts[name.kind, name.name] += 1
+        if name.type:
+            self.typed_names.append(name)
         for index, other in enumerate(self.names):
             if (other.kind, other.name) == (name.kind, name.name):
                 self.names[index] = _merge(other, name)

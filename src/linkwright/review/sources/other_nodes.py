@@ -9,6 +9,7 @@ from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, imports
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
+from linkwright.review.sources.separate_programs import are_in_separate_programs
 
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _KINDS = (*COMMUNICATION_KINDS, NameKind.PARAMETER)
@@ -20,7 +21,7 @@ def has_only_in_other_nodes(
     """Return whether the package has a name in both versions only in sources of other nodes.
 
     Such a name did not move. Sources that one of the files includes or imports, or that include it, are of the same
-    node.
+    node. Of parameters, sources count as other nodes, too, if no program is built of both.
 
     Args:
         item: a name that only the other version of a source has.
@@ -28,7 +29,25 @@ def has_only_in_other_nodes(
         other: the sources of the version that has the name.
         paths: the paths of the source in `side` and in `other`.
     """
-    return item.kind in _KINDS and _has_only_elsewhere(item, side, other, paths, lambda names: names.makes_node)
+    return item.kind in _KINDS and (
+        _has_only_elsewhere(item, side, other, paths, lambda names: names.makes_node)
+        or (item.kind is NameKind.PARAMETER and _has_only_in_other_programs(item, side, other, paths))
+    )
+
+
+def _has_only_in_other_programs(
+    item: SourceName, side: ChangedSources, other: ChangedSources, paths: Sequence[str]
+) -> bool:
+    """Return whether only sources of other programs of the package have a name, in both versions."""
+    package = side.find_package(paths[0])
+    owners = side.list_owners(item, paths[0]).keys()
+    return (
+        package is not None
+        and bool(owners)
+        and owners <= other.list_owners(item, paths[1]).keys()
+        and not any(_are_connected(side, paths[0], owner) for owner in owners)
+        and are_in_separate_programs(side.version, package, paths[0], owners)
+    )
 
 
 def is_new_in_plugin(item: SourceName, old: ChangedSources, new: ChangedSources, paths: Sequence[str]) -> bool:

@@ -1,0 +1,62 @@
+"""Find sources that no program of a package builds together."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from functools import lru_cache
+from pathlib import PurePosixPath
+
+from linkwright.review.files.build_facts import BuildFacts, FactKind
+from linkwright.review.installed_paths import read_package_facts
+from linkwright.review.versions import Version
+
+_RVIZ_CLASS = re.compile(r"EXPORT_CLASS\s*\([^;)]*\brviz(?:_common)?::\w+\s*\)")
+"""The export of a class that RViz loads, and no node of the package."""
+
+
+def are_in_separate_programs(version: Version, package: str, path: str, others: Iterable[str]) -> bool:
+    """Return whether the build file builds a source only into programs that contain none of other sources.
+
+    A plugin of RViz is in none of the programs.
+
+    Args:
+        version: the version of the repository.
+        package: the folder of the package.
+        path: the path of the source.
+        others: the paths of the other sources.
+    """
+    programs = _find_programs(version, package)
+    own = programs.get(path, frozenset())
+    return bool(own) and all(
+        own.isdisjoint(programs[other]) if other in programs else _RVIZ_CLASS.search(version.text(other)) is not None
+        for other in others
+    )
+
+
+@lru_cache(maxsize=16)
+def _find_programs(version: Version, package: str) -> dict[str, frozenset[str]]:
+    """Return the programs that each source of a package is built into, also through libraries, by path."""
+    facts = read_package_facts(version, package)
+    if facts is None:
+        return {}
+    kinds = (FactKind.EXECUTABLE, FactKind.BUILT_EXECUTABLE)
+    programs = {fact.name for fact in facts.facts if fact.kind in kinds}
+    found: dict[str, set[str]] = {}
+    for program in programs & facts.targets.keys():
+        for target in _find_linked_targets(facts, program):
+            for source in facts.targets[target].sources:
+                found.setdefault((PurePosixPath(package) / source).as_posix(), set()).add(program)
+    return {path: frozenset(names) for path, names in found.items()}
+
+
+def _find_linked_targets(facts: BuildFacts, program: str) -> set[str]:
+    """Return a target with the targets of the package that are linked to it."""
+    linked: set[str] = set()
+    remaining = [program]
+    while remaining:
+        name = remaining.pop()
+        if name not in linked:
+            linked.add(name)
+            remaining += facts.targets.keys() & facts.targets[name].libraries.keys()
+    return linked
