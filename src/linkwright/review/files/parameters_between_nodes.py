@@ -53,7 +53,7 @@ def find_parameter_moves(
     Args:
         old: the old values by path.
         new: the new values by path.
-        is_breaking: a function that returns whether a value is told by itself, because losing or adding it is breaking.
+        is_breaking: returns whether losing or adding a value is breaking, so that it needs a line of its own.
     """
     removed, added = _group_by_node(old, new, is_breaking), _group_by_node(new, old, is_breaking)
     for old_node, old_paths in removed.items():

@@ -204,7 +204,7 @@ def _find_number_change(old: Statement, new: Statement) -> Iterator[Difference]:
         if len({_count_factors(old.tokens, factors[0]), _count_factors(new.tokens, factors[1])}) == 1:
             yield Difference(f"{before} -> {after}", before, after, token)
             return
-        # the number became part of another product, so that the numbers alone say nothing about the value
+        # the number became part of another product, so that the numbers alone do not show the value
         shown = old.get_text(*factors[0]), new.get_text(*factors[1])
         if sum(map(len, shown)) <= _MAX_EXPRESSIONS:
             expression = add_context(new, *factors[1], " -> ".join(shown), match_brackets(new.tokens))

@@ -24,7 +24,7 @@ _BRACE = re.compile(r"[{}]")
 _CONDITIONAL_HEAD = re.compile(r"\b(?:if|else|case|switch|catch)\b")
 _DEFAULT_INDEX = {"param": 2, "get_parameter_or": 2}
 _DESCRIPTOR = re.compile(r"\s*(?:\w+\s*(?:::|\.)\s*)*\w*[dD]escriptor\w*\s*(?:\{.*\}\s*)?\Z", re.DOTALL)
-"""The argument of a declaration that describes the parameter and is no default."""
+"""An argument of a declaration that describes the parameter, and is not its default."""
 _TYPED_CALLS = frozenset({"declare_parameter"})
 _LOOP = r"\bfor\s*\(\s*(?:const\s+)?[\w:<>,\s*]*?[&*\s]+(?:{name}|\[\s*{name}\b[^\]]*\])\s*:\s*(?P<table>\w+)\s*\)"
 _TABLE = r"\b{table}\s*(?:\[\w*\]\s*)?(?:=\s*)?(?=\{{)"

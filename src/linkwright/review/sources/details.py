@@ -129,7 +129,7 @@ def _shows_type(old: SourceName, new: SourceName) -> bool:
 def _has_other_type(old: SourceName, new: SourceName) -> bool:
     """Return whether two versions of a parameter certainly have different types."""
     types = [dict(item.details).get(Detail.VALUE_TYPE) for item in (old, new)]
-    if None in types:  # a declaration without a default has a type only if it says so
+    if None in types:  # a declaration without a default has a type only if it states one
         return (Detail.DEFAULT, NO) in old.details and (Detail.DEFAULT, NO) in new.details
     kinds = [normalize_read_type(text or "") for text in types]
     return kinds[0] != kinds[1] or (kinds[0] == "list" and "list" not in types)

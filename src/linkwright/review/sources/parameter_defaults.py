@@ -25,7 +25,7 @@ _CPP_DECLARED = re.compile(
     rf"\b(?:declare_parameter(?:_if_not_declared)?|auto_declare)\s*{_TEMPLATE}\(\s*{_NODE}{_NAME}\s*,\s*{_TEXT}"
 )
 SUM = " + "
-"""What is between the names of parameters whose values are joined."""
+"""The text between the names of parameters whose values are joined."""
 _CPP_TEXT = re.compile(r"(?:std\s*::\s*)?(?:string\s*\(\s*)?[\"'](?P<text>[^\"\\]*)[\"']\s*\)?")
 _CPP_VARIABLE = re.compile(r"\s*(?:this\s*->\s*)?(?P<name>[A-Za-z_]\w*)\s*(?:\.c_str\(\)\s*)?")
 

@@ -12,7 +12,7 @@ from linkwright.review.sources.namespaces import HeaderChange
 
 _OR = " or "
 _VIRTUAL = (Detail.REQUIRED, YES)
-"""What a private function has that derived classes must define."""
+"""The detail of a private function that derived classes must define."""
 _KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
 
 
