@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import sentences, subject
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
 HEADER = """template <typename T>
@@ -81,3 +81,22 @@ def test_a_class_that_changes_the_name_or_is_unknown(repository, compare, call):
 def test_an_unchanged_name_is_no_change(repository, compare):
     lines = review_call(repository, compare, "a_(1), b_(2)", "")
     assert not any("added:" in line for line in lines)
+
+
+NAMED_NODE = """#include <rclcpp/rclcpp.hpp>
+class Arm : public rclcpp::Node
+{
+public:
+  explicit Arm(const std::string & name) : rclcpp::Node(name), rate_(10) { start(); }
+};
+int main(int argc, char ** argv)
+{
+  rclcpp::spin(std::make_shared<Arm>("arm"));
+}
+"""
+
+
+def test_the_constructor_of_a_class_gets_the_name_of_the_node(repository, compare):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": NAMED_NODE})
+    repository.write({"arm/src/arm.cpp": NAMED_NODE.replace('"arm"', '"gripper"')})
+    assert breaking(compare(repository)) == ["node 'arm' renamed to 'gripper'"]

@@ -153,22 +153,3 @@ def test_name_that_an_added_node_publishes_is_moved(repository, compare, added, 
     repository.write({path: LAUNCH.format(program="mixer", remap="").replace("</launch>", node)})
     found = [change for change in subject(compare(repository), path).changes if change.reason is not None]
     assert [str(change.reason) for change in found] == ([CERTAIN.format("/x")] if is_breaking else [])
-
-
-NAMED_NODE = """#include <rclcpp/rclcpp.hpp>
-class Arm : public rclcpp::Node
-{
-public:
-  explicit Arm(const std::string & name) : rclcpp::Node(name), rate_(10) { start(); }
-};
-int main(int argc, char ** argv)
-{
-  rclcpp::spin(std::make_shared<Arm>("arm"));
-}
-"""
-
-
-def test_the_constructor_of_a_class_gets_the_name_of_the_node(repository, compare):
-    repository.commit({**MANIFEST, "arm/src/arm.cpp": NAMED_NODE})
-    repository.write({"arm/src/arm.cpp": NAMED_NODE.replace('"arm"', '"gripper"')})
-    assert breaking(compare(repository)) == ["node 'arm' renamed to 'gripper'"]
