@@ -252,7 +252,8 @@ def test_missing_ros_programs_print_alternatives() -> None:
     program = "command_not_found_handle() { echo other $1; return 9; }\n"
     program += startup_script("bash", sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "gazebo"])
     program += "rosdep install; echo $?; gazebo --verbose; no_such_program; echo $?"
-    environment = {**os.environ, "LINKWRIGHT_SHELL": "/nowhere", "LINKWRIGHT_LANG": "en"}
+    # without the folder of Linkwright's programs, which a launch in this process may have appended and which has gazebo
+    environment = {**os.environ, "LINKWRIGHT_SHELL": "/nowhere", "LINKWRIGHT_LANG": "en", "PATH": os.defpath}
     result = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=False, env=environment)
     assert result.stdout.split("\n") == ["127", "other no_such_program", "9", ""]
     assert "command 'rosdep' does not exist" in result.stderr

@@ -81,8 +81,8 @@ def test_changed_parameters_of_a_node_of_ros1_are_named(review_changes, old, new
 
 
 def test_parameters_in_a_text_that_is_not_yaml_are_shown_as_it_is(review_changes):
-    text = "<rosparam>a: [$(arg x)}</rosparam>"
-    assert review_changes("", text)[0] == ["parameter 'YAML text' added: a: [$(arg x)}"]
+    argument, text = '<arg name="x" default="1"/>', "<rosparam>a: [$(arg x)}</rosparam>"
+    assert review_changes(argument, argument + text)[0] == ["parameter 'YAML text' added: a: [$(arg x)}"]
 
 
 def test_renamed_parameter_file_is_the_same_one(review_changes):
