@@ -62,7 +62,7 @@ def test_source_of_another_package_counts_if_it_has_the_node(repository, compare
     assert review(repository, compare, PUBLISHER, yaml, new, "lamp/src/lamp.cpp", node) == reasons
 
 
-SWITCH = "the data that 'publish_planning_scene' turns on is no longer published"
+SWITCH = "the data that 'publish_planning_scene' enables is no longer published"
 LAUNCH = """<launch>
   <arg name="publish" default="{}"/>
   <node pkg="moveit_ros_move_group" type="move_group" name="move_group">

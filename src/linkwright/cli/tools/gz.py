@@ -64,9 +64,11 @@ def _run_service(words: Sequence[str]) -> int:
     parser.add_argument("-l", "--list", action="store_true", help="list the services")
     parser.add_argument("-i", "--info", action="store_true", help="print the types of a service")
     parser.add_argument("-s", "--service", metavar="NAME", default="", help="the name of the service")
-    parser.add_argument("--reqtype", metavar="TYPE", help="the type of the request; known here")
-    parser.add_argument("--reptype", metavar="TYPE", help="the type of the response; known here")
-    parser.add_argument("--timeout", metavar="MS", type=int, default=_DEFAULT_TIMEOUT_MS, help="the timeout in ms")
+    parser.add_argument("--reqtype", metavar="TYPE", help="the type of the request; not needed")
+    parser.add_argument("--reptype", metavar="TYPE", help="the type of the response; not needed")
+    parser.add_argument(
+        "--timeout", metavar="MS", type=int, default=_DEFAULT_TIMEOUT_MS, help="the timeout in ms, at least 5000"
+    )
     parser.add_argument("-r", "--req", metavar="TEXT", help="the request, in the text format of protobuf")
     arguments = parser.parse_args(words)
     if arguments.list:

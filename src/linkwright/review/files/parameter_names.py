@@ -240,7 +240,7 @@ def find_switch_reason(parameter: str, old: str, new: str) -> Phrase | None:
         return phrase("the node no longer publishes its transform")
     match = _OUTPUT_SWITCH.search(parameter)
     name = "" if match is None else match[0].lstrip("./_ ")
-    return phrase("the data that '{name}' turns on is no longer published", name=name) if name else None
+    return phrase("the data that '{name}' enables is no longer published", name=name) if name else None
 
 
 def switches_transform(parameter: str) -> bool:

@@ -1,4 +1,4 @@
-"""Find variables, members and functions that only have another name, so that code that uses them is no other code."""
+"""Find variables, members and functions that were only renamed, because code that uses them has not changed."""
 
 from __future__ import annotations
 

@@ -72,7 +72,8 @@ class GzThermal(CameraPlugin[NoParameters]):
             self._info.publish(message)
         if self._images.is_wanted:
             rendered = self.render(camera, Channels.GEOMS)
-            self._publish_temperatures(self._images, rendered.geoms)  # type: ignore[arg-type]  # asked for
+            assert rendered.geoms is not None  # requested
+            self._publish_temperatures(self._images, rendered.geoms)
 
     def _publish_temperatures(self, output: Output, geoms: Pixels) -> None:
         temperatures = np.where(geoms < 0, self._ambient, self._temperatures.array()[geoms])
