@@ -14,6 +14,8 @@ from hypothesis import HealthCheck, settings
 
 from tests.domains import own_domain
 from tests.forked import ForkServer
+from tests.order import spread_waiting_files
+from tests.places import REPOSITORY
 from tests.repository_tools import load_tool
 
 # The duration of an example depends on the machine's load. With CI set, hypothesis draws the same examples each time.
@@ -43,6 +45,12 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
         gc.freeze()
         pytest.MonkeyPatch().setattr(gc, "get_freeze_count", lambda: 1)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Spread the files of tests that wait over those that compute; see docs/decisions/0041."""
+    items[:] = spread_waiting_files(items, REPOSITORY / "tests")
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

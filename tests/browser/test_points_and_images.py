@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 import pytest
 import yaml
+from playwright.sync_api import Error
 
 from linkwright.messages import get_message
 from tests.browser.conftest import count_frames, state, until, wait_until_equal
@@ -251,7 +253,10 @@ def compositing_layers(page: Any) -> list[str]:
     tools.send("LayerTree.enable")
     wait_until(lambda: page.evaluate(_CHANGE_LAYERS) and any(messages), pause=POLL_PERIOD_S)
     nodes = [layer["backendNodeId"] for layer in next(filter(None, reversed(messages))) if "backendNodeId" in layer]
-    elements = [tools.send("DOM.describeNode", {"backendNodeId": node})["node"] for node in nodes]
+    elements = []
+    for node in nodes:
+        with suppress(Error):  # the page removed the element after the report
+            elements.append(tools.send("DOM.describeNode", {"backendNodeId": node})["node"])
     tools.detach()
     return [" ".join([node["nodeName"], *node.get("attributes", [])]) for node in elements]
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import socket
 import sys
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Iterator, Sequence
 from contextlib import asynccontextmanager
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,7 @@ import pytest_asyncio
 from lsprotocol import types
 from pygls.lsp.client import LanguageClient
 
+from linkwright.process import forked
 from tests.measuring import coverage_options
 from tests.waiting import TIMEOUT_S
 
@@ -52,7 +56,12 @@ class Editor:
     Args:
         client: its connection.
         folder: the folder that it has opened.
+
+    Attributes:
+        server_id: the ID of the process of the language server.
     """
+
+    server_id: int
 
     def __init__(self, client: LanguageClient, folder: Path) -> None:
         self.client = client
@@ -126,6 +135,44 @@ def package(tmp_path: Path) -> Path:
     return folder
 
 
+_IMPORTED = (
+    "linkwright.cli.command",
+    "linkwright.cli.lsp",
+    "linkwright.descriptions.*",
+    "linkwright.language.*",
+    "linkwright.launch.frontend.*",
+    "linkwright.lint.*",
+    "linkwright.lsp.*",
+    "linkwright.messages.*",
+    "linkwright.packages.*",
+    "linkwright.sdf.*",
+    "linkwright.urdf.*",
+    "linkwright.xacro.*",
+)
+
+
+@cache
+def _fork_server() -> forked.ForkServer:
+    """Return the process from which language servers are forked; see docs/decisions/0081."""
+    return forked.ForkServer(_IMPORTED, [sys.executable, *coverage_options()])
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _end_of_fork_server() -> Iterator[None]:
+    yield
+    _fork_server().close()
+
+
+async def _start_forked(client: LanguageClient) -> forked.Program:
+    """Fork a language server, and connect a client with its standard input and output."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        await client.start_tcp(*listener.getsockname())
+        connection, _ = listener.accept()
+    with connection:
+        streams = (connection.fileno(), connection.fileno(), sys.__stderr__.fileno())
+        return _fork_server().start("linkwright", ["lsp"], cwd=Path.cwd(), env=os.environ, streams=streams)
+
+
 @asynccontextmanager
 async def connect_editor(
     package: Path,
@@ -135,7 +182,8 @@ async def connect_editor(
 ) -> AsyncIterator[Editor]:
     """Start the language server for an editor with some capabilities that has opened a package.
 
-    Capabilities that the server registers go into the queue. The options are options of the command.
+    Capabilities that the server registers go into the queue. The options are options of the command; with options, the
+    server starts as in an editor, without options it is forked where the system supports that.
     """
     client = LanguageClient("test", "1")
     editor = Editor(client, package)
@@ -146,7 +194,13 @@ async def connect_editor(
             if registrations is not None:
                 registrations.put_nowait(registration)
 
-    await client.start_io(sys.executable, *coverage_options(), "-m", "linkwright", "lsp", *options)
+    program = None
+    if options or not forked.IS_POSSIBLE:
+        await client.start_io(sys.executable, *coverage_options(), "-m", "linkwright", "lsp", *options)
+        editor.server_id = client._server.pid  # type: ignore[union-attr]
+    else:
+        program = await _start_forked(client)
+        editor.server_id = program.pid
     await client.initialize_async(
         types.InitializeParams(capabilities, workspace_folders=[types.WorkspaceFolder(package.as_uri(), package.name)])
     )
@@ -155,6 +209,8 @@ async def connect_editor(
     await client.shutdown_async(None)
     client.exit(None)
     await client.stop()
+    if program is not None:
+        assert program.wait(TIMEOUT_S) == 0
 
 
 @pytest_asyncio.fixture

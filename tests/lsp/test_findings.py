@@ -97,7 +97,7 @@ async def test_newest_text_of_large_file_is_checked(editor):
 async def test_burst_of_edits_of_large_file_leaves_no_processes(editor):
     text = MAIN.replace("</robot>", f"<!-- {'a' * MAX_CHARACTERS} -->\n</robot>")
     editor.open(MAIN_FILE, text.replace("xacro:bar", "xacro:barr"))
-    server = psutil.Process(editor.client._server.pid)  # type: ignore[union-attr]
+    server = psutil.Process(editor.server_id)
     await editor.until(MAIN_FILE, "XAC401")
     for number in range(10):
         editor.change(MAIN_FILE, f"{text}<!-- {number} -->")

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import psutil
 import pytest
+from lsprotocol import types
 
-from tests.lsp.conftest import MAIN
+from tests.lsp.conftest import MAIN, connect_editor
 
 FILE = "urdf/arm.urdf.xacro"
 
@@ -24,11 +25,12 @@ async def type_calls(editor, first: int, last: int) -> None:
 
 
 @pytest.mark.slow
-async def test_memory_does_not_grow_with_number_of_edits(editor):
-    editor.open(FILE)
-    await editor.until(FILE)
-    (server,) = (child for child in psutil.Process().children() if child.cmdline()[-1] == "lsp")
-    await type_calls(editor, 0, 300)
-    before = server.memory_info().rss
-    await type_calls(editor, 300, 1500)
-    assert (server.memory_info().rss - before) / 1e6 < 10
+async def test_memory_does_not_grow_with_number_of_edits(package):
+    async with connect_editor(package, types.ClientCapabilities(), None, "--stdio") as editor:
+        editor.open(FILE)
+        await editor.until(FILE)
+        server = psutil.Process(editor.server_id)
+        await type_calls(editor, 0, 300)
+        before = server.memory_info().rss
+        await type_calls(editor, 300, 1500)
+        assert (server.memory_info().rss - before) / 1e6 < 10

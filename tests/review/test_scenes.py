@@ -15,7 +15,7 @@ import pytest
 from linkwright.cli import main
 from linkwright.panels.export import html
 from linkwright.review import open_versions, review
-from linkwright.review.drawings import scenes
+from linkwright.review.drawings import images, scenes
 from linkwright.review.reports import as_html, scene_page
 from tests.places import needs_page
 from tests.repositories import PACKAGE, Repository
@@ -36,6 +36,12 @@ def make_stl(height: float) -> bytes:
         for face in faces
     ]
     return "\n".join(["solid a", *lines, "endsolid a", ""]).encode()
+
+
+@pytest.fixture(autouse=True)
+def _small_images(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw the images beside the scenes small, because they take longer than everything else."""
+    monkeypatch.setattr(images, "_SIZE", (80, 60))
 
 
 @pytest.fixture

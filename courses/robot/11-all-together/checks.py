@@ -1,6 +1,5 @@
 import importlib.util
 import math
-import os
 from functools import cache
 
 import yaml
@@ -8,6 +7,7 @@ from missions import NODE, PACKAGE, Copies, Driver, String, finish, last_error, 
 
 from linkwright import open_recording
 from linkwright.learning import NotYet, check
+from linkwright.learning.checks.domains import reserve_domain
 from linkwright.messages import deserialize
 from linkwright.xmltree import parse_file
 
@@ -408,7 +408,6 @@ RESTLESS_NODE = IDLE_NODE.replace("(Twist())", "(Twist(linear=Vector3(x=0.2), an
 def run_system_test(work):
     """Return the results of the learner's test with the learner's node, and with two wrong ones, by name."""
     work.package(PACKAGE).file(SYSTEM_TEST)
-    domain = int(os.environ.get("ROS_DOMAIN_ID", "0"))
     words = ["-m", "linkwright", "test", SYSTEM_TEST]
     with Copies(work) as copies:
         result = finish(copies.start(words, copies.make("right")), 50.0, SYSTEM_TEST)
@@ -417,10 +416,8 @@ def run_system_test(work):
         if result[0]:
             return {"": result}
         processes = {
-            name: copies.start(
-                words, copies.make(name, go_to_ball=node), ROS_DOMAIN_ID=str((domain + number) % 100 + 1)
-            )
-            for number, (name, node) in enumerate({"idle": IDLE_NODE, "restless": RESTLESS_NODE}.items())
+            name: copies.start(words, copies.make(name, go_to_ball=node), ROS_DOMAIN_ID=str(reserve_domain()))
+            for name, node in {"idle": IDLE_NODE, "restless": RESTLESS_NODE}.items()
         }
         return {"": result} | {name: finish(process, 50.0, SYSTEM_TEST) for name, process in processes.items()}
 

@@ -40,8 +40,12 @@ def draw_outlines(
         color: the color of the lines.
         per_pixel: the samples per pixel along a row.
     """
-    mask = bodies >= 0
     reach = max(1, round(_WIDTH_PIXELS * per_pixel))
+    window = find_window(bodies >= 0, reach)
+    if window is None:
+        return
+    light, alpha, bodies, is_visible = light[window], alpha[window], bodies[window], is_visible[window]
+    mask = bodies >= 0
     line = _dilate(mask, reach) & ~mask
     visible_line = line & _dilate(is_visible, reach)
     hidden_line = line & ~visible_line
@@ -59,10 +63,11 @@ def draw_outlines(
 
 def _tint(light: Floats, alpha: Floats, mask: NDArray[np.bool_], displayed: Floats) -> None:
     """Mix a color into samples as it is displayed, so that dark and bright surfaces change alike."""
-    opacity = alpha[mask][:, None]
-    shown = np.sqrt(light[mask] / np.maximum(opacity, np.float32(1e-6)))
-    mixed = shown * (1 - _TINT) + displayed * _TINT
-    light[mask] = mixed * mixed * opacity
+    opacity = alpha[mask]
+    divisor = np.maximum(opacity, np.float32(1e-6))
+    for channel, tint in zip(np.moveaxis(light, 2, 0), displayed * _TINT, strict=True):
+        mixed = np.sqrt(channel[mask] / divisor) * (1 - _TINT) + tint
+        channel[mask] = mixed * mixed * opacity
 
 
 def _find_borders(bodies: NDArray[np.int32], is_visible: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -79,28 +84,26 @@ def _find_borders(bodies: NDArray[np.int32], is_visible: NDArray[np.bool_]) -> N
     return border
 
 
+def find_window(mask: NDArray[np.bool_], margin: int) -> tuple[slice, slice] | None:
+    """Return the rows and columns that contain a mask and a margin around it; None for an empty mask."""
+    rows, columns = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
+    if not len(rows):
+        return None
+    first_row, first_column = max(0, int(rows[0]) - margin), max(0, int(columns[0]) - margin)
+    return slice(first_row, int(rows[-1]) + margin + 1), slice(first_column, int(columns[-1]) + margin + 1)
+
+
 def _dilate(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
     """Return the samples within a distance from a mask."""
     dilated = np.zeros_like(mask)
-    rows = len(mask)
-    widened: dict[int, NDArray[np.bool_]] = {}
-    for shift in range(-reach, reach + 1):
-        width = isqrt(reach * reach - shift * shift)
-        if width not in widened:
-            widened[width] = _widen(mask, width)
-        source = widened[width]
-        if shift >= 0:
-            dilated[shift:] |= source[: rows - shift]
-        else:
-            dilated[:shift] |= source[-shift:]
+    widened = mask.copy()
+    width, rows = 0, len(mask)
+    for shift in range(reach, -1, -1):
+        while width < isqrt(reach * reach - shift * shift):
+            width += 1
+            widened[:, width:] |= mask[:, :-width]
+            widened[:, :-width] |= mask[:, width:]
+        if shift < rows:
+            dilated[shift:] |= widened[: rows - shift]
+            dilated[: rows - shift] |= widened[shift:]
     return dilated
-
-
-def _widen(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:
-    """Return a mask extended to both sides along its rows."""
-    columns = mask.shape[1]
-    totals = np.zeros((len(mask), columns + 2 * reach + 1), np.int32)
-    totals[:, reach + 1 : reach + 1 + columns] = np.cumsum(mask, axis=1, dtype=np.int32)
-    totals[:, reach + 1 + columns :] = totals[:, reach + columns][:, None]
-    widened: NDArray[np.bool_] = totals[:, 2 * reach + 1 :] != totals[:, :columns]
-    return widened

@@ -22,7 +22,7 @@ from linkwright.picture.ground import (
 )
 from linkwright.picture.labels import draw_labels
 from linkwright.picture.occlusion import compute_ambient_light, compute_occlusion_reach
-from linkwright.picture.outlines import draw_outlines
+from linkwright.picture.outlines import draw_outlines, find_window
 from linkwright.picture.rasterizer import MAX_TRIANGLES, NOTHING, DepthBuffer, ScreenTriangles, VisibleTriangles
 from linkwright.picture.scene import Scene, camera_for
 from linkwright.picture.shading import Lights, Shader
@@ -160,7 +160,7 @@ class _Renderer:
             bodies[mask] = self._body_numbers[mesh.parts[layer.keys[mask] & (MAX_TRIANGLES - 1)]]
             is_visible = mask & (layer.keys <= opaque.keys)
             draw_outlines(light, alpha, bodies.reshape(alpha.shape), is_visible.reshape(alpha.shape), color, scale)
-        return _filter_samples(light, scale), _filter_samples(alpha, scale)
+        return _filter_samples(light, alpha, scale)
 
     def _peel(self, transparent: Indices, opaque: DepthBuffer) -> list[DepthBuffer]:
         """Return the transparent surfaces in front of the opaque ones, the nearest first."""
@@ -274,29 +274,48 @@ class _Renderer:
         return light, alpha
 
 
-def _filter_samples(samples: Floats, per_pixel: int) -> Floats:
-    """Return pixels as weighted averages of samples, shape (rows, columns, ...).
+def _filter_samples(light: Floats, alpha: Floats, per_pixel: int) -> tuple[Floats, Floats]:
+    """Return the light and opacity of pixels as weighted averages of samples.
 
     The averages of neighboring pixels overlap.
+
+    Args:
+        light: the light of samples multiplied by their opacity, shape (rows, columns, 3).
+        alpha: the opacity of samples, shape (rows, columns).
+        per_pixel: the samples per pixel along a row; `rows` and `columns` are multiples of it.
     """
-    return _filter_rows(_filter_rows(samples.swapaxes(0, 1), per_pixel).swapaxes(0, 1), per_pixel)
+    rows, columns = (length // per_pixel for length in alpha.shape)
+    pixels = np.zeros((4, rows, columns), np.float32)
+    window = find_window(alpha > 0.0, per_pixel)
+    if window is not None:
+        samples, covered = zip(*(_round_out(part, per_pixel) for part in window), strict=True)
+        for pixel, plane in zip(pixels, (*np.moveaxis(light, 2, 0), alpha), strict=True):
+            pixel[covered] = _filter_rows(_filter_rows(plane[samples].T, per_pixel).T, per_pixel)
+    return np.ascontiguousarray(np.moveaxis(pixels[:3], 0, 2)), pixels[3]
+
+
+def _round_out(samples: slice, per_pixel: int) -> tuple[slice, slice]:
+    """Return the range of all samples of the pixels that have samples in a range, and the range of these pixels."""
+    first, last = samples.start // per_pixel, -(-samples.stop // per_pixel)
+    return slice(first * per_pixel, last * per_pixel), slice(first, last)
 
 
 def _filter_rows(samples: Floats, per_pixel: int) -> Floats:
     """Return weighted averages along the first axis, one per pixel."""
-    count = len(samples) // per_pixel
     weights = _FILTERS[per_pixel]
-    total = np.zeros((count, *samples.shape[1:]), np.float32)
+    total = np.zeros_like(samples[::per_pixel])
+    product = np.empty_like(total)
     for place, weight in enumerate(weights):
         factor = np.float32(weight / sum(weights))
         offset = place - 1
         if offset < 0:
-            total[1:] += samples[per_pixel + offset :: per_pixel][: count - 1] * factor
+            of_previous_pixels = samples[per_pixel + offset :: per_pixel][: len(total) - 1]
+            total[1:] += np.multiply(of_previous_pixels, factor, out=product[1:])
             total[0] += samples[0] * factor
         elif offset < per_pixel:
-            total += samples[offset::per_pixel] * factor
+            total += np.multiply(samples[offset::per_pixel], factor, out=product)
         else:
-            total[:-1] += samples[offset::per_pixel] * factor
+            total[:-1] += np.multiply(samples[offset::per_pixel], factor, out=product[:-1])
             total[-1] += samples[-1] * factor
     return total
 

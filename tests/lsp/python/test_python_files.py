@@ -200,7 +200,7 @@ async def test_launch_file_combines_linkwright_and_ty_completions(editor: Editor
 
 async def find_children(editor: Editor) -> dict[str, psutil.Process]:
     """Wait until both servers run, and return their processes by name."""
-    server = psutil.Process(editor.client._server.pid)  # type: ignore[union-attr]
+    server = psutil.Process(editor.server_id)
     await eventually(lambda: {"ty", "ruff"} <= {child.name() for child in server.children()})
     return {child.name(): child for child in server.children()}
 
@@ -224,6 +224,6 @@ async def test_servers_end_with_killed_linkwright(workspace: Path) -> None:
     editor = await opened.__aenter__()
     editor.open(TALKER, language="python")
     children = await find_children(editor)
-    os.kill(editor.client._server.pid, signal.SIGKILL)
+    os.kill(editor.server_id, signal.SIGKILL)
     await eventually(lambda: not any(child.is_running() for child in children.values()))
     await asyncio.wait_for(editor.client.stop(), 10)

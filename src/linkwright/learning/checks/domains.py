@@ -14,9 +14,6 @@ _PORTS_PER_DOMAIN = 250
 
 _WAIT_S = 0.2
 
-_locks: list[socket.socket] = []
-"""Sockets that are open until the process ends, however it ends."""
-
 
 def reserve_domain() -> int:
     """Reserve a ROS domain for this process until the process ends, and return its ID.
@@ -31,12 +28,13 @@ def reserve_domain() -> int:
     start = os.getpid() % len(domains)
     while True:
         for domain in domains[start:] + domains[:start]:
-            if _lock_domain(domain):
+            if lock_domain(domain):
                 return domain
         time.sleep(_WAIT_S)
 
 
-def _lock_domain(domain: int) -> bool:
+def lock_domain(domain: int) -> bool:
+    """Reserve a domain until the process ends, however it ends, and return whether no other process has reserved it."""
     lock = socket.socket()
     try:
         lock.bind(("127.0.0.1", _FIRST_PORT + _PORTS_PER_DOMAIN * domain))
@@ -44,5 +42,5 @@ def _lock_domain(domain: int) -> bool:
     except OSError:
         lock.close()
         return False
-    _locks.append(lock)
+    lock.detach()  # the descriptor stays open
     return True
