@@ -1,8 +1,8 @@
 """Measure inverse kinematics and plans of an arm among a shelf and a table.
 
 Run it with ``python -m benchmarks planning``. The arm has six joints and cylinders for links. The poses and the starts
-and goals of plans are random configurations. The times are on the clock, because OMPL may wait. The limits are those of
-the splines that controllers execute.
+and goals of plans are random configurations; only problems count for which a search of the benchmark finds a path. The
+times are on the clock, because OMPL may wait. The limits are those of the splines that controllers execute.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tests.planning.arms import arm
 
 from benchmarks.measure import Row, show
+from benchmarks.reachable import has_path
 from linkwright.geometry.shapes import Box
 from linkwright.planning.collision_scene import CollisionScene, SceneObject
 from linkwright.planning.goals import Goal, JointTarget
@@ -27,6 +28,8 @@ from linkwright.planning.timing import Trajectory
 
 _POSE_COUNT, _PLAN_COUNT = 1000, 100
 _IK_TIMEOUT_S = 0.05
+_PROOF_TIMEOUT_S = 60.0
+"""The time in s in which a path must be found for a problem to count."""
 _MAX_JERK = 50.0
 """The limit of each joint's jerk in rad/s3."""
 _BOXES = (
@@ -72,8 +75,8 @@ def _measure_plans(random: np.random.Generator) -> list[Row]:
     group = replace(arm().group, max_jerks=np.full(len(arm().indexes), _MAX_JERK))
     planner, seconds, solved_count, collision_count = MotionPlanner(arm().model, scene), [], 0, 0
     ratios = np.zeros(3)
-    for _ in range(_PLAN_COUNT):
-        start, end = (_sample_free_positions(random, scene) for _ in range(2))
+    problems, discarded_count = _draw_problems(random, scene)
+    for start, end in problems:
         targets = {name: JointTarget(end[arm().model.index(name)]) for name in arm().group.joint_names}
         begin = perf_counter()
         try:
@@ -89,6 +92,7 @@ def _measure_plans(random: np.random.Generator) -> list[Row]:
         Row("plan with its trajectory", 1000.0 * float(np.median(seconds)), "ms", "300 ms"),
         Row("the same, at most for 90 % of the problems", 1000.0 * float(np.quantile(seconds, 0.9)), "ms"),
         Row("solved problems", 100.0 * solved_count / _PLAN_COUNT, "%", "95 %"),
+        Row("drawn problems without a path that was found in 60 s, which do not count", float(discarded_count), ""),
         Row("executed motions that collide", float(collision_count), "", "0"),
         Row("largest velocity", 100.0 * float(ratios[0]), "% of its limit", "100 %"),
         Row("largest acceleration", 100.0 * float(ratios[1]), "% of its limit", "100 %"),
@@ -115,6 +119,28 @@ def _is_motion_free(trajectory: Trajectory, start: NDArray[np.float64], scene: C
         if not scene.is_free(positions):
             return False
     return True
+
+
+def _draw_problems(
+    random: np.random.Generator, scene: CollisionScene
+) -> tuple[list[tuple[NDArray[np.float64], NDArray[np.float64]]], int]:
+    """Return starts and ends that a path connects, and the number of drawn ones for which none was found."""
+    positions, indexes = arm().positions(), arm().indexes
+
+    def is_free(configuration: NDArray[np.float64]) -> bool:
+        positions[indexes] = configuration
+        return scene.is_free(positions)
+
+    problems: list[tuple[NDArray[np.float64], NDArray[np.float64]]] = []
+    discarded_count = 0
+    while len(problems) < _PLAN_COUNT:
+        start, end = (_sample_free_positions(random, scene) for _ in range(2))
+        ends = start[indexes], end[indexes]
+        if has_path(*ends, lambda: arm().group.sample(random), is_free, _PROOF_TIMEOUT_S):
+            problems.append((start, end))
+        else:
+            discarded_count += 1
+    return problems, discarded_count
 
 
 def _sample_free_positions(random: np.random.Generator, scene: CollisionScene) -> NDArray[np.float64]:

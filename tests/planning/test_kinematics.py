@@ -72,6 +72,23 @@ class TestChainSolver:
         target = np.array((3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
         assert solver.solve(target, arm().positions(), 0.05) is None
 
+    def test_busy_computer_does_not_end_the_search_at_its_first_attempts(self) -> None:
+        solver, solved = ChainSolver(arm().model, arm().group, "tool"), 0
+        for positions, start in zip(random_positions(100), random_positions(100, seed=2), strict=True):
+            arm().model.move(positions)
+            solved += solver.solve(arm().model.link_pose("tool"), start, 0.0) is not None
+        assert solved >= 98
+
+    def test_poses_with_a_stretched_wrist_are_reached_without_a_restart(self) -> None:
+        solver, random, reached = ChainSolver(arm().model, arm().group, "tool"), np.random.default_rng(3), 0
+        for positions in random_positions(100):
+            positions[arm().model.index("bend")] = 1e-3
+            arm().model.move(positions)
+            target, start = arm().model.link_pose("tool"), positions.copy()
+            start[arm().indexes] += random.normal(0.0, 0.03, len(arm().indexes))
+            reached += solver.solve_from(target, start) is not None
+        assert reached >= 95
+
     def test_refused_solution_leads_to_another_one(self) -> None:
         start = arm().positions(lift=0.5, elbow=1.0, bend=0.4)
         arm().model.move(start)

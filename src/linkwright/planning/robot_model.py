@@ -24,10 +24,12 @@ class PlacedShape(NamedTuple):
     Attributes:
         shape: a simple shape, or the corners of a convex hull in m, shape (corners, 3).
         pose: the pose of the shape, shape (7,).
+        center: the point in the frame of the shape from which a hull grows; None for the mean of its corners.
     """
 
     shape: SimpleShape | Array
     pose: Array
+    center: Array | None = None
 
 
 Shapes = Mapping[str, Sequence[PlacedShape]]

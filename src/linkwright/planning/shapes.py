@@ -1,6 +1,8 @@
-"""The collision shapes of a robot's links, with each mesh replaced by its convex hull."""
+"""The collision shapes of a robot's links, with each mesh replaced by convex parts that contain it."""
 
 from __future__ import annotations
+
+from itertools import chain
 
 import numpy as np
 
@@ -9,6 +11,7 @@ from linkwright.geometry.arrays import Array, row_from_pose
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.inertia.mesh_library import MeshLibrary
+from linkwright.planning.convex_parts import split_into_hulls
 from linkwright.planning.robot_model import PlacedShape
 from linkwright.urdf import Collision, Mesh, Robot
 
@@ -26,21 +29,36 @@ def robot_shapes(robot: Robot, meshes: MeshLibrary) -> tuple[dict[str, list[Plac
     errors: list[LinkwrightError] = []
     for name, link in robot.links.items():
         converted = [_try_to_convert(collision, meshes, errors) for collision in link.collisions]
-        if placed_shapes := [placed_shape for placed_shape in converted if placed_shape is not None]:
+        if placed_shapes := list(chain.from_iterable(converted)):
             shapes[name] = placed_shapes
     return shapes, errors
 
 
-def _try_to_convert(collision: Collision, meshes: MeshLibrary, errors: list[LinkwrightError]) -> PlacedShape | None:
+def _try_to_convert(collision: Collision, meshes: MeshLibrary, errors: list[LinkwrightError]) -> list[PlacedShape]:
     try:
-        return convert_collision(collision, meshes)
+        return _convert_to_parts(collision, meshes)
     except LinkwrightError as error:
         errors.append(error)
-        return None
+        return []
+
+
+def _convert_to_parts(collision: Collision, meshes: MeshLibrary) -> list[PlacedShape]:
+    """Return the shapes of a collision: several for a mesh that fills only a part of its hull.
+
+    Raises:
+        LinkwrightError: the mesh cannot be read.
+    """
+    if isinstance(collision.geometry, Mesh):
+        mesh, pose = meshes.load(collision.geometry, collision.element), row_from_pose(collision.origin)
+        if parts := split_into_hulls(mesh.vertices, mesh.faces):
+            center = np.concatenate(parts).mean(axis=0)
+            return [PlacedShape(corners, pose, center) for corners in parts]
+    shape = convert_collision(collision, meshes)
+    return [] if shape is None else [shape]
 
 
 def convert_collision(collision: Collision, meshes: MeshLibrary) -> PlacedShape | None:
-    """Return the shape of a collision, or None if it has no volume.
+    """Return the shape of a collision, the hull for a mesh, or None if it has no volume.
 
     Raises:
         LinkwrightError: the mesh cannot be read.
@@ -77,11 +95,11 @@ def hull_corners(points: Array) -> Array | None:
 
 
 def scale_shape(placed_shape: PlacedShape, factor: float) -> PlacedShape:
-    """Return a shape that is larger by a factor; a hull grows around the mean of its corners."""
-    shape, pose = placed_shape
+    """Return a shape that is larger by a factor; a hull grows around its center."""
+    shape, pose, center = placed_shape
     if isinstance(shape, np.ndarray):
-        center = shape.mean(axis=0)
-        return PlacedShape(center + factor * (shape - center), pose)
+        center = shape.mean(axis=0) if center is None else center
+        return PlacedShape(center + factor * (shape - center), pose, center)
     if isinstance(shape, Box):
         x, y, z = shape.size
         return PlacedShape(Box((factor * x, factor * y, factor * z)), pose)

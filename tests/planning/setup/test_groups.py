@@ -98,6 +98,17 @@ class TestFoundGroups:
         assert list(groups) == ["arm"]
         assert groups["arm"].joints == ("joint_1", "joint_2", "joint_3", "joint_4")
 
+    def test_first_joint_that_turns_a_head_too_belongs_to_the_arm(self) -> None:
+        head = link("head", 0.05) + joint("head_pan", "link_1", "head")
+        groups = by_name(robot(link("base"), chain("base", "", 7), head))
+        assert groups["arm"].joints == tuple(f"joint_{index}" for index in range(1, 8))
+        assert groups["arm"].base == "base"
+
+    def test_torso_that_lifts_a_head_too_does_not_belong_to_the_arm(self) -> None:
+        torso = link("torso", 0.2) + joint("lift", "base", "torso", kind="prismatic", limits=(0.0, 0.3))
+        head = link("head", 0.05) + joint("head_pan", "torso", "head")
+        assert by_name(robot(link("base"), torso, chain("torso", "", 6), head))["arm"].base == "torso"
+
     def test_arm_whose_last_joint_is_continuous_is_no_wheel(self) -> None:
         text = chain("base", "", 2) + link("end") + joint("roll", "link_2", "end", kind="continuous")
         assert by_name(robot(link("base"), wheels("base"), text))["arm"].joints == ("joint_1", "joint_2", "roll")

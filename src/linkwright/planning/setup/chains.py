@@ -47,6 +47,8 @@ def find_chains(bodies: list[Body]) -> list[Chain]:
             long_children = [child for child in children if counts[child] >= MIN_ARM_JOINTS]
             if len(children) == 1:
                 chain.append(children[0])
+            elif len(long_children) == 1 and _turns_arm(bodies, chain):
+                chain.append(long_children[0])
             elif number_of_joints < MIN_ARM_JOINTS:
                 starts += [[child] for child in reversed(children)]
                 break
@@ -63,6 +65,15 @@ def find_chains(bodies: list[Body]) -> list[Chain]:
                 starts += [[child] for child in reversed(children)]
                 break
     return sorted(found, key=lambda arm: arm.bodies)
+
+
+def _turns_arm(bodies: list[Body], chain: list[int]) -> bool:
+    """Return whether joints before a branch belong to the only arm behind it, which turns a head or a camera too.
+
+    A torso that is lifted is not a part of the arm.
+    """
+    types = {joint.type for number in chain if bodies[number].is_active and (joint := bodies[number].joint)}
+    return bool(types) and types <= {"revolute", "continuous"}
 
 
 def is_wheel(bodies: list[Body], number: int) -> bool:

@@ -80,7 +80,7 @@ def _fixed_finger(robot: Robot, shapes: Shapes, group: PlanningGroup) -> str:
 def _center(placed_shapes: Iterable[PlacedShape]) -> Array:
     """Return the mean center of shapes in the frame of their link, in m, shape (3,)."""
     centers = []
-    for shape, pose in placed_shapes:
+    for shape, pose, _ in placed_shapes:
         is_simple = isinstance(shape, (Box, Sphere, Cylinder, Capsule))
         offset = np.zeros(3) if is_simple else np.asarray(shape).mean(axis=0)
         centers.append(matrix_from_pose(pose)[:3] @ np.append(offset, 1.0))
