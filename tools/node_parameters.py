@@ -132,6 +132,8 @@ def _iterate_plugins() -> Iterator[tuple[str, str, str, str]]:
     )
     for kind in _list_layer_types():
         yield "controller_server", "local_costmap", "plugins", kind
+    for kind in ("KeepoutFilter", "SpeedFilter"):
+        yield "controller_server", "local_costmap", "filters", f"nav2_costmap_2d::{kind}"
 
 
 Declarations = dict[str, dict[str, dict[str, Any]]]
@@ -253,7 +255,8 @@ def _iterate_plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
         parameter_values = {list_parameter: names, f"{_PLUGIN}.plugin": kind}
         rules = ParameterRules()
         if node != executable:
-            parameter_values[f"{_PLUGIN}.observation_sources"] = _ITEM
+            required = "filter_info_topic" if list_parameter == "filters" else "observation_sources"
+            parameter_values[f"{_PLUGIN}.{required}"] = _ITEM
             for name, value in parameter_values.items():
                 rules.set(f"/{node}/{node}", name, value)
         package = next(package for package, name in EXECUTABLES if name == executable)

@@ -6,7 +6,7 @@ import asyncio
 import socket
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 from launch.actions import GroupAction, OpaqueFunction, SetEnvironmentVariable
@@ -29,22 +29,38 @@ Write = Callable[[str, str], Path]
 WORLD = GAZEBO_PACKAGE / "worlds" / "playground.world"
 
 
+class SpawnedEntity(NamedTuple):
+    """The name, description and x of a requested entity."""
+
+    name: str
+    description: str
+    x: float
+
+
 class Server(SingleNode):
     """A substitute for the simulation that ends when one entity was spawned, or immediately."""
 
     DEFAULT_NAME = "gazebo"
 
-    def __init__(self, graph: Graph, options: NodeOptions, spawned: list[Any] | None) -> None:
+    def __init__(self, graph: Graph, options: NodeOptions, spawned: list[SpawnedEntity] | None) -> None:
         self._node, self.words = create_node(graph, options, self.DEFAULT_NAME)
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._spawned = spawned
         if spawned is None:
             self.finished.set_result(0)
         self._node.create_service(get_service("gazebo_msgs/srv/SpawnEntity"), "/spawn_entity", self._spawn)
+        self._node.create_service(get_service("ros_gz_interfaces/srv/SpawnEntity"), "/world/test/create", self._create)
 
     def _spawn(self, request: Any, response: Any) -> Any:
+        return self._record(SpawnedEntity(request.name, request.xml, request.initial_pose.position.x), response)
+
+    def _create(self, request: Any, response: Any) -> Any:
+        factory = request.entity_factory
+        return self._record(SpawnedEntity(factory.name, factory.sdf, factory.pose.position.x), response)
+
+    def _record(self, entity: SpawnedEntity, response: Any) -> Any:
         assert self._spawned is not None
-        self._spawned.append(request)
+        self._spawned.append(entity)
         response.success = True
         self.finished.set_result(0)
         return response
@@ -62,7 +78,7 @@ class Simulators:
     def __init__(self) -> None:
         self.started: list[tuple[str, dict[str, Any], list[str]]] = []
         self.environments: list[dict[str, str]] = []
-        self.spawned: list[Any] | None = None
+        self.spawned: list[SpawnedEntity] | None = None
 
     def entry_point(self, package: str) -> Any:
         def start(graph: Graph, options: NodeOptions) -> Server:
@@ -333,9 +349,9 @@ async def test_tutorial_launch_files_spawn_robot(
     finder = PackageFinder(start=GAZEBO_PACKAGE, environment={})
     launched = await launch(IncludeLaunchDescription(path, launch_arguments=arguments.items()), finder=finder, **ends)
     assert launched.succeeded, launched.err
-    (request,) = simulators.spawned
-    assert (request.name, request.initial_pose.position.x) == ("mbot", -1.5)
-    assert all(part in request.xml for part in parts)
+    (entity,) = simulators.spawned
+    assert (entity.name, entity.x) == ("mbot", -1.5)
+    assert all(part in entity.description for part in parts)
     ((_, parameters, _),) = simulators.started
     assert parameters["world"] == str(WORLD)
 

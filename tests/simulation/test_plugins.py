@@ -158,6 +158,13 @@ def test_plugin_without_namespace_uses_robot_namespace():
     )
 
 
+@pytest.mark.parametrize("tag", ["robotNamespace", "robot_namespace"])
+def test_plugin_that_ros_1_lacks_does_not_read_robot_namespace(tag):
+    element = _element(f"<{tag}>/old</{tag}>")
+    element.attributes["filename"] = "libgazebo_ros2_control.so"
+    assert read_node_description("control", element, "/spawned").full_name == "/spawned/control"
+
+
 @asynccontextmanager
 async def running_server(
     *parts: str, options: ServerOptions | None = None, step: float = 0.001, gravity: str = "0 0 -9.81"

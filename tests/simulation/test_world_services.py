@@ -9,6 +9,8 @@ import pytest
 from linkwright.graph import LogLevel
 from linkwright.messages import get_message
 from linkwright.simulation.description_files import read_model_file
+from linkwright.simulation.gz_services import CREATE
+from linkwright.simulation.nodes.gz_requests import create_request
 from tests.simulation.test_server import URDF, simulator
 from tests.simulation.worlds import box, finder
 
@@ -75,8 +77,20 @@ async def test_pose_of_request_replaces_pose_of_model(tmp_path):
     async with simulator(tmp_path) as session:
         assert await create(session, sdf=SDF, pose=pose_at(2.0, 3.0))
         assert session.simulator.server.simulation.model_pose("ball")[:3] == pytest.approx((2.0, 0.0, 3.0))
-        assert await create(session, name="second", sdf=SDF)
-        assert session.simulator.server.simulation.model_pose("second")[:3] == pytest.approx((0.0, 0.0, 7.0))
+        assert await create(session, name="second", sdf=SDF, pose=pose_at(0.0, 0.0))
+        on_ground = (0.0, 0.0, 0.1)  # raised by the radius
+        assert session.simulator.server.simulation.model_pose("second")[:3] == pytest.approx(on_ground)
+
+
+async def test_request_of_gz_without_pose_keeps_pose_of_model(tmp_path):
+    description = SDF.replace('"', "'")
+    async with simulator(tmp_path) as session:
+        request = create_request(CREATE, f'sdf: "{description}"')
+        await session.call(CREATE.ros_type, "/world/test/create", entity_factory=request.entity_factory)
+        assert session.simulator.server.simulation.model_pose("ball")[:3] == pytest.approx((0.0, 0.0, 7.0))
+        request = create_request(CREATE, f'name: "second" sdf: "{description}" pose: {{position: {{x: 2 z: 3}}}}')
+        await session.call(CREATE.ros_type, "/world/test/create", entity_factory=request.entity_factory)
+        assert session.simulator.server.simulation.model_pose("second")[:3] == pytest.approx((2.0, 0.0, 3.0))
 
 
 def test_relative_paths_in_file_are_relative_to_it(tmp_path):

@@ -142,14 +142,28 @@ class TestProcessNodes:
             ("a: {ros__params: {b: 1}}", "error[GRAPH212]"),
         ],
     )
-    async def test_malformed_parameter_file_is_reported_before_start(
+    async def test_node_with_malformed_parameter_file_does_not_start(
         self, launch, ros: PackageFinder, write: Write, text: str, message: str
     ) -> None:
         path = write("p.yaml", text)
-        result = await launch(Node(package="arm", executable="tell", parameters=[str(path)]), finder=ros)
+        failing = Node(package="arm", executable="tell", parameters=[str(path)], on_exit=LogInfo(msg="it has ended"))
+        other = Node(package="arm", executable="tell", output="screen", arguments=["other"])
+        result = await launch(failing, other, finder=ros)
         assert message in result.err
         assert "p.yaml:1" in result.err
-        assert "process started" not in result.err
+        assert "[tell-1]: node has not started" in result.err
+        assert "it has ended" in result.err
+        assert result.err.count("process started") == 1
+        assert "other" in result.out
+        assert not result.succeeded
+
+    async def test_hosted_node_with_malformed_parameter_file_does_not_start(self, launch, write: Write) -> None:
+        path = write("p.yaml", "talker: 5")
+        node = Node(package="demo_nodes_py", executable="talker", parameters=[str(path)])
+        result = await launch(node, LogInfo(msg="the launch goes on"))
+        assert "error[GRAPH212]" in result.err
+        assert "started in the launcher's process" not in result.err
+        assert "the launch goes on" in result.err
         assert not result.succeeded
 
     @pytest.mark.parametrize(

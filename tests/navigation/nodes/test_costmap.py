@@ -12,7 +12,9 @@ from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, Parameter
 from linkwright.graph.lifecycle.states import TransitionCallbackReturn
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL
+from linkwright.navigation.grids.occupancy import occupancy_message
 from linkwright.navigation.nodes.costmap import make_costmap
+from linkwright.navigation.nodes.costmap_filter_info_server import CostmapFilterInfoServer
 from linkwright.nodes import NodeOptions
 from tests.navigation.nodes.fake_robot import FakeRobot, make_room_cells
 
@@ -259,23 +261,86 @@ async def test_changed_parameters_take_effect(robot, start):
 async def test_unsupported_layers_and_filters_are_reported_and_ignored(robot, start, log):
     start(
         plugins=["static_layer", "sonar"],
-        filters=["keepout_filter"],
+        filters=["binary_filter"],
         **{
             "sonar.plugin": "my_package::Sonar",
             "sonar.topics": ["/sonar"],
-            "keepout_filter.enabled": True,
+            "binary_filter.plugin": "nav2_costmap_2d::BinaryFilter",
+            "binary_filter.enabled": True,
         },
     )
     texts = [record.text for record in log]
     assert "layers of type my_package::Sonar are not supported: the costmap ignores 'sonar'" in texts
-    assert "costmap filters are not supported: the costmap ignores keepout_filter" in texts
+    kind = "nav2_costmap_2d::BinaryFilter"
+    assert f"filters of type {kind} are not supported: the costmap ignores 'binary_filter'" in texts
     assert "layers that 'plugins' does not name are ignored: obstacle_layer" in texts
     assert not [text for text in texts if "is not a parameter" in text or "are not read" in text]
+
+
+def filter_parameters(name: str, kind: str) -> dict[str, object]:
+    return {
+        "filters": [name],
+        f"{name}.plugin": f"nav2_costmap_2d::{kind}",
+        f"{name}.filter_info_topic": "/filter_info",
+        f"{name}.speed_limit_topic": "/speed_limit",
+    }
+
+
+def publish_mask(robot, value: int) -> None:
+    """Publish a mask of the room whose left half has a value."""
+    mask = make_room_cells()
+    mask.cells[:] = 0
+    mask.cells[:, :40] = value
+    publisher = robot.node.create_publisher("nav_msgs/msg/OccupancyGrid", "/mask", DESCRIPTION_QOS)
+    publisher.publish(occupancy_message(mask, "map", robot.stamp()))
+
+
+def start_info_server(robot, **parameters):
+    values = {"filter_info_topic": "/filter_info", "mask_topic": "/mask", "autostart_node": True, **parameters}
+    return CostmapFilterInfoServer(robot.graph, NodeOptions(parameters=values))
+
+
+async def test_keepout_zone_of_mask_is_lethal_until_filter_is_switched_off(robot, start):
+    server = start_info_server(robot)
+    publish_mask(robot, 100)
+    node = start(**filter_parameters("keepout_filter", "KeepoutFilter"))
+    robot.publish_map(make_room_cells())
+    robot.publish_pose()
+    await robot.run(0.5)
+    zone, outside = np.array([1.0, 1.5]), np.array([3.0, 1.5])
+    assert (node.costmap.cost_at(zone), node.costmap.cost_at(outside)) == (LETHAL, FREE)
+    client = robot.node.create_client(
+        get_service("std_srvs/srv/SetBool"), "/global_costmap/keepout_filter/toggle_filter"
+    )
+    future = client.call_async(client.srv_type.Request(data=False))
+    await robot.run(0.3)
+    assert future.result().message == "Disabled"
+    assert node.costmap.cost_at(zone) == FREE
+    node.set_parameters([Parameter("keepout_filter.enabled", value=True)])
+    await robot.run(0.3)
+    assert node.costmap.cost_at(zone) == LETHAL
+    server.close()
+
+
+async def test_speed_limit_of_mask_is_published(robot, start):
+    server = start_info_server(robot, type=1, base=100.0, multiplier=-1.0)
+    publish_mask(robot, 70)
+    limits: list = []
+    robot.node.create_subscription("nav2_msgs/msg/SpeedLimit", "/speed_limit", limits.append, 10)
+    start(**filter_parameters("speed_filter", "SpeedFilter"))
+    robot.publish_map(make_room_cells())
+    robot.publish_pose(1.0, 1.5)
+    await robot.run(0.5)
+    robot.publish_pose(3.0, 1.5)
+    await robot.run(0.5)
+    assert [(limit.percentage, limit.speed_limit) for limit in limits] == [(True, 30.0), (True, 0.0)]
+    server.close()
 
 
 @pytest.mark.parametrize(
     ("parameters", "reason"),
     [
+        ({"filters": ["keepout"]}, "parameter 'keepout.plugin' of 'global_costmap' is not set"),
         ({"resolution": 0.0}, "parameter 'resolution' of 'global_costmap' cannot be '0.0'"),
         ({"footprint": "[[1, 2]]"}, "'[[1, 2]]' has 1"),
         ({"plugins": ["mine"]}, "parameter 'mine.plugin' of 'global_costmap' is not set"),

@@ -25,6 +25,7 @@ class Simulator:
 
     Attributes:
         spawned: the requests for entities.
+        created: the requests for entities to the service of gz.
         deleted: the names of the entities to delete.
         new_states: the requested states.
         names: the models of the world.
@@ -33,6 +34,7 @@ class Simulator:
 
     def __init__(self, harness: NodeHarness, namespace: str = "") -> None:
         self.spawned: list[Any] = []
+        self.created: list[Any] = []
         self.deleted: list[str] = []
         self.new_states: list[Any] = []
         self.names = ["ground"]
@@ -44,11 +46,17 @@ class Simulator:
         node.create_service(get_service("gazebo_msgs/srv/SetEntityState"), "set_entity_state", self._set_state)
         node.create_service(get_service("gazebo_msgs/srv/GetModelList"), "get_model_list", self._list)
         node.create_service(get_service("std_srvs/srv/Empty"), "unpause_physics", self._unpause)
+        node.create_service(get_service("ros_gz_interfaces/srv/SpawnEntity"), "/world/test/create", self._create)
 
     def _spawn(self, request: Any, response: Any) -> Any:
         self.spawned.append(request)
         response.success = not self.refuses
         response.status_message = "Entity already exists" if self.refuses else f"spawned {request.name}"
+        return response
+
+    def _create(self, request: Any, response: Any) -> Any:
+        self.created.append(request.entity_factory)
+        response.success = not self.refuses
         return response
 
     def _delete(self, request: Any, response: Any) -> Any:
@@ -99,8 +107,29 @@ async def test_latched_description_is_spawned(harness):
     await harness.describe(ROBOT)
     node = start_create(harness, "-name", "mbot", "-topic", "robot_description", "-z=0.5")
     await harness.graph.settle()
-    assert simulator.spawned[0].initial_pose.position.z == 0.5
+    assert (simulator.created[0].name, simulator.created[0].pose.position.z) == ("mbot", 0.5)
     assert node.finished.result() == 0
+
+
+async def test_create_waits_for_world(harness, logged):
+    node = start_create(harness, "-name", "mbot", "-string", ROBOT)
+    await harness.clock.advance(20.0)
+    assert not node.finished.done()
+    assert logged("INFO")[-1] == "Waiting for a world"
+    simulator = Simulator(harness)
+    await harness.clock.advance(0.2)
+    await harness.graph.settle()
+    assert [factory.name for factory in simulator.created] == ["mbot"]
+    assert node.finished.result() == 0
+
+
+async def test_rejected_create_exits_with_status_1(harness, logged):
+    simulator = Simulator(harness)
+    simulator.refuses = True
+    node = start_create(harness, "-name", "mbot", "-string", ROBOT)
+    await harness.graph.settle()
+    assert node.finished.result() == 1
+    assert len(logged("ERROR")) == 1
 
 
 async def test_only_first_description_is_spawned(harness):
@@ -164,6 +193,7 @@ async def test_entities_are_spawned_from_file_database_and_stdin(
     await harness.graph.settle()
     box = (model / "model.sdf").read_text(encoding="utf-8")
     sent = {request.name: request.xml for request in simulator.spawned}
+    sent |= {factory.name: factory.sdf for factory in simulator.created}
     assert sent == {
         "a": ROBOT.replace("base", "model://p/m.dae"),
         "b": box,
@@ -206,21 +236,20 @@ async def test_bound_entity_is_deleted_with_node(harness):
     assert simulator.deleted == ["mbot"]
 
 
-async def test_create_allow_renaming_finds_free_name(harness):
+async def test_create_passes_allow_renaming(harness):
     simulator = Simulator(harness)
-    simulator.names = ["mbot", "mbot_0"]
-    start_create(harness, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "true")
-    start_create(harness, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "false")
-    start_create(harness, "-allow_renaming", "-string", ROBOT, "-name", "other")
+    start_create(harness, "-string", ROBOT, "-name", "a", "-allow_renaming", "true")
+    start_create(harness, "-string", ROBOT, "-name", "b", "-allow_renaming", "false")
+    start_create(harness, "-allow_renaming", "-string", ROBOT, "-name", "c")
     await harness.graph.settle()
-    assert sorted(request.name for request in simulator.spawned) == ["mbot", "mbot_1", "other"]
+    assert {factory.name: factory.allow_renaming for factory in simulator.created} == {"a": True, "b": False, "c": True}
 
 
 async def test_create_accepts_parameters_and_ignores_unknown_options(harness):
     simulator = Simulator(harness)
     start_create(harness, "-wonder", "1", name="mbot", string=ROBOT, x=1.0, Y=0.0)
     await harness.graph.settle()
-    assert (simulator.spawned[0].name, simulator.spawned[0].initial_pose.position.x) == ("mbot", 1.0)
+    assert (simulator.created[0].name, simulator.created[0].pose.position.x) == ("mbot", 1.0)
 
 
 @pytest.mark.parametrize(

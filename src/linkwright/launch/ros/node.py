@@ -12,6 +12,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.hosting.plans import HostedPlan, opens_page
 from linkwright.launch.errors.locations import with_location
 from linkwright.launch.errors.unavailable import is_unavailable
+from linkwright.launch.model import events
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.actions.execute import ExecuteProcess
 from linkwright.launch.model.context import LaunchContext
@@ -36,7 +37,12 @@ from linkwright.launch.ros.names import (
 )
 from linkwright.launch.ros.node_extensions import node_extensions
 from linkwright.launch.ros.parameter_lists import normalize_parameters
-from linkwright.launch.ros.parameters import NodeParameters, evaluate_own_parameters, evaluate_scope_parameters
+from linkwright.launch.ros.parameters import (
+    NodeParameters,
+    evaluate_own_parameters,
+    evaluate_scope_parameters,
+    is_malformed_file,
+)
 from linkwright.launch.ros.parsing import parse_node
 from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
 from linkwright.launch.ros.skipped_nodes import record_skipped_node, without_skipped_nodes
@@ -201,7 +207,13 @@ class Node(ExecuteProcess):
         executable = _evaluate_text(context, self.__node_executable)
         self.hosted = is_hosted(package, executable) and self._may_be_hosted(context, package, executable)
         self.__reset_results()
-        self._perform_substitutions(context)
+        try:
+            self._perform_substitutions(context)
+        except LinkwrightError as error:
+            if not is_malformed_file(error):
+                raise
+            self.__report_failed_start(context, executable, error)
+            return None
         extension_arguments = self.__run_extensions(context)
         if self.hosted:
             assert package is not None
@@ -214,6 +226,18 @@ class Node(ExecuteProcess):
             if warning is not None:
                 context.session.log.write_warning(process_name, warning)
         return None
+
+    def __report_failed_start(self, context: LaunchContext, executable: str, error: LinkwrightError) -> None:
+        """Report why the node does not start, and that it has ended; the launch continues without it.
+
+        In ROS the node reads its parameter files itself, and ends when it cannot.
+        """
+        name = context.session.assign_process_name(self.process_description.base_name(context, [executable]))
+        context.session.report_start_failure(self, error)
+        context.session.log.write_error(name, "node has not started")
+        context.emit_event_sync(
+            events.ProcessExited(action=self, returncode=1, name=name, cmd=[executable], cwd=None, env=None, pid=0)
+        )
 
     def __run_extensions(self, context: LaunchContext) -> list[Any]:
         """Run the extensions, which may change the name and namespace of the node.

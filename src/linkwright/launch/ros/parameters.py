@@ -13,6 +13,7 @@ from typing import Any
 
 from linkwright.diagnostics import (
     Diagnostic,
+    LinkwrightError,
     Phrase,
     Severity,
     did_you_mean,
@@ -162,6 +163,11 @@ def _warn(
     source = location.source() if location else None
     span = location.span(source) if location else None
     context.warn(Diagnostic(code, message, span, severity=Severity.WARNING, hint=hint, source=source))
+
+
+def is_malformed_file(error: LinkwrightError) -> bool:
+    """Return whether an error reports that the content of a parameter file is not in the form of such files."""
+    return any(diagnostic.code == "GRAPH212" for diagnostic in error.diagnostics)
 
 
 def evaluate_scope_parameters(items: Iterable[Any], context: LaunchContext) -> NodeParameters:

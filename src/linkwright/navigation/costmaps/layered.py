@@ -6,6 +6,7 @@ Source: nav2_costmap_2d ``LayeredCostmap``.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,10 +29,12 @@ class LayeredCostmap:
         is_rolling: whether the costmap moves to keep the robot in its middle.
         track_unknown: whether cells without data are unknown; otherwise they are free.
         footprint_padding: the padding of the footprint, in meters.
+        filters: the layers that change the costs after all others; the others do not see these changes.
 
     Attributes:
         costmap: the costs after the last update.
         layers: the layers from bottom to top.
+        filters: the layers that change the costs after all others.
         padding: the padding that is applied when the footprint is next set, in meters.
         changed_window: the window that the last update wrote.
     """
@@ -45,8 +48,11 @@ class LayeredCostmap:
         is_rolling: bool = False,
         track_unknown: bool = False,
         footprint_padding: float = 0.0,
+        filters: Sequence[Layer] = (),
     ) -> None:
         self.layers = list(layers)
+        self.filters = list(filters)
+        self._last_filters: list[Layer] = []
         self.is_rolling = is_rolling
         self._default = UNKNOWN if track_unknown else FREE
         self.padding = footprint_padding
@@ -75,7 +81,8 @@ class LayeredCostmap:
         """
         cells = np.full((grid.rows, grid.columns), self._default, np.uint8)
         self.costmap = Costmap(Grid(cells=cells, resolution=grid.resolution, x=grid.x, y=grid.y))
-        for layer in self.layers:
+        self._unfiltered = replace(self.costmap.grid, cells=cells.copy()) if self.filters else self.costmap.grid
+        for layer in (*self.layers, *self.filters):
             layer.match_grid(self.costmap.grid, self._default)
         self._is_updated = False
 
@@ -96,15 +103,23 @@ class LayeredCostmap:
         footprint = place_footprint(self._footprint, x, y, yaw)
         context = UpdateContext(x, y, footprint, self.inscribed_radius, time_ns)
         enabled_layers = [layer for layer in self.layers if layer.enabled]
-        window = Window() if self._is_updated and not self.is_rolling else Window.of(grid)
-        for layer in enabled_layers:
+        enabled_filters = [layer for layer in self.filters if layer.enabled]
+        is_whole = not self._is_updated or self.is_rolling or enabled_filters != self._last_filters
+        self._last_filters = enabled_filters
+        window = Window.of(grid) if is_whole else Window()
+        for layer in (*enabled_layers, *enabled_filters):
             window = layer.update_window(window, context, grid)
         self.changed_window = window
         self._is_updated = True
         if window.is_empty:
             return False
-        grid.cells[window.cells] = self._default
+        unfiltered = self._unfiltered
+        unfiltered.cells[window.cells] = self._default
         for layer in enabled_layers:
+            layer.write_costs(unfiltered, window, context)
+        if unfiltered is not grid:
+            grid.cells[window.cells] = unfiltered.cells[window.cells]
+        for layer in enabled_filters:
             layer.write_costs(grid, window, context)
         return True
 
@@ -118,8 +133,8 @@ class LayeredCostmap:
 
     def clear_entirely(self) -> None:
         """Reset all layers and all cells."""
-        self.costmap.grid.cells[:] = self._default
-        for layer in self.layers:
+        self.costmap.grid.cells[:] = self._unfiltered.cells[:] = self._default
+        for layer in (*self.layers, *self.filters):
             layer.reset()
         self._is_updated = False
 

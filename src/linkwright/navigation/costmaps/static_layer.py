@@ -137,9 +137,14 @@ class StaticLayer(Layer):
             return
         window_cells = grid.cells[window.cells]
         covered, costs = self._find_aligned_cells(grid, window) or self._sample_cells(grid, window)
-        window_cells[covered] = np.maximum(window_cells[covered], costs) if self._use_maximum else costs
+        window_cells[covered] = self._merge(window_cells[covered], costs)
         if self._footprint_clearing:
             free_footprint(grid.cells, context, grid, window)
+
+    def _merge(self, cells: Costs, costs: Costs) -> Costs:
+        """Return the costs of cells after the map's costs are written into them."""
+        merged: Costs = np.maximum(cells, costs) if self._use_maximum else costs
+        return merged
 
     def _find_aligned_cells(self, grid: Grid, window: Window) -> tuple[tuple[slice, slice], Costs] | None:
         """Return the index of the window's cells that the map covers, and the costs of these cells.

@@ -3,8 +3,8 @@
 Each costmap runs in the process of its server.
 
 Source: nav2_costmap_2d ``Costmap2DROS``, Humble and Jazzy. A deliberate difference: a costmap can be activated before
-the robot's pose is known, and starts updating once it is known. Unsupported layers and costmap filters are skipped
-with a log line.
+the robot's pose is known, and starts updating once it is known. Layers and costmap filters of unsupported types are
+skipped with a log line.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ from linkwright.navigation.costmaps.footprints import (
 from linkwright.navigation.costmaps.layered import LayeredCostmap, Pose
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.library import load_scipy
+from linkwright.navigation.nodes.costmap_filters import make_filters
 from linkwright.navigation.nodes.costmap_layers import (
     DEFAULT_LAYERS,
     LayerContext,
@@ -42,7 +43,7 @@ from linkwright.navigation.nodes.costmap_layers import (
 )
 from linkwright.navigation.nodes.costmap_messages import CostmapPublisher, raw_message
 from linkwright.navigation.nodes.managed import ManagedNode
-from linkwright.navigation.nodes.plugins import declare_unused, get_string_list
+from linkwright.navigation.nodes.plugins import get_string_list
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.settings import invalid_value_error
@@ -197,7 +198,7 @@ class CostmapNode(ManagedNode):
         load_scipy("ndimage")
         footprint = self._read_footprint()
         self._layer_context = LayerContext(self, self.transforms, self.global_frame, self._on_map)
-        self._ignore_filters()
+        make_filters(self._layer_context, self._filters)
         make_layers(self._layer_context, get_string_list(self, "plugins", list(DEFAULT_LAYERS)))
         resolution = self._get_positive_value("resolution")
         rows, columns = (max(1, int(self._get_positive_value(name) / resolution)) for name in ("height", "width"))
@@ -215,6 +216,7 @@ class CostmapNode(ManagedNode):
             is_rolling=self._parameter_values.rolling_window,
             track_unknown=self._parameter_values.track_unknown_space,
             footprint_padding=self._parameter_values.footprint_padding,
+            filters=list(self._layer_context.filters.values()),
         )
         always_full = self._parameter_values.always_send_full_costmap
         self._publisher = self.register(
@@ -280,13 +282,6 @@ class CostmapNode(ManagedNode):
         except BadFootprintError as error:
             self.get_logger().error(str(error))
             raise invalid_value_error("footprint", text, self.get_name()) from None
-
-    def _ignore_filters(self) -> None:
-        for name in self._filters:
-            declare_unused(self, name)
-        if self._filters:
-            filter_names = ", ".join(self._filters)
-            self.get_logger().warning(f"costmap filters are not supported: the costmap ignores {filter_names}")
 
     def _begin_updates(self) -> None:
         self.end_cycles()

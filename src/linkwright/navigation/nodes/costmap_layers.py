@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.geometry.single import rpy_from_quaternion
@@ -36,6 +36,13 @@ DEFAULT_LAYERS: Final = {
 _DATA_TYPES: Final = ("LaserScan", "PointCloud2")
 
 
+class DestroyableTopic(Protocol):
+    """The subscriptions of a layer."""
+
+    def destroy(self) -> None:
+        """Remove the subscriptions."""
+
+
 @dataclass(slots=True)
 class LayerContext:
     """The node and data that the layers of a costmap share.
@@ -48,15 +55,27 @@ class LayerContext:
         topics: the subscriptions of the layers, which are destroyed with the costmap.
         sensors: the subscriptions whose messages are processed when the costmap is updated.
         layers: the layers by name, from the bottom to the top.
+        filters: the costmap filters by name, in the order in which they apply.
     """
 
     node: Node
     transforms: BufferCore
     frame: str
     on_map: Callable[[Grid, str], None]
-    topics: list[SensorTopic | MapTopic] = field(default_factory=list)
+    topics: list[DestroyableTopic] = field(default_factory=list)
     sensors: list[SensorTopic] = field(default_factory=list)
     layers: dict[str, Layer] = field(default_factory=dict)
+    filters: dict[str, Layer] = field(default_factory=dict)
+
+    def pose_in(self, frame: str | None) -> MapPose | None:
+        """Return the pose of the costmap's frame in the frame of a map, or None while it is unknown."""
+        if frame is None or frame == self.frame:
+            return 0.0, 0.0, 0.0
+        try:
+            frame_pose, _ = self.transforms.lookup(frame, self.frame, 0)
+        except TransformException:
+            return None
+        return frame_pose[0], frame_pose[1], rpy_from_quaternion(frame_pose[3:])[2]
 
     def value(self, name: str, default: Any) -> Any:
         """Return the value of a parameter, declaring it first if necessary."""
@@ -110,7 +129,7 @@ def apply_parameters(context: LayerContext, changed: list[Parameter]) -> bool:
     is_layer_changed = False
     for changed_parameter in changed:
         name, _, parameter = changed_parameter.name.partition(".")
-        layer = context.layers.get(name)
+        layer = context.layers.get(name) or context.filters.get(name)
         if layer is None:
             continue
         is_layer_changed = True
@@ -137,14 +156,7 @@ def _make_static_layer(context: LayerContext, name: str) -> Layer:
     map_topic: list[MapTopic] = []
 
     def pose() -> MapPose | None:
-        frame = map_topic[0].frame
-        if frame is None or frame == context.frame:
-            return 0.0, 0.0, 0.0
-        try:
-            frame_pose, _ = context.transforms.lookup(frame, context.frame, 0)
-        except TransformException:
-            return None
-        return frame_pose[0], frame_pose[1], rpy_from_quaternion(frame_pose[3:])[2]
+        return context.pose_in(map_topic[0].frame)
 
     layer = StaticLayer(
         interpretation,

@@ -1,20 +1,27 @@
-"""ros_gz_sim's program ``create``, which spawns a model."""
+"""ros_gz_sim's program ``create``, which spawns a model.
+
+Source: ros_gz_sim (options, parameters). It sends a pose in every request, and gz-sim (``UserCommands``) replaces the
+pose of the model by it.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.graph import Graph, Parameter
+from linkwright.graph import Clock, ClockType, Graph, Parameter
+from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions, create_node, handle_start_errors
-from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_description
-from linkwright.simulation.plugins.entities import choose_free_name
+from linkwright.simulation.gz_services import CREATE
+from linkwright.simulation.nodes.spawner import Entity, EntitySpawner, read_description, set_pose
 
 _TEXT_OPTIONS = ("world", "file", "topic", "string", "param", "name")
 _NUMBER_OPTIONS = ("x", "y", "z", "R", "P", "Y")
 _TRUE_VALUES = ("", "true", "1", "yes", "t", "y")
+_SEARCH_PERIOD = 0.1
+"""The seconds between two searches for the service of a world."""
 
 
 class Create(EntitySpawner):
@@ -68,16 +75,42 @@ class Create(EntitySpawner):
         parameter: Parameter = self._node.declare_parameter(name, "")
         return str(parameter.value)
 
-    def _spawn(self, description: str) -> None:
-        if not self._renames or self._has_description:
-            super()._spawn(description)
-            return
+    def _request_spawn(self, description: str) -> None:
+        """Send the request to the first world that has the service; the user's name of the world can be wrong."""
+        factory = get_message("ros_gz_interfaces/msg/EntityFactory")(
+            name=self._entity.name, allow_renaming=self._renames, sdf=description
+        )
+        set_pose(factory.pose, self._entity)
+        request = get_service(CREATE.ros_type).Request(entity_factory=factory)
+        clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=self._node.get_clock().timebase)
 
-        def name_and_spawn(names: list[str]) -> None:
-            self._entity = replace(self._entity, name=choose_free_name(self._entity.name, names))
-            super(Create, self)._spawn(description)
+        def search() -> bool:
+            service = self._find_service()
+            if service is not None:
+                self._call_service(CREATE.ros_type, service, request, self._on_response)
+            return service is not None
 
-        self._request_names(name_and_spawn)
+        def search_again() -> None:
+            if search():
+                timer.cancel()
+
+        if not search():
+            self._log("Waiting for a world")
+            timer = self._node.create_timer(_SEARCH_PERIOD, search_again, clock=clock)
+
+    def _find_service(self) -> str | None:
+        """Return the name of the service that creates models in a world, relative to the root, or None."""
+        for name, types in self._node.get_service_names_and_types():
+            if CREATE.ros_type in types and re.fullmatch(f"/world/[^/]+/{CREATE.name}", name):
+                return name[1:]
+        return None
+
+    def _on_response(self, response: Any) -> None:
+        if response.success:
+            self._log("Entity creation successful.")
+            self._finish(0)
+        else:
+            self._fail(f"Failed request to create entity '{self._entity.name}'; the simulator's log names the reason.")
 
 
 def _read_options(arguments: Sequence[str]) -> Iterator[tuple[str, str]]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from linkwright.messages import get_message, get_service
 from linkwright.messages.message import Message
-from linkwright.simulation.gz_services import SET_POSE, GzService
+from linkwright.simulation.gz_services import CREATE, SET_POSE, GzService, remove_pose
 from linkwright.simulation.plugins.gz_messages import ROS_TYPES
 from linkwright.simulation.plugins.protobuf_text import (
     Fields,
@@ -37,7 +37,10 @@ def create_request(service: GzService, text: str) -> Any:
         return request
     (field_name,) = request.get_fields_and_field_types()
     type_name = request.get_fields_and_field_types()[field_name].replace("/", "/msg/", 1)
-    setattr(request, field_name, message_from_fields(type_name, fields))
+    message = message_from_fields(type_name, fields)
+    if service is CREATE and "pose" not in fields:
+        remove_pose(message)
+    setattr(request, field_name, message)
     return request
 
 

@@ -47,10 +47,15 @@ def create_spawn_request(entity: Entity, description: str) -> Any:
     request = get_service(SPAWN_SERVICE).Request(
         name=entity.name, xml=description, robot_namespace=entity.namespace, reference_frame=entity.reference_frame
     )
-    position, orientation = request.initial_pose.position, request.initial_pose.orientation
+    set_pose(request.initial_pose, entity)
+    return request
+
+
+def set_pose(message: Any, entity: Entity) -> None:
+    """Set a pose message to the pose of an entity."""
+    position, orientation = message.position, message.orientation
     position.x, position.y, position.z = entity.xyz
     orientation.x, orientation.y, orientation.z, orientation.w = quaternion_from_rpy(entity.rpy)
-    return request
 
 
 class SimulatorClient(SingleNode):
@@ -150,6 +155,10 @@ class EntitySpawner(SimulatorClient):
         if self._has_description:
             return
         self._has_description = True
+        self._request_spawn(description)
+
+    def _request_spawn(self, description: str) -> None:
+        """Send the request for the entity."""
         self._call_service(
             SPAWN_SERVICE, "spawn_entity", create_spawn_request(self._entity, description), self._on_response
         )

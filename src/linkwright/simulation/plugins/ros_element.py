@@ -13,9 +13,17 @@ from typing import Any
 from linkwright.graph.command_line.ros_arguments import parse
 from linkwright.graph.names.rules import Remappings, absolute_namespace, join
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from linkwright.sdf.plugins import library_name
 from linkwright.xmltree import Element
 
 _INVALID_NAME_CHARACTER = re.compile(r"[^A-Za-z0-9_]")
+_LIBRARIES_OF_ROS_2 = frozenset(
+    (
+        *("gazebo_ros2_control", "gz_ros2_control-system", "ign_ros2_control-system", "ignition_ros2_control-system"),
+        *("gazebo_ros_ackermann_drive", "gazebo_ros_gps_sensor", "gazebo_ros_ray_sensor"),
+    )
+)
+"""Libraries that ROS 1 lacks. They only read the namespace in ``<ros>``."""
 _NUMBER_TYPES = {"int": int, "double": float, "float": float}
 
 
@@ -103,7 +111,7 @@ def override_profile(profile: QoSProfile, element: Element) -> QoSProfile:
 
 
 def _find_namespace(element: Element | None) -> str:
-    """Return the namespace in ``<ros>``, or in the plugin's element as in ROS 1.
+    """Return the namespace in ``<ros>``, or in the plugin's element if its library also exists in ROS 1.
 
     Returns an empty string if neither declares one.
     """
@@ -118,6 +126,8 @@ def _declared_namespaces(element: Element | None) -> Iterator[str]:
         return
     for ros in element.elements("ros"):
         yield from (element.text() for element in ros.elements("namespace"))
+    if library_name(element.attributes.get("filename", "")) in _LIBRARIES_OF_ROS_2:
+        return
     for tag in ("robotNamespace", "robot_namespace"):
         yield from (child.text() for child in element.elements(tag))
 

@@ -12,10 +12,10 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
-from linkwright.geometry.single import IDENTITY, Transform
+from linkwright.geometry.single import Transform
 from linkwright.graph.stepped.node import SteppedNode
 from linkwright.simulation.description_files import read_model_file
-from linkwright.simulation.gz_services import CONTROL, CREATE, REMOVE, SET_POSE
+from linkwright.simulation.gz_services import CONTROL, CREATE, REMOVE, SET_POSE, has_pose
 from linkwright.simulation.plugins.entities import Entities, choose_free_name, describe_refusal, transform_from_message
 from linkwright.simulation.plugins.node import to_ros_name
 from linkwright.simulation.server.server import SimulationServer
@@ -104,7 +104,7 @@ class WorldServices:
             raise _unsupported_error("run_to_sim_time")
 
     def _create(self, request: Any) -> None:
-        """Add a model; an identity as the pose means the model's own pose."""
+        """Add a model at the pose of the request, or at its own pose if the request has none."""
         factory = request.entity_factory
         if factory.sdf:
             description = factory.sdf
@@ -112,11 +112,10 @@ class WorldServices:
             description = read_model_file(factory.sdf_filename, self._server.simulation.finder)
         else:
             raise _unsupported_error("clone_name" if factory.clone_name else "light")
-        pose = transform_from_message(factory.pose)
         name = factory.name
         if name and factory.allow_renaming:
             name = choose_free_name(name, tuple(self._server.simulation.scene.models))
-        self._spawn(description, name, None if pose == IDENTITY else pose)
+        self._spawn(description, name, transform_from_message(factory.pose) if has_pose(factory) else None)
 
     def _remove(self, request: Any) -> None:
         self._server.delete(_read_name(request.entity))
