@@ -23,7 +23,12 @@ from linkwright.review.sources.details import (
     format_names,
     format_rename,
 )
-from linkwright.review.sources.function_changes import NameChange, find_ignored_reason, merge_function_changes
+from linkwright.review.sources.function_changes import (
+    NameChange,
+    find_field_reason,
+    find_ignored_reason,
+    merge_function_changes,
+)
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
 from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
@@ -58,6 +63,7 @@ from linkwright.review.sources.pairing import (
 from linkwright.review.sources.parameter_defaults import SUM, split_sum
 from linkwright.review.sources.parameter_scopes import find_scoped
 from linkwright.review.sources.parameter_uses import ParameterUses
+from linkwright.review.sources.python_attributes import select_attributes
 from linkwright.review.sources.python_bases import select_methods
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.renamed_classes import find_renamed_classes
@@ -220,8 +226,15 @@ class _SourcePair(WholeSourcePair):
                 drop_defined_imports(added, new_names, old_names, self.old.version.file(self.file.old_path or "")),
             )
         is_python = self.file.path.endswith(PYTHON_SUFFIX)
-        if kind not in (NameKind.FUNCTION, NameKind.MEMBER) or (is_python and kind is NameKind.MEMBER):
+        if kind not in (NameKind.FUNCTION, NameKind.MEMBER):
             return removed, added
+        if is_python and kind is NameKind.MEMBER:
+            old_path, path = self.file.old_path or self.file.path, self.file.path
+            packages = self.old.find_package(old_path) or "", self.new.find_package(path) or ""
+            return (
+                select_attributes(removed, old_names, new_names, self.old.version, packages[0]),
+                select_attributes(added, new_names, old_names, self.new.version, packages[1]),
+            )
         if is_python:
             path = self.file.old_path or self.file.path
             is_installed = is_installed_module(self.old.version, self.old.find_package(path), path)
@@ -299,6 +312,7 @@ class _SourcePair(WholeSourcePair):
         for item, text, reason, detail in changed:
             if detail is Detail.ARGUMENTS and reason is None:
                 reason = find_ignored_reason(item, old_names, self.new.get_names(self.file.new_path))
+                reason = reason or find_field_reason(item, old_names)
             is_breaking = is_called or kind is not NameKind.CLASS
             is_breaking = is_breaking and (kind is not NameKind.FUNCTION or self.can_be_linked(item.name))
             if kind is NameKind.PARAMETER and reason is None:
