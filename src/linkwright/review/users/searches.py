@@ -17,6 +17,7 @@ from linkwright.review.sources.callers import find_broken_callers
 from linkwright.review.sources.left_types import find_left_types
 from linkwright.review.sources.lost_methods import find_lost_methods
 from linkwright.review.sources.lost_types import find_lost_types
+from linkwright.review.users.ignored_packages import find_ignored_packages
 from linkwright.review.users.left_remappings import find_left_remappings
 from linkwright.review.users.lost_controllers import find_lost_controllers
 from linkwright.review.users.lost_data import find_lost_data
@@ -54,5 +55,5 @@ SEARCHES: tuple[Search, ...] = (
     *(find_old_package_names, find_old_dependencies),
     *(find_passed_arguments, find_left_nodes, find_left_parameters, find_lost_interfaces, find_left_types),
     *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),
-    *(find_unusable_programs, find_undeclared_plugins, find_left_remappings),
+    *(find_unusable_programs, find_undeclared_plugins, find_left_remappings, find_ignored_packages),
 )
