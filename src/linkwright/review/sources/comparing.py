@@ -9,6 +9,7 @@ from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
@@ -89,8 +90,10 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     """
     files = [file for file in changed_files if is_compared_source(versions, file)]
     files += [file for file in find_constant_users(versions, files) if is_compared_source(versions, file)]
+    packages = find_renamed_packages(versions)
+    new_packages = {item.old_name: item.new_name for item in packages if item.old_name != item.new_name}
     sides = (
-        ChangedSources(versions.old, [file.old_path for file in files]),
+        ChangedSources(versions.old, [file.old_path for file in files], new_packages),
         ChangedSources(versions.new, [file.new_path for file in files]),
     )
     for file in files:

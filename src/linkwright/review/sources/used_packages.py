@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
@@ -57,10 +57,12 @@ class UsedPackages:
     Args:
         version: the version of the repository.
         package: the folder of the package.
+        new_packages: the new names of packages that are renamed after this version, by old name.
     """
 
-    def __init__(self, version: Version, package: str) -> None:
+    def __init__(self, version: Version, package: str, new_packages: Mapping[str, str]) -> None:
         self._version = version
+        self._new_packages = new_packages
         self._package = package
         self._reported: set[str] = set()
         self._used: dict[bool, frozenset[str]] = {}
@@ -68,14 +70,23 @@ class UsedPackages:
 
     def read(self, path: str) -> dict[str, Span]:
         """Return the headers or modules of other packages that a source uses, each with its first location."""
-        return {name: span for name, span in self.read_all(path).items() if get_package(name) not in self._own_names}
+        uses = self._read(path).items()
+        return {self._rename(name): span for name, span in uses if get_package(name) not in self._own_names}
 
     def read_all(self, path: str) -> dict[str, Span]:
         """Return the headers or modules that a source uses, also those of its own package."""
+        return {self._rename(name): span for name, span in self._read(path).items()}
+
+    def _read(self, path: str) -> dict[str, Span]:
         source = try_read_source(self._version.file(path))
         if source is None:
             return {}
         return _read_imports(source) if is_python_source(path) else _read_includes(source)
+
+    def _rename(self, name: str) -> str:
+        """Return a header or module with the new name of its package."""
+        package = get_package(name)
+        return f"{self._new_packages.get(package, package)}{name[len(package) :]}"
 
     def uses(self, name: str, *, is_python: bool) -> bool:
         """Return whether a source of the package uses a package, header or module."""
