@@ -244,3 +244,24 @@ def test_imports_of_a_package_that_only_has_another_name_are_no_change(repositor
         ),
         ("robot/scripts/other.py", ["packages imported for the first time: 'numpy'"]),
     ]
+
+
+def test_a_module_that_keeps_the_old_name_of_its_package_is_imported_as_before(repository, compare):
+    files = {
+        "arm_tools/package.xml": FILES["arm_tools/package.xml"],
+        "arm_tools/arm_tools/__init__.py": "",
+        "arm_tools/scripts/hold.py": "#!/usr/bin/env python3\nfrom arm_tools import hand\n\nhand.hold()\n",
+        "robot/package.xml": FILES["robot/package.xml"],
+        "robot/scripts/hold.py": "#!/usr/bin/env python3\nfrom arm_tools import hand\n\nhand.hold()\n",
+    }
+    repository.commit(files)
+    moved = {
+        "arm_gear/package.xml": files["arm_tools/package.xml"].replace("arm_tools", "arm_gear"),
+        "arm_gear/arm_tools/__init__.py": "",
+        "arm_gear/scripts/hold.py": files["arm_tools/scripts/hold.py"].replace("hand.hold()", "hand.hold()  # tight"),
+        "robot/scripts/hold.py": files["robot/scripts/hold.py"].replace("hand.hold()", "hand.hold()  # tight"),
+    }
+    own = {path: None for path in files if path.startswith("arm_tools/")}
+    repository.commit({**own, **moved})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert not any("import" in line for found in result.subjects for line in sentences(found))

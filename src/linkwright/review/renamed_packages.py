@@ -25,6 +25,7 @@ _REFERENCE = (
     r"\b(?P<scope>{names})(?=::)"
 )
 """The forms in which launch files and descriptions name a package."""
+_NAME = re.compile(r"[\w:./~-]+")
 _RENAMED_TEMPLATE = "package '{old}' renamed to '{new}'"
 
 
@@ -304,6 +305,7 @@ def _add_derived_names(
         return subject
     package_names = PackageNames([package])
     own = [name for name in derived if package_names.rename_derived(name.old) == name.new]
+    own = [name for name in own if _NAME.fullmatch(name.old.strip("'"))]  # no lists of types or long values
     kinds = dict.fromkeys(name.kind for name in own)
     ordered = sorted(kinds, key=lambda kind: kind is not None)
     groups = [_format_derived(kind, [name for name in own if name.kind == kind]) for kind in ordered]

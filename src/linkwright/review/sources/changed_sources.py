@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import PurePosixPath
 from types import MappingProxyType
@@ -69,13 +70,17 @@ class ChangedSources:
     def codes(self) -> Mapping[str, Code]:
         """The code of the changed sources, by path."""
         sources = {path: try_read_source(self.version.file(path)) for path in self._names}
-        codes = {path: read_code(source) for path, source in sources.items() if source is not None}
-        for code in codes.values() if self._new_packages else ():
-            code.imports = [part._replace(text=self._rename_packages(part.text)) for part in code.imports]
-        return codes
+        return {path: read_code(source) for path, source in sources.items() if source is not None}
+
+    def rename_imports(self, code: Code, new: Code) -> Code:
+        """Return code of this version with the new names of renamed packages in imports that the new code lacks."""
+        kept = {part.text for part in new.imports}
+        imports = [
+            part if part.text in kept else part._replace(text=self._rename_packages(part.text)) for part in code.imports
+        ]
+        return replace(code, imports=imports)
 
     def _rename_packages(self, text: str) -> str:
-        """Return a text with the new names of renamed packages."""
         return re.sub(r"\w+", lambda word: self._new_packages.get(word[0], word[0]), text)
 
     def find_moved_code(self, old: ChangedSources) -> Mapping[str, MovedCode]:

@@ -42,7 +42,7 @@ class _Interface(LostInterface):
     """An interface of which any other field counts as lost."""
 
     def lost_from(self, part: str) -> frozenset[str]:
-        """Return all names that are no field or constant of a part."""
+        """Return all names except the fields and constants of a part."""
         return _OtherNames(self.names[part]) if part in self.names else frozenset()
 
 
