@@ -91,8 +91,8 @@ def find_removal_reason(
             return phrase("programs that import '{name}' do not find it", name=text)
         return phrase("code of other packages that uses '{name}' does not build", name=text)
     if len(items) > 1:
-        names = joined_first([f"'{item.name}'" for item in items], MAX_NAMES)
-        return phrase("programs that use the names {names} do not find them", names=names)
+        quoted = joined_first([f"'{item.name}'" for item in items], MAX_NAMES)
+        return phrase("programs that use the names {names} do not find them", names=quoted)
     return name_reason(str(text))
 
 
