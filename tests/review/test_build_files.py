@@ -457,3 +457,17 @@ def test_cmake_files_of_packages_that_are_built_without_cmake_are_other_files(
     repository.commit({"arm/package.xml": manifest, "arm/CMakeLists.txt": cmake % install, "arm/launch/a.txt": ""})
     repository.write({"arm/CMakeLists.txt": cmake % ""})
     assert breaking(compare(repository)) == expected
+
+
+def test_a_changed_file_that_the_build_file_includes_is_compared_as_a_part_of_it(repository, compare):
+    cmake = "project(arm)\nif(TRUE)\n  include(${CMAKE_CURRENT_SOURCE_DIR}/cmake/ros2.cmake)\nendif()\n"
+    part = "find_package(rclcpp REQUIRED)\ninstall(PROGRAMS scripts/home.py DESTINATION lib/arm)\n"
+    repository.commit({**FILES, "a/CMakeLists.txt": cmake, "a/cmake/ros2.cmake": part, "a/cmake/old.cmake": part})
+    repository.write({"a/cmake/ros2.cmake": "find_package(rclpy REQUIRED)\n", "a/cmake/old.cmake": "# nothing\n"})
+    result = compare(repository)
+    assert sentences(subject(result, "a/CMakeLists.txt")) == [
+        "installed executables removed: 'home.py'",
+        "calls of find_package added: 'rclpy'",
+        "calls of find_package removed: 'rclcpp'",
+    ]
+    assert list(result.other_files) == ["a/cmake/old.cmake"]

@@ -201,3 +201,24 @@ def test_field_that_takes_the_place_of_another_one(repository, compare, old, new
     lines = sentences(subject(compare(repository), "arm/msg/Goal.msg"))
     told = "field 'id' is in the place of 'sum' now, and 'key' in its old place: it may have another meaning"
     assert (told in lines) == is_told
+
+
+def test_two_fields_or_constants_of_a_message_share_a_line(repository, compare):
+    path = "arm_description/msg/State.msg"
+    old = "int32 SLOW = 1\nint32 FAST = 2\nint32 count\nstring frame\nfloat64 rate\n"
+    new = "string LEFT = a\nstring RIGHT = b\nfloat64 rate\nbool is_on\nuint8[] data\n"
+    repository.commit({**PACKAGE, path: old})
+    repository.write({path: new})
+    found = subject(compare(repository), path)
+    assert sentences(found) == [
+        "fields added: bool is_on, uint8[] data",
+        "fields removed: int32 count, string frame",
+        "constants added: LEFT = a, RIGHT = b",
+        "constants removed: SLOW, FAST",
+    ]
+    assert [(change.location.line, change.location.is_old) for change in found.changes] == [
+        (4, False),
+        (3, True),
+        (1, False),
+        (1, True),
+    ]

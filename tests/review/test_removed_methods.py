@@ -120,3 +120,61 @@ def test_a_method_removed_from_a_cpp_class_is_breaking_unless_a_base_has_it(
     if is_base_changed:
         repository.write({"arm/include/arm/base.hpp": base_header + "// changed\n"})
     assert breaking(compare(repository)) == (["functions removed: 'Arm::stop'"] if is_removed else [])
+
+
+@pytest.mark.parametrize(
+    ("head", "base", "method", "expected"),
+    [
+        ("from rclpy.action import ActionClient\n\n\n", "ActionClient", "is_accepted", [REMOVED]),
+        ("from rclpy.action import ActionClient\n\n\n", "ActionClient", "send_goal", []),
+        ("from rclpy.action.server import ActionServer\n\n\n", "ActionServer", "halt", [REMOVED]),
+        ("import actionlib\n\n\n", "actionlib.SimpleActionServer", "halt", [REMOVED]),
+        ("import actionlib\n\n\n", "actionlib.SimpleActionServer", "set_aborted", []),
+        ("from smach import State\n\n\n", "State", "halt", [REMOVED]),
+        ("", "Exception", "halt", [REMOVED]),
+        ("", "dict", "update", []),
+        ("from typing import Generic, TypeVar\n\nT = TypeVar('T')\n\n\n", "Generic[T]", "halt", [REMOVED]),
+    ],
+)
+def test_a_method_removed_from_a_class_of_actions_or_a_built_in_class_is_breaking(
+    repository, compare, head, base, method, expected
+):
+    text = f"{head}class Arm({base}):\n    def begin(self):\n        return 1\n"
+    repository.commit({**PYTHON, "arm/arm/a.py": text + METHOD.format(method)})
+    repository.write({"arm/arm/a.py": text})
+    assert breaking(compare(repository)) == [sentence.format(method) for sentence in expected]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("return True", "self.count = 1", "True -> None"),
+        ("return self.count", "return", "self.count -> None"),
+        ("return self.read()", "self.read()", None),  # may have returned nothing, too
+        ("return True", "raise NotImplementedError", None),
+        ("return True", "pass", None),
+        ("yield 1", "self.count = 1", None),
+        ("self.count = 1", "return True", None),
+        ("def inner():\n            return 1\n        inner()", "self.count = 1", None),
+    ],
+)
+def test_a_method_that_returns_no_value_any_more_is_breaking(repository, compare, old, new, expected):
+    text = "class Arm:\n    def stop(self):\n        {}\n"
+    repository.commit({**PYTHON, "arm/arm/a.py": text.format(old)})
+    repository.write({"arm/arm/a.py": text.format(new)})
+    line = f"function 'Arm.stop': returned value {expected}"
+    assert breaking(compare(repository)) == ([] if expected is None else [line])
+
+
+def test_the_stated_type_of_a_lost_result_is_shown_for_functions_and_methods(repository, compare):
+    text = (
+        "def start() -> bool:\n    return check()\n\n\nclass Arm:\n    def stop(self) -> int:\n        return check()\n"
+    )
+    repository.commit({**PYTHON, "arm/arm/a.py": text})
+    repository.write({"arm/arm/a.py": text.replace("return check()", "check()").replace("-> int", "-> None")})
+    result = compare(repository)
+    assert breaking(result) == [
+        "function 'start': returned value bool -> None",
+        "function 'Arm.stop': returned value int -> None",
+    ]
+    assert {str(change.reason) for _, change in result.breaking_changes} == {"programs that use the result get None"}

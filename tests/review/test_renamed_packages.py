@@ -37,6 +37,12 @@ FILES = {
 }
 
 
+RENAMED = (
+    "package 'arm_tools' renamed to 'arm_gear'; also installed libraries 'arm_tools_core' -> 'arm_gear_core', "
+    "plugin classes 'arm_tools/Grip' -> 'arm_gear/Grip'"
+)
+
+
 def rename_package_files(new_folder: str, new_name: str, **replacements: str) -> dict[str, str | None]:
     """Return the files of a commit that moves the package.
 
@@ -58,11 +64,7 @@ def test_what_follows_from_the_new_name_of_a_package_is_one_change(repository, c
     repository.commit(FILES)
     repository.commit(rename_package_files("arm_gear", "arm_gear"))
     result = compare(repository, "HEAD~1..HEAD")
-    assert [(found.path, sentences(found)) for found in result.subjects] == [
-        ("arm_gear/package.xml", ["package 'arm_tools' renamed to 'arm_gear'"])
-    ]
-    (change,) = result.subjects[0].changes
-    assert set(change.other_names) >= {"arm_tools_core -> arm_gear_core", "arm_tools/Grip -> arm_gear/Grip"}
+    assert [(found.path, sentences(found)) for found in result.subjects] == [("arm_gear/package.xml", [RENAMED])]
     assert [str(note) for note in result.notes if "follow" in str(note)]
     assert [(path, str(state)) for path, state in list_other_files(result)] == [
         ("arm_gear/src/", "4 files, moved with the package from arm_tools/"),
@@ -199,7 +201,7 @@ def test_packages_that_still_depend_on_the_old_name_of_a_package_are_named(repos
     repository.commit({**files, "robot/package.xml": FILES["robot/package.xml"]})
     result = compare(repository, "HEAD~1..HEAD")
     assert breaking(result) == [
-        "package 'arm_tools' renamed to 'arm_gear'",
+        RENAMED,
         "requires the package 'arm_tools', whose name is 'arm_gear' now",
         "depends on the package 'arm_tools', whose name is 'arm_gear' now",
     ]
@@ -216,3 +218,50 @@ def test_dependency_on_the_old_name_of_a_package_that_another_folder_still_has_b
     other = {"other/package.xml": MANIFEST, "robot/package.xml": FILES["robot/package.xml"]}
     repository.commit({**files, **other})
     assert not [sentence for sentence in breaking(compare(repository, "HEAD~1..HEAD")) if "depends on" in sentence]
+
+
+def test_imports_of_a_package_that_only_has_another_name_are_no_change(repository, compare):
+    files = {
+        "arm_tools/package.xml": FILES["arm_tools/package.xml"],
+        "arm_tools/setup.py": "from setuptools import setup\nsetup(name='arm_tools', packages=['arm_tools'])\n",
+        "arm_tools/arm_tools/__init__.py": "",
+        "arm_tools/arm_tools/hand.py": "from arm_tools.grip import close\n\n\ndef hold():\n    return close()\n",
+        "robot/package.xml": FILES["robot/package.xml"],
+        "robot/scripts/hold.py": "#!/usr/bin/env python3\nfrom arm_tools import hand\n\nhand.hold()\n",
+        "robot/scripts/other.py": "from arm_tools import hand\n\nhand.hold()\n",
+    }
+    repository.commit(files)
+    moved = {
+        path.replace("arm_tools", "arm_gear"): text.replace("arm_tools", "arm_gear") for path, text in files.items()
+    }
+    other = {"robot/scripts/other.py": "import numpy\nfrom arm_gear import hand\n\nhand.hold()\n"}
+    repository.commit({**dict.fromkeys(files), **moved, **other})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert [(found.path, sentences(found)) for found in result.subjects] == [
+        (
+            "arm_gear/package.xml",
+            ["package 'arm_tools' renamed to 'arm_gear'; also installed Python modules 'arm_tools' -> 'arm_gear'"],
+        ),
+        ("robot/scripts/other.py", ["packages imported for the first time: 'numpy'"]),
+    ]
+
+
+def test_a_module_that_keeps_the_old_name_of_its_package_is_imported_as_before(repository, compare):
+    files = {
+        "arm_tools/package.xml": FILES["arm_tools/package.xml"],
+        "arm_tools/arm_tools/__init__.py": "",
+        "arm_tools/scripts/hold.py": "#!/usr/bin/env python3\nfrom arm_tools import hand\n\nhand.hold()\n",
+        "robot/package.xml": FILES["robot/package.xml"],
+        "robot/scripts/hold.py": "#!/usr/bin/env python3\nfrom arm_tools import hand\n\nhand.hold()\n",
+    }
+    repository.commit(files)
+    moved = {
+        "arm_gear/package.xml": files["arm_tools/package.xml"].replace("arm_tools", "arm_gear"),
+        "arm_gear/arm_tools/__init__.py": "",
+        "arm_gear/scripts/hold.py": files["arm_tools/scripts/hold.py"].replace("hand.hold()", "hand.hold()  # tight"),
+        "robot/scripts/hold.py": files["robot/scripts/hold.py"].replace("hand.hold()", "hand.hold()  # tight"),
+    }
+    own = {path: None for path in files if path.startswith("arm_tools/")}
+    repository.commit({**own, **moved})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert not any("import" in line for found in result.subjects for line in sentences(found))

@@ -62,3 +62,14 @@ def test_servers_are_told(repository, compare, path, old, new, expected, is_brea
     result = compare(repository)
     assert [sentence for subject in result.subjects for sentence in sentences(subject)] == expected
     assert bool(breaking(result)) is is_breaking
+
+
+def test_the_reason_quotes_each_of_several_lost_names(repository, compare):
+    path = "arm/scripts/arm.py"
+    call = "node.create_publisher(Bool, '{}', 10)\n"
+    manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    text = "import rclpy\nfrom std_msgs.msg import Bool\n\nnode = rclpy.create_node('arm')\n"
+    repository.commit({**manifest, path: text + call.format("left") + call.format("right")})
+    repository.write({path: text})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == "programs that use the names 'left', 'right' do not find them"

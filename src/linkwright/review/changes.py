@@ -91,6 +91,7 @@ class Change:
         other_locations: the locations of their values, if they differ from the first location.
         path_change: how the path of the file changed; None for other changes.
         is_code: whether the change only names functions and classes with other code.
+        uninstalled: the files and folders that a build file no longer installs, if the sentence names them; else empty.
     """
 
     sentence: Phrase
@@ -102,6 +103,7 @@ class Change:
     other_locations: tuple[Location, ...] = ()
     path_change: PathChange | None = None
     is_code: bool = False
+    uninstalled: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
-from linkwright.review.files.build_facts import list_names
+from linkwright.review.files.installed_files import make_uninstalled_change
 from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind
 
-_UNINSTALLED = "no longer installed: {names}"
 _DECLARED = (NameKind.CLASS.plural, NameKind.FUNCTION.plural, NameKind.MEMBER.plural)
-_QUOTED = re.compile(r"'([^']+)'")
-_QUOTED_LIST = re.compile(r"'[^']+'(?:, '[^']+')*")
 
 
 def drop_told_headers(subjects: Sequence[Subject]) -> list[Subject]:
@@ -45,15 +41,11 @@ def _is_removed_header(subject: Subject) -> bool:
 
 def _reduce(change: Change, build: Subject, told: Collection[str]) -> list[Change]:
     """Return a change of a build file without the removed headers; empty if it has no others."""
-    names = str(change.sentence.arguments.get("names", ""))
-    if change.sentence.template != _UNINSTALLED or not _QUOTED_LIST.fullmatch(names):
-        return [change]
     folder = PurePosixPath(build.path).parent
-    targets = _QUOTED.findall(names)
-    left = [target for target in targets if not any(_installs(target, path, folder) for path in told)]
-    if not left or left == targets:
-        return [change] if left else []
-    return [replace(change, sentence=change.sentence.with_arguments(names=list_names(left)))]
+    left = [name for name in change.uninstalled if not any(_installs(name, path, folder) for path in told)]
+    if len(left) == len(change.uninstalled):
+        return [change]
+    return [make_uninstalled_change(left, change.reason)] if left else []
 
 
 def _installs(target: str, path: str, folder: PurePosixPath) -> bool:

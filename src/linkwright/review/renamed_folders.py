@@ -84,6 +84,8 @@ def _make_folder_subject(versions: Versions, folders: _Folders, group: Sequence[
             names=names,
         )
     reason = phrase("launch files, descriptions and users that name the files do not find them")
+    if all(subject.kind is SubjectKind.INTERFACE for subject in group):
+        reason = phrase("programs that use the types do not build or start")
     effect = Effect.BREAKING if is_breaking else Effect.CHANGED
     change = Change(text, effect, reason if is_breaking else None)
     return Subject(group[0].kind, new, old, new, [change])

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import PurePosixPath
+from typing import NamedTuple
 
-from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.diagnostics import Phrase, counted, joined, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
@@ -24,6 +25,7 @@ _REFERENCE = (
     r"\b(?P<scope>{names})(?=::)"
 )
 """The forms in which launch files and descriptions name a package."""
+_NAME = re.compile(r"[\w:./~-]+")
 _RENAMED_TEMPLATE = "package '{old}' renamed to '{new}'"
 
 
@@ -227,6 +229,14 @@ class _Consequences:
         return self.names.rename_derived(text) if kind in _NAMED_AFTER_PACKAGES else self.names.rename_references(text)
 
 
+class _DerivedName(NamedTuple):
+    """A name that changes with that of a package: its kind in reports, if it is known, and both names."""
+
+    kind: object
+    old: str
+    new: str
+
+
 def remove_consequences(versions: Versions, subjects: Sequence[Subject]) -> tuple[list[Subject], list[Phrase]]:
     """Return the subjects without changes that only follow from renamed packages, and notes.
 
@@ -247,7 +257,7 @@ def remove_consequences(versions: Versions, subjects: Sequence[Subject]) -> tupl
     consequences = _Consequences(packages, names, classes)
     manifests = {f"{package.new_folder}/{MANIFEST}".lstrip("/"): package for package in packages}
     count = 0
-    derived: list[tuple[str, str]] = []
+    derived: list[_DerivedName] = []
     result = []
     for subject in subjects:
         remaining = [change for change in subject.changes if not consequences.contain(change, subject)]
@@ -256,9 +266,10 @@ def remove_consequences(versions: Versions, subjects: Sequence[Subject]) -> tupl
         count += len(subject.changes) - len(remaining)
         remaining_ids = {id(change) for change in remaining}
         derived += [
-            (str(change.core.arguments["old"]), str(change.core.arguments["new"]))
+            _DerivedName(_find_kind(subject, arguments), str(arguments["old"]), str(arguments["new"]))
             for change in subject.changes
-            if id(change) not in remaining_ids and change.effect is Effect.BREAKING and "old" in change.core.arguments
+            if id(change) not in remaining_ids and change.effect is Effect.BREAKING
+            if "old" in (arguments := change.core.arguments)
         ]
         result.append(replace(subject, changes=remaining))
     if not count:
@@ -286,19 +297,37 @@ def _add_folder_change(package: RenamedPackage, changes: Sequence[Change]) -> li
 
 
 def _add_derived_names(
-    subject: Subject, manifests: dict[str, RenamedPackage], derived: Sequence[tuple[str, str]]
+    subject: Subject, manifests: dict[str, RenamedPackage], derived: Sequence[_DerivedName]
 ) -> Subject:
-    """Return a subject whose change of the package name lists the derived names."""
+    """Return a subject whose change of the package name lists the derived names with their kinds."""
     package = manifests.get(subject.path)
     if package is None or package.old_name == package.new_name:
         return subject
     package_names = PackageNames([package])
-    names = tuple(dict.fromkeys(f"{old} -> {new}" for old, new in derived if package_names.rename_derived(old) == new))
+    own = [name for name in derived if package_names.rename_derived(name.old) == name.new]
+    own = [name for name in own if _NAME.fullmatch(name.old.strip("'"))]  # no lists of types or long values
+    kinds = dict.fromkeys(name.kind for name in own)
+    ordered = sorted(kinds, key=lambda kind: kind is not None)
+    groups = [_format_derived(kind, [name for name in own if name.kind == kind]) for kind in ordered]
     changes = [
-        replace(change, other_names=names) if change.sentence.template == _RENAMED_TEMPLATE else change
+        replace(change, sentence=phrase("{change}; also {names}", change=change.sentence, names=joined(groups)))
+        if groups and change.sentence.template == _RENAMED_TEMPLATE
+        else change
         for change in subject.changes
     ]
     return replace(subject, changes=changes)
+
+
+def _find_kind(subject: Subject, arguments: Mapping[str, object]) -> object:
+    """Return the kind of a renamed thing as reports name it, or None if it is unknown."""
+    return phrase("plugin classes") if subject.kind is SubjectKind.PLUGINS else arguments.get("kind")
+
+
+def _format_derived(kind: object, names: Sequence[_DerivedName]) -> Phrase:
+    """Return the new names of things of a kind, such as executables; without the kind if it is unknown."""
+    pairs = ((name.old.strip("'"), name.new.strip("'")) for name in names)
+    texts = joined(dict.fromkeys(f"'{old}' -> '{new}'" for old, new in pairs))
+    return phrase("{kind} {names}", kind=kind, names=texts) if kind is not None else texts
 
 
 def find_moved_files(versions: Versions, files: Sequence[ChangedFile]) -> Iterator[tuple[str, str]]:

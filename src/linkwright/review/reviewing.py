@@ -30,7 +30,7 @@ from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
 from linkwright.review.files.behavior_tree_files import is_tree_file
-from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.files.cmake_files import CMAKE_FILE, CMAKE_SUFFIX
 from linkwright.review.files.gui_files import is_gui_file
 from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
@@ -329,10 +329,13 @@ class _Reviewer:
             if file.path in self._maps:
                 paths.add((self._find_old_path(self._maps[file.path]), self._find_new_path(self._maps[file.path])))
                 continue
+            build_paths = self._find_package_build_file(file)
+            if rule is None and build_paths is not None and self._is_used(file):
+                paths.add(build_paths)
             if rule is None or rule is SEMANTIC_XACRO or rule.kind in _EXPANDED_KINDS or file.is_submodule:
                 continue
             if self._belongs_to_robot(rule, file):
-                paths.add(self._find_package_build_file(file) or (file.old_path, file.new_path))
+                paths.add(build_paths or (file.old_path, file.new_path))
         for old_path, new_path in sorted(paths, key=lambda pair: (pair[1] or pair[0] or "", pair[0] or "")):
             path = new_path or old_path or ""
             rule = None if path in self._failures.problems else self._choose_rule(old_path, new_path)
@@ -367,17 +370,19 @@ class _Reviewer:
         return rule
 
     def _find_package_build_file(self, file: ChangedFile) -> tuple[str, str] | None:
-        """Return both paths of the package's ``CMakeLists.txt`` for one in a subfolder.
+        """Return both paths of the package's ``CMakeLists.txt`` for one in a subfolder or a file to include.
 
         The result is None for other files.
         """
         path = PurePosixPath(file.path)
         folder = self._versions.new.package_of(file.path, (MANIFEST, ROSBUILD_MANIFEST))
-        if path.name != CMAKE_FILE or folder is None:
+        if folder is None or not (path.name == CMAKE_FILE or path.suffix == CMAKE_SUFFIX):
             return None
         new_path = (PurePosixPath(folder) / CMAKE_FILE).as_posix()
         old_path = self._find_old_path(new_path)
         if old_path is None or new_path == file.path or not self._versions.new.file(new_path).is_file():
+            return None
+        if path.suffix == CMAKE_SUFFIX and is_unused_cmake_file(self._versions.new, new_path):
             return None
         return old_path, new_path
 
@@ -387,14 +392,18 @@ class _Reviewer:
         Hidden files, and YAML files outside all packages, are settings of tools. Build files of CMake in packages that
         are built without it have no effect.
         """
-        if any(part.startswith(".") for part in PurePosixPath(file.path).parts):
-            return False
         sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
-        if all(is_unused_cmake_file(version, path) for version, path in sides if path):
+        if not self._is_used(file):
             return False
         return rule.kind is not SubjectKind.PARAMETERS or any(
             version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST)) is not None for version, path in sides if path
         )
+
+    def _is_used(self, file: ChangedFile) -> bool:
+        """Return whether a file is not hidden, and no build file that the type of the package leaves out."""
+        sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
+        is_hidden = any(part.startswith(".") for part in PurePosixPath(file.path).parts)
+        return not is_hidden and not all(is_unused_cmake_file(version, path) for version, path in sides if path)
 
     def _find_affected(self) -> Iterator[set[str]]:
         """Yield the complete descriptions and worlds that changed files can affect, by version."""

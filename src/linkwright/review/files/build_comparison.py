@@ -14,6 +14,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_commands import compare_other_commands
 from linkwright.review.files.build_facts import (
     ANY_VERSION,
+    BUILD_TOOLS,
     BUILT_KINDS,
     INSTALLED_KINDS,
     WITHOUT_NOTHING,
@@ -183,6 +184,8 @@ def _report_unpaired(
     if removed:
         location = pair.location(removed[0].span, is_old=True)
         is_harmless = is_replaced or all(is_test_condition(fact.condition) for fact in removed)
+        if kind is FactKind.EXPORTED_DEPENDENCY:
+            is_harmless |= BUILD_TOOLS.issuperset(fact.name for fact in removed)
         reason = None if is_harmless else kind.reason
         pair.add(_format_facts(kind, removed, is_added=False), location, reason)
 
@@ -226,6 +229,8 @@ def _report_renamed(
         new = next((fact for fact in added if fact.name == names.rename_derived(old.name)), None)
         new = new or next((fact for fact in added if names.has_same_edit(old.name, fact.name)), None)
         new = new or next((fact for fact in added if fact.name == targets.get(old.name)), None)
+        if kind is FactKind.COMPONENT and new is None and len(removed) == len(added) == 1:
+            new = next((fact for fact in added if _is_same_component(old.name, fact.name)), None)
         if kind is FactKind.TEST:
             new = new or next((fact for fact in added if fact.value == old.name), None)
         if new is not None:
@@ -234,6 +239,12 @@ def _report_renamed(
             text = phrase("{kind}: '{old}' renamed to '{new}'", kind=kind.title, old=old.name, new=new.name)
             is_harmless = old.name in private or is_test_condition(old.condition)
             pair.add(text, pair.location(new.span), None if is_harmless else kind.reason)
+
+
+def _is_same_component(old: str, new: str) -> bool:
+    """Return whether two names of components are of one class: they share the namespace or the last part."""
+    (old_scope, _, old_class), (new_scope, _, new_class) = old.rpartition("::"), new.rpartition("::")
+    return old_class == new_class or (bool(old_scope) and old_scope == new_scope)
 
 
 def _report_other_versions(pair: FilePair, removed: list[Fact], added: list[Fact]) -> None:

@@ -15,6 +15,13 @@ from linkwright.review.versions import Versions
 _MIN_FOLDER_PARTS = 3
 """The minimum number of path parts of a folder that replaces its files in a report."""
 
+BUILD_TOOLS = frozenset(
+    {
+        *("ament_cmake", "ament_cmake_auto", "ament_cmake_core", "ament_cmake_python", "ament_cmake_ros", "catkin"),
+        *("ament_lint_auto", "ament_lint_common", "message_generation", "rosidl_default_generators"),
+    }
+)
+"""The packages that each package names itself if it builds with them, so that none needs them through another one."""
 _HEADER_FOLDER = "include"
 """The folder of a package below which its own sources find headers."""
 

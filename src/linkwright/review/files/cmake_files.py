@@ -35,6 +35,8 @@ from linkwright.review.files.cmake_targets import (
 from linkwright.review.versions import Version
 
 CMAKE_FILE = "CMakeLists.txt"
+CMAKE_SUFFIX = ".cmake"
+"""The suffix of files that a ``CMakeLists.txt`` may include."""
 _COMMANDS_AFTER_TARGETS = (
     *("install", "target_", "set_target_properties", "add_dependencies", "ament_target_dependencies"),
     *("ament_export_", "catkin_package", "project"),
@@ -401,10 +403,9 @@ def _read_exports(commands: Sequence[Command]) -> Iterator[Fact]:
             base, description = command.arguments[:2]
             yield _make_fact(FactKind.PLUGIN_DESCRIPTION, description, base.text)
         elif command.name == "ament_export_dependencies":
-            known = (item for item in command.arguments if not _VARIABLE.fullmatch(item.text))
-            yield from (_make_fact(FactKind.EXPORTED_DEPENDENCY, item) for item in known)
+            yield from (_make_fact(FactKind.EXPORTED_DEPENDENCY, item) for item in _select_known(command.arguments))
         elif command.name == "ament_export_libraries":
-            yield from (_make_fact(FactKind.EXPORTED_TARGET, item) for item in command.arguments)
+            yield from (_make_fact(FactKind.EXPORTED_TARGET, item) for item in _select_known(command.arguments))
         elif command.name == "ament_export_include_directories":
             yield from (_make_exported_folder_fact(item, project) for item in command.arguments)
         elif command.name == "catkin_package":
@@ -412,6 +413,11 @@ def _read_exports(commands: Sequence[Command]) -> Iterator[Fact]:
             yield from _read_arguments_after(command, "LIBRARIES", FactKind.EXPORTED_TARGET)
             yield from _read_arguments_after(command, "CATKIN_DEPENDS", FactKind.EXPORTED_DEPENDENCY)
             yield from _read_arguments_after(command, "DEPENDS", FactKind.EXPORTED_DEPENDENCY)
+
+
+def _select_known(arguments: Iterable[Argument]) -> Iterator[Argument]:
+    """Yield the arguments without variables that the file does not set, which are empty or name other packages."""
+    return (item for item in arguments if not _VARIABLE.fullmatch(item.text))
 
 
 def _make_exported_folder_fact(argument: Argument, project: str) -> Fact:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.build_facts import EnvironmentVariables
+from linkwright.review.files.build_facts import BUILD_TOOLS, EnvironmentVariables
 from linkwright.review.files.exports import exports_nothing
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.xmltree import Element
@@ -111,6 +111,8 @@ def _is_lost(before: list[_Dependency], after: list[_Dependency], manifest: Mani
         manifest: the old manifest.
         is_private: whether nothing of the package can be used to build others.
     """
+    if any(key.package in BUILD_TOOLS for key in before):
+        return False
     old_tags, new_tags = ({key.tag for key in keys} for keys in (before, after))
     if _is_metapackage(manifest):
         return not old_tags.isdisjoint(_EXECUTION_TAGS) and new_tags.isdisjoint(_EXECUTION_TAGS)

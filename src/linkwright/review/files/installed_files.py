@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import phrase
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.changes import Change, Effect
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_facts import BuildFacts, find_own_include_text, list_names, summarize_files
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
@@ -58,9 +59,14 @@ def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) ->
     if added and old.unknown <= new.unknown:
         _report_newly_installed_files(pair, old, new, added)
     if removed:
-        names = summarize_files(removed, new.files)
-        text = phrase("no longer installed: {names}", names=list_names(names))
-        pair.add(text, None, phrase("programs that look for the files do not find them"))
+        reason = phrase("programs that look for the files do not find them")
+        pair.changes.append(make_uninstalled_change(summarize_files(removed, new.files), reason))
+
+
+def make_uninstalled_change(names: Sequence[str], reason: Phrase | None) -> Change:
+    """Return the breaking change that a build file no longer installs files and folders."""
+    text = phrase("no longer installed: {names}", names=list_names(names))
+    return Change(text, Effect.BREAKING, reason, uninstalled=tuple(names))
 
 
 def _keeps_include_text(source: str, old: Collection[str], new: Collection[str]) -> bool:

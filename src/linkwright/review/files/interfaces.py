@@ -26,8 +26,8 @@ _SEPARATOR = "---"
 _IDL = ".idl"
 _MIN_RENUMBERED = 3
 """The minimum number of changed constants that share a line. An inserted constant can renumber those below it."""
-_MIN_LISTED_FIELDS = 3
-"""The minimum number of added or removed fields that share a line."""
+_MIN_LISTED = 2
+"""The minimum number of added or removed fields or constants that share a line."""
 _ROS2_TYPE = re.compile(r"^builtin_interfaces/(?:msg/)?(Time|Duration)\b")
 """A type of ROS 2 that is built in in ROS 1."""
 _PART_PREFIXES = {1: ("",), 2: ("request ", "response "), 3: ("goal ", "result ", "feedback ")}
@@ -365,7 +365,7 @@ def _list_fields(
     listed: set[str] = set()
     for own, other, is_old in ((new, old, False), (old, new, True)):
         names = [name for name in own if name not in other]
-        if len(names) >= _MIN_LISTED_FIELDS:
+        if len(names) >= _MIN_LISTED:
             is_ros1 = _is_ros1(pair.old_file if is_old else pair.new_file)
             items = [f"{_format_type(own[name], is_ros1=is_ros1)} {part}{name}" for name in names]
             text = phrase("fields added: {names}", names=joined_first(items, MAX_NAMES))
@@ -399,14 +399,22 @@ def _compare_constants(
         {constant.name: constant.value for constant in constants if constant.name not in renamed_names}
         for constants in (old, new)
     )
-    for name, value in new_values.items():
-        if name not in old_values:
-            text = phrase("constant '{name}' = {value} added", name=part + name, value=str(value))
-            pair.add(text, locations.find(name), _make_exchange_reason() if is_ros1 else None)
-    for name in old_values:
-        if name not in new_values:
-            text = phrase("constant '{name}' removed", name=part + name)
-            pair.add(text, locations.find(name, is_old=True), _make_constant_reason())
+    added = {part + name: str(value) for name, value in new_values.items() if name not in old_values}
+    texts = [phrase("constant '{name}' = {value} added", name=name, value=value) for name, value in added.items()]
+    if len(texts) >= _MIN_LISTED:
+        shown = joined_first([f"{name} = {value}" for name, value in added.items()], MAX_NAMES)
+        texts = [phrase("constants added: {constants}", constants=shown)]
+    first = next(iter(added), part).removeprefix(part)
+    for text in texts:
+        pair.add(text, locations.find(first), _make_exchange_reason() if is_ros1 else None)
+    removed = [part + name for name in old_values if name not in new_values]
+    texts = [phrase("constant '{name}' removed", name=name) for name in removed]
+    reason = _make_constant_reason()
+    if len(texts) >= _MIN_LISTED:
+        texts = [phrase("constants removed: {constants}", constants=joined_first(removed, MAX_NAMES))]
+        reason = phrase("programs that use the constants do not build or start")
+    for text in texts:
+        pair.add(text, locations.find(removed[0].removeprefix(part), is_old=True), reason)
     changes = [
         (name, str(old_values[name]), str(value))
         for name, value in new_values.items()

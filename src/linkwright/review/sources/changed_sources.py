@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import PurePosixPath
+from types import MappingProxyType
 
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
@@ -37,10 +39,14 @@ class ChangedSources:
     Args:
         version: the version of the repository.
         paths: the paths of the sources; None for a source that the version lacks.
+        new_packages: the new names of packages that are renamed after this version, by old name.
     """
 
-    def __init__(self, version: Version, paths: Sequence[str | None]) -> None:
+    def __init__(
+        self, version: Version, paths: Sequence[str | None], new_packages: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
         self.version = version
+        self._new_packages = new_packages
         self._names = {path: read_source_names(version.file(path)) for path in paths if path is not None}
         self._unchanged_by_package: dict[str, UnchangedSources] = {}
         self._used_by_package: dict[str, UsedPackages] = {}
@@ -65,6 +71,17 @@ class ChangedSources:
         """The code of the changed sources, by path."""
         sources = {path: try_read_source(self.version.file(path)) for path in self._names}
         return {path: read_code(source) for path, source in sources.items() if source is not None}
+
+    def rename_imports(self, code: Code, new: Code) -> Code:
+        """Return code of this version with the new names of renamed packages in imports that the new code lacks."""
+        kept = {part.text for part in new.imports}
+        imports = [
+            part if part.text in kept else part._replace(text=self._rename_packages(part.text)) for part in code.imports
+        ]
+        return replace(code, imports=imports)
+
+    def _rename_packages(self, text: str) -> str:
+        return re.sub(r"\w+", lambda word: self._new_packages.get(word[0], word[0]), text)
 
     def find_moved_code(self, old: ChangedSources) -> Mapping[str, MovedCode]:
         """Return where Python sources of this version moved their code outside of functions, by the path of the source.
@@ -274,7 +291,7 @@ class ChangedSources:
         package = self.find_package(path)
         if package is None:
             return None
-        return self._used_by_package.setdefault(package, UsedPackages(self.version, package))
+        return self._used_by_package.setdefault(package, UsedPackages(self.version, package, self._new_packages))
 
     def _get_unchanged(self, package: str) -> UnchangedSources:
         if package not in self._unchanged_by_package:

@@ -9,6 +9,7 @@ from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
+from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
@@ -23,7 +24,12 @@ from linkwright.review.sources.details import (
     format_names,
     format_rename,
 )
-from linkwright.review.sources.function_changes import NameChange, find_ignored_reason, merge_function_changes
+from linkwright.review.sources.function_changes import (
+    NameChange,
+    find_field_reason,
+    find_ignored_reason,
+    merge_function_changes,
+)
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
 from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
@@ -58,6 +64,7 @@ from linkwright.review.sources.pairing import (
 from linkwright.review.sources.parameter_defaults import SUM, split_sum
 from linkwright.review.sources.parameter_scopes import find_scoped
 from linkwright.review.sources.parameter_uses import ParameterUses
+from linkwright.review.sources.python_attributes import select_attributes
 from linkwright.review.sources.python_bases import select_methods
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
 from linkwright.review.sources.renamed_classes import find_renamed_classes
@@ -83,8 +90,10 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
     """
     files = [file for file in changed_files if is_compared_source(versions, file)]
     files += [file for file in find_constant_users(versions, files) if is_compared_source(versions, file)]
+    packages = find_renamed_packages(versions)
+    new_packages = {item.old_name: item.new_name for item in packages if item.old_name != item.new_name}
     sides = (
-        ChangedSources(versions.old, [file.old_path for file in files]),
+        ChangedSources(versions.old, [file.old_path for file in files], new_packages),
         ChangedSources(versions.new, [file.new_path for file in files]),
     )
     for file in files:
@@ -220,8 +229,15 @@ class _SourcePair(WholeSourcePair):
                 drop_defined_imports(added, new_names, old_names, self.old.version.file(self.file.old_path or "")),
             )
         is_python = self.file.path.endswith(PYTHON_SUFFIX)
-        if kind not in (NameKind.FUNCTION, NameKind.MEMBER) or (is_python and kind is NameKind.MEMBER):
+        if kind not in (NameKind.FUNCTION, NameKind.MEMBER):
             return removed, added
+        if is_python and kind is NameKind.MEMBER:
+            old_path, path = self.file.old_path or self.file.path, self.file.path
+            packages = self.old.find_package(old_path) or "", self.new.find_package(path) or ""
+            return (
+                select_attributes(removed, old_names, new_names, self.old.version, packages[0]),
+                select_attributes(added, new_names, old_names, self.new.version, packages[1]),
+            )
         if is_python:
             path = self.file.old_path or self.file.path
             is_installed = is_installed_module(self.old.version, self.old.find_package(path), path)
@@ -299,6 +315,7 @@ class _SourcePair(WholeSourcePair):
         for item, text, reason, detail in changed:
             if detail is Detail.ARGUMENTS and reason is None:
                 reason = find_ignored_reason(item, old_names, self.new.get_names(self.file.new_path))
+                reason = reason or find_field_reason(item, old_names)
             is_breaking = is_called or kind is not NameKind.CLASS
             is_breaking = is_breaking and (kind is not NameKind.FUNCTION or self.can_be_linked(item.name))
             if kind is NameKind.PARAMETER and reason is None:

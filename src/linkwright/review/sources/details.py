@@ -12,9 +12,12 @@ from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is
 from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
 from linkwright.review.sources.qos import find_depth, find_qos_reason, normalize_qos
-from linkwright.review.sources.signatures import parse_signature
+from linkwright.review.sources.signatures import NOTHING, parse_signature
 
-_KNOWN_IN_BOTH = (Detail.QOS, Detail.READ_AS, Detail.ARGUMENTS, Detail.RESULT, Detail.BASES, Detail.CREATED_IN)
+_KNOWN_IN_BOTH = (
+    *(Detail.QOS, Detail.READ_AS, Detail.ARGUMENTS, Detail.RESULT, Detail.RETURNED),
+    *(Detail.BASES, Detail.CREATED_IN),
+)
 """The properties that are compared only if both versions tell them."""
 _CLIENT_KINDS = (NameKind.CLIENT, NameKind.ACTION_CLIENT)
 _QOS = re.compile(r"[\w:.]*(?:QoS|qos_profile|QOS)\w*\s*(?:[({].*)?", re.DOTALL)
@@ -109,6 +112,8 @@ def compare_details(
             continue  # calls that built still build
         if detail is Detail.RESULT and is_same_type(before or "", after or ""):
             continue
+        if detail is Detail.RETURNED and after != NOTHING:
+            continue  # another value of any type, which callers may expect or not
         missing = NO if detail in (Detail.LATCH, Detail.REQUIRED, Detail.CONSTANT) else "-"
         text = phrase(
             "{kind} '{name}': {property} {old} -> {new}",
@@ -239,6 +244,8 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
     if detail is Detail.RESULT:
         reason = phrase("code that uses the result as '{type}' does not build", type=old)
         return None if can_use_result(old, new) else reason
+    if detail is Detail.RETURNED:
+        return phrase("programs that use the result get None")
     if detail is Detail.BASES:
         lost = sorted(set(old.split(", ")) - set(new.split(", ")))
         reason = phrase("programs that load the class as '{type}' do not find it", type=", ".join(lost))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.names import Detail, SourceName, SourceNames
+from linkwright.review.sources.reasons import make_member_reason
 from linkwright.review.sources.signatures import parse_signature
 
 _MAX_CHANGES = 3
@@ -49,6 +50,22 @@ def find_ignored_reason(item: SourceName, old: SourceNames, new: SourceNames) ->
     if not lost or len(names[1]) >= len(names[0]):
         return None
     return phrase("'{name}' ignores {arguments} now", name=item.name, arguments=joined_first(lost, MAX_NAMES))
+
+
+def find_field_reason(item: SourceName, old: SourceNames) -> Phrase | None:
+    """Return the reason why a data class in Python that has lost fields is breaking; None if it has not.
+
+    Args:
+        item: the class in the new version.
+        old: the names in the old source.
+    """
+    before = next((other for other in old.of_kind(item.kind) if other.name == item.name), None)
+    if before is None or item.name not in old.data_classes:
+        return None
+    signatures = [parse_signature(dict(other.details).get(Detail.ARGUMENTS, "")) for other in (before, item)]
+    names = [() if signature is None else signature.positional for signature in signatures]
+    lost = [f"{item.name}.{name}" for name in names[0] if name not in names[1]]
+    return make_member_reason(joined_first(lost, MAX_NAMES)) if lost and None not in signatures else None
 
 
 def merge_function_changes(changes: Sequence[NameChange], *, is_python: bool) -> Iterator[NameChange]:

@@ -79,6 +79,7 @@ class Detail(Enum):
     REQUIRED = phrase("required")
     ARGUMENTS = phrase("arguments")
     RESULT = phrase("result")
+    RETURNED = phrase("returned value")
     CONSTANT = phrase("const")
     BASES = phrase("base classes")
     CREATED_IN = phrase("created in")
@@ -223,6 +224,8 @@ class SourceNames:
             class; its kind is None for a timer.
         inherited_names: the names that each class of a Python source inherits. Classes with unknown base classes are
             left out.
+        class_names: the names that each class of a Python source has or inherits from classes of the package.
+        data_classes: the classes of a Python source whose fields are the parameters of their constructors.
         bound_names: the names that a Python 3 source defines or imports.
         undefined_names: the undefined names that a source uses, each with the location of its first use.
         attributes: the attributes that a Python 3 source defines in classes or assigns to objects.
@@ -265,6 +268,8 @@ class SourceNames:
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)
     callbacks: dict[str, tuple[NameKind | None, str]] = field(default_factory=dict)
     inherited_names: dict[str, Collection[str]] = field(default_factory=dict)
+    class_names: dict[str, Collection[str]] = field(default_factory=dict)
+    data_classes: set[str] = field(default_factory=set)
     bound_names: frozenset[str] = frozenset()
     undefined_names: dict[str, Span] = field(default_factory=dict)
     attributes: frozenset[str] = frozenset()

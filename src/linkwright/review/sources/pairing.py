@@ -44,7 +44,7 @@ def pair_similar(
         (old,), (new,) = removed, added
         if differ(old.name, new.name):
             return []
-        has_types = old.kind not in _UNTYPED_KINDS
+        has_types = old.kind not in _UNTYPED_KINDS and not _is_python_member(old)
         has_equal_type = old.type == new.type and (has_types or bool(old.type))
         return [(old, new)] if has_equal_type or compute_similarity(old, new) >= _MIN_SIMILARITY else []
     unpaired = list(added)
@@ -101,7 +101,16 @@ def _has_compatible_type(old: SourceName, new: SourceName) -> bool:
 def compute_similarity(old: SourceName, new: SourceName) -> float:
     """Return the ratio of equal characters of the last words of two names."""
     old_name, new_name = (item.name.rpartition("::")[2].casefold() for item in (old, new))
+    if _is_python_member(old) and _is_python_member(new):
+        (old_class, _, old_word), (new_class, _, new_word) = old_name.rpartition("."), new_name.rpartition(".")
+        if old_class == new_class:  # else the names of the classes count, too
+            old_name, new_name = old_word, new_word
     return SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()
+
+
+def _is_python_member(item: SourceName) -> bool:
+    """Return whether a name is a method or attribute of a class in Python, which is qualified by the class."""
+    return item.kind in (NameKind.FUNCTION, NameKind.MEMBER) and "." in item.name
 
 
 def has_same_types(old: SourceName, new: SourceName, old_names: SourceNames, new_names: SourceNames) -> bool:

@@ -22,15 +22,19 @@ from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceNam
 from linkwright.review.sources.package_imports import PACKAGE_FILE, read_imports
 from linkwright.review.sources.parameter_defaults import find_parameter_default
 from linkwright.review.sources.parameter_helpers import is_parameter_name, reads_parameter
-from linkwright.review.sources.python_bases import find_inherited_names
+from linkwright.review.sources.python_attributes import find_attributes
+from linkwright.review.sources.python_bases import find_inherited_names, list_known_names
 from linkwright.review.sources.python_callbacks import CallbackFunctions
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
 from linkwright.review.sources.python_source import PythonSource
 from linkwright.review.sources.python_wrappers import CREATING_METHODS, WrapperClasses, get_argument
 from linkwright.review.sources.required_parameters import is_required_parameter
 from linkwright.review.sources.signatures import (
+    Signature,
     find_argument_default,
+    find_returned,
     ignores_keywords,
+    is_data_class,
     read_method_signatures,
     read_signature,
 )
@@ -157,6 +161,13 @@ def _format_expression(python: PythonFile, node: ast.expr | None) -> str:
     return " ".join(ast.unparse(value if isinstance(value, (ast.Constant, ast.UnaryOp)) else node).split())
 
 
+def _list_details(definition: ast.FunctionDef | ast.ClassDef, signature: Signature) -> tuple[tuple[Detail, str], ...]:
+    """Return the parameters of a function or class, and the result of a function if it is certain."""
+    returned = find_returned(definition) if isinstance(definition, ast.FunctionDef) else None
+    details = ((Detail.ARGUMENTS, signature.text),)
+    return details if returned is None else (*details, (Detail.RETURNED, returned))
+
+
 def _has_uncertain_arguments(call: ast.Call) -> bool:
     """Return whether a call passes on arguments with ``*`` or ``**``."""
     return any(keyword.arg is None for keyword in call.keywords) or any(
@@ -211,11 +222,12 @@ class _Reader:
             if isinstance(statement, (ast.ClassDef, ast.FunctionDef)) and not statement.name.startswith("_"):
                 kind = NameKind.CLASS if isinstance(statement, ast.ClassDef) else NameKind.FUNCTION
                 signature = read_signature(statement)
-                details = () if signature is None else ((Detail.ARGUMENTS, signature.text),)
+                details = () if signature is None else _list_details(statement, signature)
                 if ignores_keywords(statement):
                     self._names.ignoring_keywords.add(statement.name)
                 self._names.add(SourceName(kind, statement.name, "", self._python.span(statement), details))
                 if isinstance(statement, ast.ClassDef):
+                    self._read_attributes(statement)
                     self._read_methods(statement)
             self._names.is_program |= isinstance(statement, ast.If) and "__main__" in ast.unparse(statement.test)
             self._names.is_program |= isinstance(statement, ast.FunctionDef) and statement.name == "main"
@@ -234,6 +246,17 @@ class _Reader:
                 self._add(kind, decorator.args[0], None)
                 self._names.callbacks[self._functions.qualify(function)] = (kind, text)
 
+    def _read_attributes(self, definition: ast.ClassDef) -> None:
+        """Add the annotated attributes of a class, unless they are the parameters of its constructor."""
+        path = Path(self._python.source.name)
+        self._names.class_names[definition.name] = list_known_names(path, self._python.tree, definition)
+        if is_data_class(definition):
+            self._names.data_classes.add(definition.name)
+            return
+        for node in find_attributes(definition):
+            name = f"{definition.name}.{ast.unparse(node.target)}"
+            self._names.add(SourceName(NameKind.MEMBER, name, "", self._python.span(node)))
+
     def _read_methods(self, definition: ast.ClassDef) -> None:
         """Add the public methods of a class whose base classes are known.
 
@@ -248,7 +271,7 @@ class _Reader:
         self._names.inherited_names[definition.name] = inherited
         for method, signature in read_method_signatures(definition):
             if method.name not in passed_on:
-                name, details = f"{definition.name}.{method.name}", ((Detail.ARGUMENTS, signature.text),)
+                name, details = f"{definition.name}.{method.name}", _list_details(method, signature)
                 self._names.add(SourceName(NameKind.FUNCTION, name, "", self._python.span(method), details))
                 if ignores_keywords(method):
                     self._names.ignoring_keywords.add(name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import builtins
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 
@@ -51,15 +52,56 @@ _LIFECYCLE_NAMES = frozenset(
 _THREAD_NAMES = frozenset(
     {"start", "run", "join", "name", "getName", "setName", "ident", "native_id", "is_alive", "isAlive", "daemon"}
 ) | {"isDaemon", "setDaemon"}
+_WAITABLE_NAMES = frozenset(
+    {"add_future", "add_to_wait_set", "callback_group", "destroy", "execute", "get_num_entities", "is_ready"}
+) | {"remove_future", "take_data"}
+_CLIENT_NAMES = _WAITABLE_NAMES | {"send_goal", "send_goal_async", "server_is_ready", "wait_for_server"}
+_SERVER_NAMES = _WAITABLE_NAMES | {
+    *("action_type", "notify_execute", "notify_goal_done", "register_cancel_callback", "register_execute_callback"),
+    *("register_goal_callback", "register_handle_accepted_callback"),
+}
+_SIMPLE_CLIENT_NAMES = frozenset(
+    {
+        *("action_client", "cancel_all_goals", "cancel_goal", "cancel_goals_at_and_before_time", "done_condition"),
+        *("get_goal_status_text", "get_result", "get_state", "gh", "send_goal", "send_goal_and_wait", "simple_state"),
+        *("stop_tracking_goal", "wait_for_result", "wait_for_server"),
+    }
+)
+_SIMPLE_SERVER_NAMES = frozenset(
+    {
+        *("accept_new_goal", "action_server", "current_goal", "executeLoop", "execute_callback", "execute_condition"),
+        *("execute_thread", "get_default_result", "goal_callback", "internal_goal_callback", "is_active"),
+        *("internal_preempt_callback", "is_new_goal_available", "is_preempt_requested", "lock", "need_to_terminate"),
+        *("new_goal", "new_goal_preempt_request", "next_goal", "preempt_callback", "preempt_request"),
+        *("publish_feedback", "register_goal_callback", "register_preempt_callback", "set_aborted", "set_preempted"),
+        *("set_succeeded", "start", "terminate_mutex"),
+    }
+)
+_STATE_NAMES = frozenset(
+    {
+        *("execute", "get_registered_input_keys", "get_registered_outcomes", "get_registered_output_keys"),
+        *("preempt_requested", "recall_preempt", "register_input_keys", "register_io_keys", "register_outcomes"),
+        *("register_output_keys", "request_preempt", "service_preempt", "userdata"),
+    }
+)
 _KNOWN_BASES: Mapping[tuple[str, str], frozenset[str]] = {
-    ("", "object"): frozenset(),
     ("abc", "ABC"): frozenset({"register"}),
+    ("typing", "Generic"): frozenset(),
+    ("typing", "Protocol"): frozenset(),
     ("threading", "Thread"): _THREAD_NAMES,
     ("rclpy.node", "Node"): NODE_NAMES,
     ("rclpy.lifecycle", "LifecycleNode"): NODE_NAMES | _LIFECYCLE_NAMES,
     ("rclpy.lifecycle", "Node"): NODE_NAMES | _LIFECYCLE_NAMES,
+    **dict.fromkeys((("rclpy.action", "ActionClient"), ("rclpy.action.client", "ActionClient")), _CLIENT_NAMES),
+    **dict.fromkeys((("rclpy.action", "ActionServer"), ("rclpy.action.server", "ActionServer")), _SERVER_NAMES),
+    ("actionlib", "SimpleActionClient"): _SIMPLE_CLIENT_NAMES,
+    ("actionlib", "SimpleActionServer"): _SIMPLE_SERVER_NAMES,
+    ("smach", "State"): _STATE_NAMES,
+    **dict.fromkeys((("enum", "Enum"), ("enum", "Flag")), frozenset({"name", "value"})),
+    **dict.fromkeys((("enum", "IntEnum"), ("enum", "IntFlag")), frozenset({"name", "value", *dir(int)})),
+    **{("", name): frozenset(dir(value)) for name, value in vars(builtins).items() if isinstance(value, type)},
 }
-"""The public names of classes of other packages, by module and class."""
+"""The public names of classes of other packages and built-in classes, by module and class."""
 _DYNAMIC_NAMES = frozenset({"__getattr__", "__getattribute__"})
 _MAX_DEPTH = 8
 
@@ -80,11 +122,29 @@ def find_inherited_names(path: Path, tree: ast.Module, definition: ast.ClassDef,
         return None
     inherited: set[str] = set()
     for base in definition.bases:
-        found = _find_base_names(path, tree, ast.unparse(base), depth)
+        name = base.value if isinstance(base, ast.Subscript) else base  # ``Generic[T]``
+        found = _find_base_names(path, tree, ast.unparse(name), depth)
         if found is None:
             return None
         inherited |= found
     return inherited
+
+
+def list_known_names(path: Path, tree: ast.Module, definition: ast.ClassDef, depth: int = 0) -> set[str]:
+    """Return the names that a class and those of its base classes that the package defines have.
+
+    Args:
+        path: the path of the source.
+        tree: the syntax tree of the source.
+        definition: the class.
+        depth: the number of classes that lead to this one.
+    """
+    names = _list_names(definition)
+    for base in definition.bases if depth < _MAX_DEPTH else ():
+        found = find_class(path, tree, ast.unparse(base))
+        if found is not None:
+            names |= list_known_names(*found, depth + 1)
+    return names
 
 
 def find_class(path: Path, tree: ast.Module, name: str, depth: int = 0) -> tuple[Path, ast.Module, ast.ClassDef] | None:

@@ -83,12 +83,22 @@ def find_removal_reason(
     if kind in (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER):
         if names.is_program:
             return None
+        if path.endswith(PYTHON_SUFFIX) and kind is NameKind.MEMBER:
+            return make_member_reason(text)
         if path.endswith(PYTHON_SUFFIX) and all("." in item.name for item in items):
             return phrase("programs that call '{name}' do not find it", name=text)
         if path.endswith(PYTHON_SUFFIX):
             return phrase("programs that import '{name}' do not find it", name=text)
         return phrase("code of other packages that uses '{name}' does not build", name=text)
+    if len(items) > 1:
+        quoted = joined_first([f"'{item.name}'" for item in items], MAX_NAMES)
+        return phrase("programs that use the names {names} do not find them", names=quoted)
     return name_reason(str(text))
+
+
+def make_member_reason(names: Phrase | str) -> Phrase:
+    """Return the reason why removed attributes of a class in Python are breaking."""
+    return phrase("programs that set or read '{name}' fail", name=names)
 
 
 def _belongs_to_other_node(parameter: SourceName, names: SourceNames) -> bool:

@@ -7,6 +7,12 @@ import copy
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+_DATA_CLASS, _NAMED_TUPLE = "dataclass", "NamedTuple"
+_PLAIN_OPTIONS = frozenset({"repr", "eq", "order", "unsafe_hash", "frozen", "match_args", "slots", "weakref_slot"})
+"""The options of data classes that leave the parameters as they are."""
+NOTHING = "None"
+"""The result of a function that returns no value."""
+
 
 @dataclass(frozen=True)
 class Signature:
@@ -92,6 +98,8 @@ def read_signature(definition: ast.stmt) -> Signature | None:
     """
     if isinstance(definition, (ast.FunctionDef, ast.AsyncFunctionDef)) and not definition.decorator_list:
         return _make_signature(definition.args, first=0)
+    if isinstance(definition, ast.ClassDef) and is_data_class(definition):
+        return _make_field_signature(definition)
     if not isinstance(definition, ast.ClassDef) or definition.decorator_list or definition.keywords:
         return None
     methods = {node.name: node for node in definition.body if isinstance(node, ast.FunctionDef)}
@@ -101,6 +109,45 @@ def read_signature(definition: ast.stmt) -> Signature | None:
         is_certain = not methods["__init__"].decorator_list
         return _make_signature(methods["__init__"].args, first=1) if is_certain else None
     return _NO_PARAMETERS if is_self_contained(definition) else None
+
+
+def is_data_class(definition: ast.ClassDef) -> bool:
+    """Return whether the fields of a class are the parameters of its constructor: a data class or named tuple."""
+    bases = [ast.unparse(base).rpartition(".")[2] for base in definition.bases]
+    decorators = [node.func if isinstance(node, ast.Call) else node for node in definition.decorator_list]
+    names = [ast.unparse(node).rpartition(".")[2] for node in decorators]
+    methods = {node.name for node in definition.body if isinstance(node, ast.FunctionDef)}
+    is_plain = not definition.keywords and methods.isdisjoint(("__init__", "__new__"))
+    return is_plain and (names, bases) in (([_DATA_CLASS], []), ([_DATA_CLASS], ["object"]), ([], [_NAMED_TUPLE]))
+
+
+def _make_field_signature(definition: ast.ClassDef) -> Signature | None:
+    """Return the parameters of a data class or named tuple, or None if they are uncertain."""
+    decorators = [node for node in definition.decorator_list if isinstance(node, ast.Call)]
+    if any(keyword.arg not in _PLAIN_OPTIONS for node in decorators for keyword in node.keywords):
+        return None
+    names: list[str] = []
+    defaults: list[ast.expr] = []
+    for node in definition.body:
+        if not isinstance(node, ast.AnnAssign) or not isinstance(node.target, ast.Name):
+            continue
+        annotation, value = ast.unparse(node.annotation).rpartition(".")[2], node.value
+        options: dict[str | None, ast.expr] = {}
+        if isinstance(value, ast.Call) and ast.unparse(value.func).rpartition(".")[2] == "field":
+            options = {keyword.arg: keyword.value for keyword in value.keywords}
+            factory = options.get("default_factory")
+            value = options.get("default", None if factory is None else ast.Call(factory, [], []))
+        if annotation == "KW_ONLY" or None in options or "kw_only" in options:
+            return None
+        if "ClassVar" in annotation or ("init" in options and ast.unparse(options["init"]) == "False"):
+            continue
+        names.append(node.target.id)
+        if value is not None:
+            defaults.append(value)
+        elif defaults:
+            return None  # Python refuses it
+    arguments = ast.arguments([], [ast.arg(name) for name in names], None, [], [], None, defaults)
+    return _make_signature(arguments, first=0)
 
 
 def ignores_keywords(definition: ast.stmt) -> bool:
@@ -113,6 +160,43 @@ def ignores_keywords(definition: ast.stmt) -> bool:
     name = definition.args.kwarg.arg
     names = {node.id for part in definition.body for node in ast.walk(part) if isinstance(node, ast.Name)}
     return names.isdisjoint((name, "locals"))
+
+
+def find_returned(function: ast.FunctionDef) -> str | None:
+    """Return the text of a result that a function returns, `NOTHING` if it returns none, or None if it is uncertain.
+
+    A type that the function states counts before the returned expressions. Of these, calls are uncertain, because they
+    may return nothing, too. A function that only raises an error or has no code may be a pattern for others.
+    """
+    nodes = list(_walk_function(function))
+    if any(isinstance(node, (ast.Yield, ast.YieldFrom)) for node in nodes) or _is_pattern(function):
+        return None
+    values = [node.value for node in nodes if isinstance(node, ast.Return) and node.value is not None]
+    values = [value for value in values if not (isinstance(value, ast.Constant) and value.value is None)]
+    if not values:
+        return NOTHING
+    stated = "" if function.returns is None else ast.unparse(function.returns)
+    if stated not in ("", NOTHING):
+        return stated
+    certain = [value for value in values if not isinstance(value, (ast.Call, ast.Await, ast.IfExp, ast.BoolOp))]
+    return ast.unparse(certain[0]) if certain else None
+
+
+def _is_pattern(function: ast.FunctionDef) -> bool:
+    """Return whether a function has no code, or ends with an error."""
+    body = function.body[ast.get_docstring(function) is not None :]
+    is_empty = all(isinstance(node, ast.Pass) or ast.unparse(node) == "..." for node in body)
+    return is_empty or isinstance(body[-1], ast.Raise)
+
+
+def _walk_function(function: ast.FunctionDef) -> Iterator[ast.AST]:
+    """Yield the nodes in the body of a function without those of inner functions and classes."""
+    stack: list[ast.AST] = list(function.body)
+    while stack:
+        node = stack.pop()
+        yield node
+        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)):
+            stack.extend(ast.iter_child_nodes(node))
 
 
 def find_argument_default(tree: ast.AST, name: ast.Name) -> ast.expr | None:

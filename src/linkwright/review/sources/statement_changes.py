@@ -27,6 +27,7 @@ from linkwright.review.sources.renamed_words import rename_words
 from linkwright.review.sources.replaced_literals import find_replaced_literals
 from linkwright.review.sources.returned_codes import find_returned_codes
 from linkwright.review.sources.small_changes import find_small_changes
+from linkwright.review.sources.started_commands import find_command_changes
 
 
 def compare_statements(
@@ -50,6 +51,7 @@ def compare_statements(
         changes += _find_small_changes(old, new, file, changes)
         changes += _find_renamed_variables(old, new, file, changes)
         changes += _find_attributes(old, new, file, changes)
+        changes += _compare_commands(old, new, file, changes)
         changes += _compare_code(old, new, file.old_path, file.new_path, changes)
         changes += _compare_keys(old, new, file, changes)
         changes += _find_deprecations(old, new, file)
@@ -164,6 +166,7 @@ def _compare_code(
         return
     renamed = drop_reported(find_renamed_classes(before, after), [str(change.sentence) for change in reported])
     before = rename_words(rename_classes(before, renamed), after, new.find_renamed_words(old))
+    before = old.rename_imports(before, after)
 
     def has_moved(name: str, code: Code) -> bool:
         side, path = (new, new_path) if code is before else (old, old_path)
@@ -209,6 +212,17 @@ def _compare_keys(
     sentences = [str(change.sentence) for change in reported]
     for change in find_key_changes(paths, (old.has_text, new.has_text), sentences):
         yield _make_change(change, file)
+
+
+def _compare_commands(
+    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
+) -> Iterator[Change]:
+    """Yield the commands and programs that only one version of a source starts."""
+    paths = old.version.file(file.old_path or ""), new.version.file(file.new_path or "")
+    sentences = [str(change.sentence) for change in reported]
+    for change in find_command_changes(paths, (old.has_text, new.has_text), sentences):
+        path = (file.old_path if change.is_old else file.new_path) or file.path
+        yield Change(change.sentence, location=Location(path, change.span.line, change.span.column, change.is_old))
 
 
 def _compare_constants(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
@@ -57,10 +57,12 @@ class UsedPackages:
     Args:
         version: the version of the repository.
         package: the folder of the package.
+        new_packages: the new names of packages that are renamed after this version, by old name.
     """
 
-    def __init__(self, version: Version, package: str) -> None:
+    def __init__(self, version: Version, package: str, new_packages: Mapping[str, str]) -> None:
         self._version = version
+        self._new_packages = new_packages
         self._package = package
         self._reported: set[str] = set()
         self._used: dict[bool, frozenset[str]] = {}
@@ -77,11 +79,17 @@ class UsedPackages:
             return {}
         return _read_imports(source) if is_python_source(path) else _read_includes(source)
 
+    def rename(self, name: str) -> str:
+        """Return a package, header or module with the new name of its package."""
+        package = get_package(name)
+        return f"{self._new_packages.get(package, package)}{name[len(package) :]}"
+
     def uses(self, name: str, *, is_python: bool) -> bool:
         """Return whether a source of the package uses a package, header or module."""
         if is_python not in self._used:
             paths = self._list_python_sources() if is_python else self._version.paths(CPP_SUFFIXES, self._package)
             names = {name for path in paths if _is_searched(path) for name in self.read(path)}
+            names |= set(map(self.rename, names))
             self._used[is_python] = frozenset(names | {get_package(name) for name in names})
         return name in self._used[is_python]
 
@@ -153,10 +161,12 @@ def _compare_packages(
         if path is None:
             continue
         uses = {get_package(name): span for name, span in reversed(sides[0].read(path).items())}
-        packages = [name for name in reversed(uses) if not sides[1].uses(name, is_python=is_python)]
-        if packages and other_path is not None:
-            kept = {get_package(name) for name in sides[1].read_all(other_path)}  # now in the package, or before
-            packages = [name for name in packages if name not in kept]
+        packages = [name for name in reversed(uses) if not _uses(*sides, name, is_python=is_python)]
+        if packages and other_path is not None:  # now in the package, or before
+            kept = {
+                get_package(other) for name in sides[1].read_all(other_path) for other in (name, sides[1].rename(name))
+            }
+            packages = [name for name in packages if kept.isdisjoint((name, sides[0].rename(name)))]
         packages = [name for name in packages if sides[0].claim(name)]
         if packages:
             names = joined_first([f"'{name}'" for name in packages], MAX_NAMES)
@@ -170,14 +180,19 @@ def _compare_headers(old: UsedPackages, new: UsedPackages, old_path: str, new_pa
     """
     for sides, path, is_old in (((new, old), new_path, False), ((old, new), old_path, True)):
         uses = {name: span for name, span in sides[0].read(path).items() if not _MESSAGE.search(name)}
-        known = [name for name in uses if sides[1].uses(get_package(name), is_python=False)]
-        headers = [name for name in known if not sides[1].uses(name, is_python=False) and sides[0].claim(name)]
+        known = [name for name in uses if _uses(*sides, get_package(name), is_python=False)]
+        headers = [name for name in known if not _uses(*sides, name, is_python=False) and sides[0].claim(name)]
         if headers:
             names = joined_first([f"'{name}'" for name in headers], MAX_NAMES)
             text = phrase("includes added: {names}", names=names)
             if is_old:
                 text = phrase("includes removed: {names}", names=names)
             yield UsageChange(text, uses[headers[0]], is_old)
+
+
+def _uses(own: UsedPackages, other: UsedPackages, name: str, *, is_python: bool) -> bool:
+    """Return whether the other version uses a package, header or module of a version, by its old or new name."""
+    return any(other.uses(text, is_python=is_python) for text in (name, own.rename(name)))
 
 
 def _format_packages(names: Phrase, *, is_python: bool, is_old: bool) -> Phrase:

@@ -9,6 +9,7 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect
 from linkwright.review.files.build_facts import BuildFacts, FactKind, list_names, summarize_files
+from linkwright.review.files.installed_files import make_uninstalled_change
 from linkwright.review.installed_paths import find_build_file, find_python_packages, read_package_facts
 from linkwright.review.kinds import find_rule
 from linkwright.review.renamed_packages import find_renamed_packages
@@ -80,8 +81,7 @@ def _find_lost_targets(
         (other_targets, phrase("programs that look for the files do not find them")),
     ):
         if targets:
-            names = list_names(summarize_files(targets, new.files))
-            yield Change(phrase("no longer installed: {names}", names=names), Effect.BREAKING, reason)
+            yield make_uninstalled_change(summarize_files(targets, new.files), reason)
 
 
 def _find_lost_facts(old: BuildFacts, new: BuildFacts) -> Iterator[Change]:

@@ -20,7 +20,7 @@ from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHO
 from linkwright.review.sources.python_interface_uses import find_python_uses
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
-_INTERFACE_SUFFIXES = (".msg", ".srv", ".action")
+INTERFACE_SUFFIXES = (".msg", ".srv", ".action")
 
 
 def find_lost_interfaces(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
@@ -28,7 +28,7 @@ def find_lost_interfaces(versions: Versions, changed_files: Sequence[ChangedFile
 
     Interfaces of packages that the new version does not have are left out, as are tests.
     """
-    changed = [file for file in changed_files if file.path.endswith(_INTERFACE_SUFFIXES) and not file.is_submodule]
+    changed = [file for file in changed_files if file.path.endswith(INTERFACE_SUFFIXES) and not file.is_submodule]
     lost = [interface for file in changed if (interface := _find_lost(versions, file)) is not None]
     packages = {interface.package for interface in lost}
     for path in versions.new.paths((*CPP_SUFFIXES, PYTHON_SUFFIX)) if lost else ():
@@ -70,7 +70,7 @@ def _find_lost(versions: Versions, file: ChangedFile) -> LostInterface | None:
     """Return what an interface lost; None if it lost nothing or its package was removed."""
     if file.old_path is None:
         return None
-    package = _find_package(versions.old, file.old_path)
+    package = find_package(versions.old, file.old_path)
     old_path = PurePosixPath(file.old_path)
     folder = versions.old.package_of(file.old_path, (MANIFEST, ROSBUILD_MANIFEST))
     if package is None or folder is None:
@@ -78,7 +78,7 @@ def _find_lost(versions: Versions, file: ChangedFile) -> LostInterface | None:
     paths = [
         path
         for path in versions.new.paths((old_path.suffix,))
-        if PurePosixPath(path).name == old_path.name and _find_package(versions.new, path) == package
+        if PurePosixPath(path).name == old_path.name and find_package(versions.new, path) == package
     ]
     kind = old_path.suffix.removeprefix(".")
     if not paths:
@@ -96,14 +96,15 @@ def _find_lost(versions: Versions, file: ChangedFile) -> LostInterface | None:
         )
     except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError, KeyError):
         return None
-    lost = {part: _list_names(old[part]) - _list_names(new[part]) for part in old if part in new}
+    lost = {part: list_names(old[part]) - list_names(new[part]) for part in old if part in new}
     constants = {name for part in old for name in _list_constants(old[part])}
     if not any(lost.values()):
         return None
     return LostInterface(package, kind, old_path.stem, lost, frozenset(constants))
 
 
-def _list_names(structure: Structure) -> frozenset[str]:
+def list_names(structure: Structure) -> frozenset[str]:
+    """Return the fields and constants of a structure."""
     return frozenset(field.name for field in structure.fields) | _list_constants(structure)
 
 
@@ -111,7 +112,7 @@ def _list_constants(structure: Structure) -> frozenset[str]:
     return frozenset(constant.name for constant in structure.constants)
 
 
-def _find_package(version: Version, path: str) -> str | None:
+def find_package(version: Version, path: str) -> str | None:
     """Return the name of the package that contains a file, or None if there is none."""
     folder = version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST))
     return None if folder is None else package_name(version.file(folder)) or version.file(folder).name

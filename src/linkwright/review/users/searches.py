@@ -17,6 +17,7 @@ from linkwright.review.sources.callers import find_broken_callers
 from linkwright.review.sources.left_types import find_left_types
 from linkwright.review.sources.lost_methods import find_lost_methods
 from linkwright.review.sources.lost_types import find_lost_types
+from linkwright.review.users.ignored_packages import find_ignored_packages
 from linkwright.review.users.left_remappings import find_left_remappings
 from linkwright.review.users.lost_controllers import find_lost_controllers
 from linkwright.review.users.lost_data import find_lost_data
@@ -32,6 +33,7 @@ from linkwright.review.users.lost_scripts import find_lost_scripts
 from linkwright.review.users.lost_sources import find_lost_sources
 from linkwright.review.users.lost_states import find_lost_states
 from linkwright.review.users.lost_units import find_lost_units
+from linkwright.review.users.missing_fields import find_missing_fields
 from linkwright.review.users.old_dependencies import find_old_dependencies
 from linkwright.review.users.package_lookups import find_new_lookups
 from linkwright.review.users.unusable_programs import find_unusable_programs
@@ -52,7 +54,14 @@ SEARCHES: tuple[Search, ...] = (
     ),
     *(find_lost_libraries, find_lost_programs, find_lost_registrations, find_lost_sources, find_missing_programs),
     *(find_old_package_names, find_old_dependencies),
-    *(find_passed_arguments, find_left_nodes, find_left_parameters, find_lost_interfaces, find_left_types),
+    *(
+        find_passed_arguments,
+        find_left_nodes,
+        find_left_parameters,
+        find_lost_interfaces,
+        find_left_types,
+        find_missing_fields,
+    ),
     *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),
-    *(find_unusable_programs, find_undeclared_plugins, find_left_remappings),
+    *(find_unusable_programs, find_undeclared_plugins, find_left_remappings, find_ignored_packages),
 )

@@ -1,0 +1,75 @@
+"""The lines of a review about what packages export to others, and about renamed components."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+HEAD = "cmake_minimum_required(VERSION 3.8)\nproject(arm)\nadd_library(arm src/arm.cpp)\n"
+INSTALL = "install(TARGETS arm DESTINATION lib)\nament_export_include_directories(include)\n{}\nament_package()\n"
+MANIFEST = PACKAGE_XML.replace("arm_description", "arm")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("ament_export_libraries(${parts})", "", []),  # nothing sets the variable, so that nothing is exported
+        ("ament_export_libraries(arm)", "", ["exported targets removed: 'arm'"]),
+        ("ament_export_dependencies(ament_cmake)", "", []),
+        ("ament_export_dependencies(rclcpp)", "", ["exported dependencies removed: 'rclcpp'"]),
+    ],
+)
+def test_only_an_export_that_others_may_use_is_breaking_when_it_is_gone(repository, compare, old, new, expected):
+    cmake = HEAD + INSTALL
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake.format(old)})
+    repository.write({"arm/CMakeLists.txt": cmake.format(new)})
+    assert breaking(compare(repository)) == expected
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("ament_cmake", False), ("catkin", False), ("rclcpp", True)])
+@pytest.mark.parametrize("new", ["<buildtool_depend>{}</buildtool_depend>", ""])
+def test_a_build_tool_that_is_no_depend_any_more_is_not_breaking(repository, compare, name, is_breaking, new):
+    manifest = MANIFEST.replace("<license>", f"<depend>{name}</depend><license>")
+    repository.commit({"arm/package.xml": manifest, "arm/CMakeLists.txt": HEAD + INSTALL.format("")})
+    repository.write({"arm/package.xml": manifest.replace(f"<depend>{name}</depend>", new.format(name))})
+    result = compare(repository)
+    assert len(sentences(subject(result, "arm/package.xml"))) == 1
+    assert bool(breaking(result)) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        ("arm::Lamp", ["components: 'arm::Light_Node' renamed to 'arm::Lamp'"]),
+        ("leg::Light_Node", ["components: 'arm::Light_Node' renamed to 'leg::Light_Node'"]),
+        ("leg::Lamp", ["components added: 'leg::Lamp'", "components removed: 'arm::Light_Node'"]),
+    ],
+)
+def test_a_component_with_another_class_or_namespace_is_renamed(repository, compare, new, expected):
+    cmake = HEAD + 'rclcpp_components_register_nodes(arm "{}")\n' + INSTALL.format("")
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake.format("arm::Light_Node")})
+    repository.write({"arm/CMakeLists.txt": cmake.format(new)})
+    result = compare(repository)
+    assert sentences(subject(result, "arm/CMakeLists.txt")) == expected
+    assert breaking(result) == expected[-1:]
+
+
+def test_moved_interfaces_break_programs_that_use_the_types(repository, compare):
+    names = ("Load", "Rate", "State")
+    files = {f"arm/msg/{name}.msg": f"int32 {name.lower()}\nint32 count\nint32 number\n" for name in names}
+    cmake = "project(arm)\nrosidl_generate_interfaces(arm {})\n".format(" ".join(f"msg/{name}.msg" for name in names))
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake, **files})
+    moved = {path.replace("arm/", "parts/", 1): text for path, text in files.items()}
+    others = {
+        "parts/package.xml": MANIFEST.replace("arm", "parts"),
+        "parts/CMakeLists.txt": cmake.replace("arm", "parts"),
+    }
+    repository.write(
+        {**dict.fromkeys(files), **moved, **others, "arm/CMakeLists.txt": "project(arm)\n", "arm/a.txt": ""}
+    )
+    repository.git("add", "-A")
+    (change,) = subject(compare(repository), "parts/").changes
+    assert str(change.sentence).endswith("msg/Load.msg, msg/Rate.msg, msg/State.msg")
+    assert str(change.reason) == "programs that use the types do not build or start"
