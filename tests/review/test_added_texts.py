@@ -48,6 +48,8 @@ def review_lines(repository, compare):
         (".cpp", 'if (type == "lidar" || type == "camera") { add(); }', 'type == "camera"'),
         (".cpp", 'auto found = names.find("tip");', 'names.find("tip")'),
         (".cpp", 'auto home = std::getenv("ROBOT_HOME");', 'std::getenv("ROBOT_HOME")'),
+        (".cpp", 'if (type.compare("camera") == 0) { add(); }', 'type.compare("camera")'),
+        (".cpp", 'if (strcmp(get(type), "camera") == 0) { add(); }', 'strcmp(get(type), "camera")'),
         (".py", 'limit = config["limits"]["speed"]', 'config["limits"], config["limits"]["speed"]'),
         (".py", 'limit = config.get("limit", 3)', 'config.get("limit", ...)'),
         (".py", 'use(rate if "extra" in config else 0)', '"extra" in config'),

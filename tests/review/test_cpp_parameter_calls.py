@@ -89,3 +89,27 @@ def test_a_function_of_the_repository_takes_the_default_before_the_variable(repo
     repository.write({"arm/src/arm.cpp": SOURCE.format(code)})
     lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
     assert f"parameters added: {shown}" in lines
+
+
+GROUP = """Arm::Arm() : Node("arm") {
+  declare_parameters<int>("limits", {{"count", 3}, {"depth", {4, describe("depth")}}});
+  node->declare_parameters("", std::map<std::string, double>{{"gain", 1.5}});
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('"count", 3', '"count", 5', "parameter 'limits.count': default 3 -> 5"),
+        ("{4, d", "{5, d", "parameter 'limits.depth': default 4 -> 5"),
+        ('{"count", 3}, ', "", "parameters removed: 'limits.count' (3)"),
+        ('"gain"', '"kp"', "parameter 'gain' (1.5) renamed to 'kp' (1.5)"),
+        ("<int>", "<double>", "parameter 'limits.count': type int -> double"),
+    ],
+)
+def test_parameters_that_are_declared_together_have_their_namespace(repository, compare, old, new, expected):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": GROUP})
+    repository.write({"arm/src/arm.cpp": GROUP.replace(old, new)})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == expected

@@ -25,11 +25,12 @@ _COMPARISONS = ("==", "!=")
 _READING_METHODS = frozenset(
     {
         *("get", "at", "find", "count", "contains", "has", "has_key", "HasMember", "hasMember", "isMember", "pop"),
-        *("startswith", "endswith", "starts_with", "ends_with"),
+        *("startswith", "endswith", "starts_with", "ends_with", "compare"),
     }
 )
 """The methods whose first argument is a key or a text to compare with."""
-_READING_FUNCTIONS = frozenset({"getenv", "strcmp"})
+_COMPARING_FUNCTIONS = frozenset({"strcmp", "strncmp", "strcasecmp", "strncasecmp", "iequals"})
+_READING_FUNCTIONS = frozenset({"getenv", *_COMPARING_FUNCTIONS})
 _QUOTED = re.compile("\"([^\"]*)\"|'([^']*)'")
 _CONSTANT_NAME = re.compile(r"_?[A-Z][A-Z0-9_]+")
 _ARITHMETIC = frozenset("+-*/")
@@ -204,7 +205,20 @@ def _is_key(tokens: Sequence[Token], literal: Literal) -> bool:
     if before == "[" and after == "]":
         return owner.kind is TokenKind.WORD or owner.text in (")", "]")
     is_method = literal.first > 2 and tokens[literal.first - 3].text in (".", "->")
+    if before == "," and _find_function(tokens, literal.first) in _COMPARING_FUNCTIONS:
+        return True
     return before == "(" and (owner.text in _READING_FUNCTIONS or (is_method and owner.text in _READING_METHODS))
+
+
+def _find_function(tokens: Sequence[Token], index: int) -> str:
+    """Return the name of the function that takes the token at an index; empty if there is none."""
+    depth = 0
+    for place in range(index - 1, 0, -1):
+        text = tokens[place].text
+        depth += (text in (")", "]", "}")) - (text in ("(", "[", "{"))
+        if depth < 0:
+            return tokens[place - 1].text
+    return ""
 
 
 # --- constants ------------------------------------------------------------------------------------------------------

@@ -51,6 +51,7 @@ from linkwright.review.sources.cpp_values import (
     parse_literal,
 )
 from linkwright.review.sources.cpp_variable_types import VariableTypes
+from linkwright.review.sources.declared_groups import find_declared_groups
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
@@ -158,6 +159,9 @@ class _Reader:
         for interface in find_hardware_interfaces(text):
             details = ((Detail.REQUIRED, YES),) if interface.is_required else ()
             self._add(interface.kind, interface.name, interface.start, interface.end, details=details)
+        for item in find_declared_groups(text):
+            details = ((Detail.VALUE_TYPE, item.type),) if item.type else ()
+            self._add(NameKind.PARAMETER, item.name, item.start, item.end, item.default, details)
         for option in find_options(text, find_arguments):
             self._add(NameKind.OPTION, option.name, option.start, option.end, option.default, option.details)
         for rate in find_rates(text):

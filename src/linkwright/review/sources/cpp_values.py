@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
+from linkwright.review.sources.cpp_text import find_closing_bracket
+
 TEXT = re.compile(r'\s*(?:(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"\s*\)?\s*')
 VARIABLE = re.compile(r"\s*(?:\w+::)*(?P<name>\w+)\s*(?:\.c_str\(\))?\s*")
 _LITERAL = re.compile(r'\s*(-?[\d.]+(?:e-?\d+)?f?|true|false|"[^"\\]*"|(?:std::)?string\((?P<text>"[^"\\]*")\))\s*')
@@ -28,6 +30,8 @@ _INITIALIZED = re.compile(rf"(?<=[:,])\s*(?P<name>\w+)\s*(?:\(\s*|\{{\s*){_VALUE
 """An entry of the initializer list of a constructor."""
 _MEMBER = re.compile(r"\s*(?:\*?this\s*->\s*)?(?:\w+\s*(?:\.|->)\s*)*(?P<name>[A-Za-z_]\w*)\s*")
 _READ = r"\w*[pP]aram\w*\s*(?:<[^<>;()]*>)?\s*\("
+_PARAMETERS_CALLBACK = re.compile(r"\([^(){};]*\bParameter\s*>?\s*(?:const\s*)?&?\s*\w+\s*\)[^(){};]*\{")
+"""The head of a function or lambda that gets changed parameters of ROS 2."""
 
 
 def parse_literal(text: str) -> str | None:
@@ -101,6 +105,7 @@ class InitialValues:
 
     def __init__(self, text: str, headers: Sequence[str]) -> None:
         self._text = text
+        self._code = _blank_callbacks(text)
         declared, initial, listed = set[str](), dict[str, set[str]](), dict[str, set[str]]()
         for source in (*headers, text):
             declared |= {name for match in _DECLARED.finditer(source) for name in re.findall(r"\w+", match["names"])}
@@ -130,7 +135,7 @@ class InitialValues:
         name = re.escape(match["name"])
         assigned = re.compile(rf"(?<!\w){name}\s*(?:[-+*/|&]?=(?!=))(?!\s*{re.escape(value)}\s*;)|>>\s*{name}\b")
         read = re.compile(rf"\b{_READ}[^;()]*[,&.>\s]{name}\s*[,)]")
-        is_changed = any(pattern.search(self._text, 0, start) for pattern in (assigned, read))
+        is_changed = any(pattern.search(self._code, 0, start) for pattern in (assigned, read))
         return None if is_changed else value
 
     def _is_empty_text(self, name: str, position: int) -> bool:
@@ -138,7 +143,7 @@ class InitialValues:
         if name not in self._empty_texts:
             return False
         start = max(self._text.rfind(mark, 0, position) for mark in ";{}") + 1
-        before = _EMPTY_TEXT.sub("", self._text[:start])
+        before = _EMPTY_TEXT.sub("", self._code[:start])
         initialized = re.search(rf"[:,]\s*{re.escape(name)}\s*[({{]", self._text)
         return initialized is None and re.search(rf"\b{re.escape(name)}\b", before) is None
 
@@ -149,6 +154,14 @@ class InitialValues:
             return None
         is_assigned = re.search(rf"(?<![\w\"]){name}\s*\+?=(?!=)(?!\s*{re.escape(value)}\s*;)", self._text)
         return None if is_assigned else value[1:-1]
+
+
+def _blank_callbacks(text: str) -> str:
+    """Return a source with spaces for the functions that get changed parameters, which run after their declaration."""
+    for match in _PARAMETERS_CALLBACK.finditer(text):
+        end = find_closing_bracket(text, match.end() - 1)
+        text = text[: match.end()] + re.sub(r"[^\n]", " ", text[match.end() : end]) + text[end:]
+    return text
 
 
 def read_initial_values(text: str) -> dict[str, str]:
