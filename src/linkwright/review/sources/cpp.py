@@ -159,9 +159,9 @@ class _Reader:
         for interface in find_hardware_interfaces(text):
             details = ((Detail.REQUIRED, YES),) if interface.is_required else ()
             self._add(interface.kind, interface.name, interface.start, interface.end, details=details)
-        for item in find_declared_groups(text):
-            details = ((Detail.VALUE_TYPE, item.type),) if item.type else ()
-            self._add(NameKind.PARAMETER, item.name, item.start, item.end, item.default, details)
+        for declared in find_declared_groups(text):
+            details = ((Detail.VALUE_TYPE, declared.type),) if declared.type else ()
+            self._add(NameKind.PARAMETER, declared.name, declared.start, declared.end, declared.default, details)
         for option in find_options(text, find_arguments):
             self._add(NameKind.OPTION, option.name, option.start, option.end, option.default, option.details)
         for rate in find_rates(text):
@@ -312,10 +312,20 @@ class _Reader:
     def _add_default(self, kind: NameKind, expression: str) -> bool:
         """Add the name that an expression has by default, and return whether a parameter gives it."""
         is_parameter = kind is NameKind.PARAMETER
-        parameter = None if is_parameter else find_cpp_parameter_default(self._text, expression)
+        parameter = None
+        if not is_parameter:
+            parameter = find_cpp_parameter_default(self._text, expression, self._find_known_default)
         if parameter is not None:
             self._names.add_default(kind, expression, *parameter)
         return parameter is not None
+
+    def _find_known_default(self, parameter: str) -> str | None:
+        """Return the text that a parameter has by default, as a call before tells; None if it is unknown."""
+        for item in self._names.of_kind(NameKind.PARAMETER):
+            if item.name.lstrip("~/") == parameter.lstrip("~/"):
+                literal = TEXT.fullmatch(item.type)
+                return None if literal is None else literal["text"]
+        return None
 
     def _add_frame(self, kind: NameKind, begin: int, end: int) -> None:
         """Add a frame that is a literal, or that a parameter gives."""

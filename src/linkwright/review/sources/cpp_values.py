@@ -89,8 +89,8 @@ def _is_output(text: str, name: str) -> bool:
     return re.search(output, text) is not None
 
 
-_EMPTY_TEXT = re.compile(r"(?<![\w:<])(?:std::)?string\s+(?P<name>\w+)\s*;")
-"""The declaration of a text without a value, which is empty."""
+_EMPTY_TEXT = re.compile(r"(?<![\w:<])(?:std::)?string\s+(?P<names>\w+(?:\s*,\s*\w+)*)\s*;")
+"""The declaration of texts without a value, which are empty."""
 
 
 class InitialValues:
@@ -115,7 +115,8 @@ class InitialValues:
                 listed.setdefault(match["name"], set()).add(match["value"])
         values = initial | {name: found for name, found in listed.items() if name in declared}
         self._values = {name: next(iter(found)) for name, found in values.items() if len(found) == 1}
-        texts = {match["name"] for source in (*headers, text) for match in _EMPTY_TEXT.finditer(source)}
+        empty = (match["names"] for source in (*headers, text) for match in _EMPTY_TEXT.finditer(source))
+        texts = {name for names in empty for name in re.findall(r"\w+", names)}
         self._empty_texts = texts - initial.keys() - listed.keys()
 
     def find_default(self, expression: str, position: int) -> str | None:
