@@ -105,6 +105,7 @@ class _SourcePair(WholeSourcePair):
         changes = [*self.find_added_header(), *self.find_unbuilt()]
         changes += [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
         changes += self.compare_rates(old_names, new_names)
+        changes += self.find_unused_parameters(new_names)
         for change in compare_conditions(old_names, new_names):
             path = (self.file.old_path if change.is_old else self.file.new_path) or self.file.path
             reason = self._find_condition_reason(change, new_names)

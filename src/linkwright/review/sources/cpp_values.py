@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from linkwright.review.sources.cpp_text import find_closing_bracket
 
@@ -20,12 +20,14 @@ _ASSIGNED_TEXT = re.compile(
     r'\s*(?:=|(?P<open>[({]))\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;'
 )
 _TYPE = r"\b(?:double|float|int|bool|auto|size_t|u?int(?:8|16|32|64)_t|unsigned|long|short|string)"
-_VALUE = r"(?P<value>-?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")"
+_UNNAMED_VALUE = r"(?:-?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")"
+_VALUE = rf"(?P<value>{_UNNAMED_VALUE})"
 _DECLARED = re.compile(rf"{_TYPE}\s+(?P<names>\w+(?:\s*,\s*\w+)*)\s*(?=[;={{])")
 """A declaration of members or variables, with or without a value."""
-_INITIAL = re.compile(
-    rf"{_TYPE}\s+(?P<name>\w+)\s*(?:=\s*{_VALUE}|[({{]\s*{_VALUE.replace('value', 'made')}\s*[)}}])\s*;"
-)
+_SET = rf"\w+\s*(?:=\s*{_UNNAMED_VALUE}|[({{]\s*{_UNNAMED_VALUE}\s*[)}}])?"
+_INITIAL = re.compile(rf"{_TYPE}\s+(?P<list>{_SET}(?:\s*,\s*{_SET})*)\s*;")
+"""A declaration of members or variables with literal values."""
+_INITIAL_ITEM = re.compile(rf"(?P<name>\w+)\s*(?:=|[({{])\s*{_VALUE}")
 _INITIALIZED = re.compile(rf"(?<=[:,])\s*(?P<name>\w+)\s*(?:\(\s*|\{{\s*){_VALUE}\s*[)}}]\s*(?=[,{{])")
 """An entry of the initializer list of a constructor."""
 _MEMBER = re.compile(r"\s*(?:\*?this\s*->\s*)?(?:\w+\s*(?:\.|->)\s*)*(?P<name>[A-Za-z_]\w*)\s*")
@@ -109,8 +111,8 @@ class InitialValues:
         declared, initial, listed = set[str](), dict[str, set[str]](), dict[str, set[str]]()
         for source in (*headers, text):
             declared |= {name for match in _DECLARED.finditer(source) for name in re.findall(r"\w+", match["names"])}
-            for match in _INITIAL.finditer(source):
-                initial.setdefault(match["name"], set()).add(match["value"] or match["made"])
+            for name, value in _find_initial_values(source):
+                initial.setdefault(name, set()).add(value)
             for match in _INITIALIZED.finditer(source):
                 listed.setdefault(match["name"], set()).add(match["value"])
         values = initial | {name: found for name, found in listed.items() if name in declared}
@@ -157,6 +159,12 @@ class InitialValues:
         return None if is_assigned else value[1:-1]
 
 
+def _find_initial_values(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the members and variables that declarations initialize with literals, each with its value."""
+    for match in _INITIAL.finditer(text):
+        yield from ((item["name"], item["value"]) for item in _INITIAL_ITEM.finditer(match["list"]))
+
+
 def _blank_callbacks(text: str) -> str:
     """Return a source with spaces for the functions that get changed parameters, which run after their declaration."""
     for match in _PARAMETERS_CALLBACK.finditer(text):
@@ -168,6 +176,6 @@ def _blank_callbacks(text: str) -> str:
 def read_initial_values(text: str) -> dict[str, str]:
     """Return the literals with which a header initializes members. Names with several values are left out."""
     values: dict[str, set[str]] = {}
-    for match in _INITIAL.finditer(text):
-        values.setdefault(match["name"], set()).add(match["value"] or match["made"])
+    for name, value in _find_initial_values(text):
+        values.setdefault(name, set()).add(value)
     return {name: next(iter(found)) for name, found in values.items() if len(found) == 1}
