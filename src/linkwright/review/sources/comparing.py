@@ -111,7 +111,7 @@ class _SourcePair(WholeSourcePair):
             reason = self._find_condition_reason(change, new_names)
             effect = Effect.CHANGED if reason is None else Effect.BREAKING
             changes.append(Change(change.text, effect, reason, Location(path, change.line, 1, change.is_old)))
-        changes += self.find_lost_transforms(changes)
+        changes += self.find_changed_senders(changes)
         changes += self.compare_imports(old_names, new_names)
         changes += self.find_undefined(old_names, new_names)
         changes += self.compare_header(old_names, new_names)

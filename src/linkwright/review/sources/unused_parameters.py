@@ -62,7 +62,7 @@ def _names(text: str, variable: str) -> bool:
 def _is_used(text: str, variable: str) -> bool:
     """Return whether a source without comments uses the value of a variable.
 
-    What only declares or sets it, texts and log messages are no uses.
+    What only declares or sets it, texts and log messages do not count.
     """
     if not _names(text, variable):
         return False

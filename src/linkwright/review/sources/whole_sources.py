@@ -28,7 +28,7 @@ from linkwright.review.sources.swapped_arguments import (
     find_swapped_definitions,
     is_declared_without_order,
 )
-from linkwright.review.sources.transform_senders import find_lost_sender
+from linkwright.review.sources.transform_senders import find_lost_sender, find_new_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.undefined_uses import find_undefined_uses
 from linkwright.review.sources.unused_parameters import find_unused_parameters
@@ -174,14 +174,17 @@ class WholeSourcePair:
             effect = Effect.CHANGED if reason is None else Effect.BREAKING
             yield Change(phrase("no target builds the source"), effect, reason, Location(path, 1, 1))
 
-    def find_lost_transforms(self, reported: Sequence[Change]) -> Iterator[Change]:
-        """Yield a line if the source no longer publishes transforms, unless a line names the lost frames."""
+    def find_changed_senders(self, reported: Sequence[Change]) -> Iterator[Change]:
+        """Yield a line if the source no longer publishes transforms or newly does, unless a line names the frames."""
         frames = (NameKind.FRAME.title, NameKind.FRAME.plural)
         if not any(change.core.arguments.get("kind") in frames for change in reported):
             span = find_lost_sender(self.old, self.new, self.file)
             if span is not None:
                 reason = phrase("programs that need these transforms do not find them")
                 yield self.make_change(phrase("no longer publishes transforms"), span, self.old, reason)
+            span = find_new_sender(self.old, self.new, self.file)
+            if span is not None:
+                yield self.make_change(phrase("publishes transforms now"), span, self.new, None)
 
     def compare_packages(self, *, are_headers_told: bool) -> Iterator[Change]:
         """Yield the packages, or else the headers, that the source is the first or was the last to use."""
