@@ -31,6 +31,8 @@ _READING_METHODS = frozenset(
 """The methods whose first argument is a key or a text to compare with."""
 _COMPARING_FUNCTIONS = frozenset({"strcmp", "strncmp", "strcasecmp", "strncasecmp", "iequals"})
 _READING_FUNCTIONS = frozenset({"getenv", *_COMPARING_FUNCTIONS})
+_OUTPUT_CALLS = frozenset({"param", "getParam", "get_parameter", "get_parameter_or"})
+"""The functions that write the value of a parameter into the variable behind its name."""
 _QUOTED = re.compile("\"([^\"]*)\"|'([^']*)'")
 _CONSTANT_NAME = re.compile(r"_?[A-Z][A-Z0-9_]+")
 _ARITHMETIC = frozenset("+-*/")
@@ -276,7 +278,16 @@ def _is_constant(statement: Statement) -> bool:
 
 
 def _list_assigned(statement: Statement) -> Iterator[str]:
-    """Yield the names that a statement assigns or changes outside of brackets."""
+    """Yield the names that a statement assigns or changes outside of brackets, and those that a call may set."""
+    tokens = statement.tokens
+    for index, token in enumerate(tokens[1:], start=1):
+        before = tokens[index - 1].text
+        is_passed = before == "&" and index > 1 and tokens[index - 2].text in ("(", ",")
+        is_read = (
+            before == "," and index > 3 and tokens[index - 4].text in _OUTPUT_CALLS and tokens[index - 3].text == "("
+        )
+        if token.kind is TokenKind.WORD and (is_passed or is_read or before in ("++", "--")):
+            yield token.text
     depth = 0
     for token, following in pairwise(statement.tokens):
         if token.kind is TokenKind.OPERATOR:
