@@ -334,3 +334,11 @@ Rover::Rover() : Node("rover") {
     repository.commit({**MANIFEST, "arm/src/rover.cpp": text})
     repository.write({"arm/src/rover.cpp": text.replace('"use_stamped"', '"is_stamped"')})
     assert breaking(compare(repository)) == ["parameter 'use_stamped' (false) renamed to 'is_stamped' (false)"]
+
+
+def test_a_source_in_c_is_read(repository, compare):
+    text = "static int limit(int value) {\n  return min(value, 3);\n}\n"
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/driver.c": text})
+    repository.write({"arm/src/driver.c": text.replace("3", "4")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["values in limit: min(value, 3 -> 4)"]

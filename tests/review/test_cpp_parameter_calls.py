@@ -113,3 +113,34 @@ def test_parameters_that_are_declared_together_have_their_namespace(repository, 
     repository.write({"arm/src/arm.cpp": GROUP.replace(old, new)})
     (found,) = compare(repository).subjects
     assert sentences(found)[0] == expected
+
+
+UNDEFINED = """class Arm {{
+  double mass_{0};
+  bool read() {{
+    {1};
+    return ok();
+  }}
+}};
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "code", "is_breaking"),
+    [
+        ("", 'nh_.getParam("mass", mass_)', True),
+        ("", 'double load; nh_.getParam("load", load)', True),
+        (" = 1.0", 'nh_.getParam("mass", mass_)', False),
+        ("", 'mass_ = 1.0; nh_.getParam("mass", mass_)', False),
+        ("", 'if (!nh_.getParam("mass", mass_)) warn()', False),
+        ("", 'nh_.param("mass", mass_, 1.0)', False),
+        ("", 'read(mass_); nh_.getParam("mass", mass_)', False),
+        ("", 'std::string mass; nh_.getParam("mass", mass)', False),  # empty
+    ],
+)
+def test_a_number_without_a_value_makes_a_new_parameter_breaking(repository, compare, value, code, is_breaking):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": UNDEFINED.format(value, "start()")})
+    repository.write({"arm/src/arm.cpp": UNDEFINED.format(value, code)})
+    reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
+    name = "load" if "load" in code else "mass"
+    assert reasons == ([f"where '{name}' is not set, its variable has no value"] if is_breaking else [])

@@ -370,6 +370,8 @@ class _Reader:
                 details.append((Detail.READ_AS, read_type))
             if is_required_parameter(self._text, call, texts):
                 details.append((Detail.REQUIRED, YES))
+            elif call.function in _OUTPUT_CALLS and texts and self._initial_values.is_undefined(texts[0], call.start):
+                details.append((Detail.UNDEFINED, YES))
             is_output = call.function in _OUTPUT_CALLS or is_known_to_be_set(self._text, name, call.start)
             type_name = (
                 self._parameter_defaults.find_kept(call, texts)

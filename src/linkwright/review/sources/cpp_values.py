@@ -32,6 +32,11 @@ _INITIALIZED = re.compile(rf"(?<=[:,])\s*(?P<name>\w+)\s*(?:\(\s*|\{{\s*){_VALUE
 """An entry of the initializer list of a constructor."""
 _MEMBER = re.compile(r"\s*(?:\*?this\s*->\s*)?(?:\w+\s*(?:\.|->)\s*)*(?P<name>[A-Za-z_]\w*)\s*")
 _READ = r"\w*[pP]aram\w*\s*(?:<[^<>;()]*>)?\s*\("
+_STATEMENT = re.compile(r"(?:this\s*->\s*)?[\w:]*(?:\s*\(\s*\))?\s*(?:\.|->|::)?\s*")
+"""The start of a statement that only makes a call, before the name of the function."""
+_NUMBER_TYPE = (
+    r"(?:(?:unsigned|signed|long|short)\s+)*(?:double|float|int|bool|unsigned|long|short|size_t|u?int(?:8|16|32|64)_t)"
+)
 _PARAMETERS_CALLBACK = re.compile(r"\([^(){};]*\bParameter\s*>?\s*(?:const\s*)?&?\s*\w+\s*\)[^(){};]*\{")
 """The head of a function or lambda that gets changed parameters of ROS 2."""
 
@@ -107,6 +112,7 @@ class InitialValues:
 
     def __init__(self, text: str, headers: Sequence[str]) -> None:
         self._text = text
+        self._headers = headers
         self._code = _blank_callbacks(text)
         declared, initial, listed = set[str](), dict[str, set[str]](), dict[str, set[str]]()
         for source in (*headers, text):
@@ -149,6 +155,28 @@ class InitialValues:
         before = _EMPTY_TEXT.sub("", self._code[:start])
         initialized = re.search(rf"[:,]\s*{re.escape(name)}\s*[({{]", self._text)
         return initialized is None and re.search(rf"\b{re.escape(name)}\b", before) is None
+
+    def is_undefined(self, expression: str, position: int) -> bool:
+        """Return whether a number has no value if a call does not set it, whose result nothing checks.
+
+        Args:
+            expression: the argument of the call, such as ``rate_``.
+            position: the offset of the call.
+        """
+        match = _MEMBER.fullmatch(expression)
+        start = max(self._text.rfind(mark, 0, position) for mark in ";{}") + 1
+        if match is None or not _STATEMENT.fullmatch(self._text[start:position].strip()):
+            return False
+        name = match["name"]
+        sources = (*self._headers, self._text)
+        declared = re.compile(rf"^[ \t]+{_NUMBER_TYPE}\s+(?:\w+\s*,\s*)*{name}\s*(?:,\s*\w+\s*)*;", re.MULTILINE)
+        set_value = re.compile(
+            rf"(?<!\w){name}\s*(?:[-+*/|&]?=(?!=)|[({{\[]|\+\+|--)|(?:>>|[&,(]\s*&|\+\+|--)\s*{name}\b"
+        )
+        if any(map(set_value.search, sources)) or sum(len(declared.findall(source)) for source in sources) != 1:
+            return False
+        is_used_before = re.search(rf"\b{name}\b", declared.sub("", self._code[:start])) is not None
+        return not is_used_before and len(re.findall(rf"{_READ}[^;()]*\b{name}\b", self._text)) == 1
 
     def find_text(self, name: str) -> str | None:
         """Return the text with which a member is initialized and that nothing else sets; None for others."""

@@ -88,7 +88,7 @@ def compare_details(
     for detail in Detail:
         before, after = old_details.get(detail), new_details.get(detail)
         sides = (before, old_details), (after, new_details)
-        if before == after or (detail in _KNOWN_IN_BOTH and None in (before, after)):
+        if before == after or detail is Detail.UNDEFINED or (detail in _KNOWN_IN_BOTH and None in (before, after)):
             continue
         if detail is Detail.DEFAULT:
             yield from _compare_missing_defaults(old, new)
@@ -279,6 +279,9 @@ def make_required_reason(kind: NameKind, names: Phrase | str) -> Phrase:
 def find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
     """Return the reason why added names are breaking, or None if none of them is required."""
     names = [item.name for item in items if (Detail.REQUIRED, YES) in item.details]
+    undefined = [item.name for item in items if (Detail.UNDEFINED, YES) in item.details]
+    if not names and undefined:
+        return phrase("where '{name}' is not set, its variable has no value", name=joined_first(undefined, MAX_NAMES))
     if not names:
         return None
     if items[0].kind is NameKind.FUNCTION:

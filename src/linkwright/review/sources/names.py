@@ -15,7 +15,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, Span, phrase
 
 HEADER_SUFFIXES = (".hpp", ".hh", ".hxx", ".h")
-CPP_SUFFIXES = (".cpp", ".cc", ".cxx", *HEADER_SUFFIXES)
+CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".c", *HEADER_SUFFIXES)
 PYTHON_SUFFIX = ".py"
 DYNAMIC_SUFFIX = ".cfg"
 """The suffix of dynamic_reconfigure descriptions, which are Python files."""
@@ -77,6 +77,7 @@ class Detail(Enum):
     SHORT_FORM = phrase("short form")
     LEVEL = phrase("level")
     REQUIRED = phrase("required")
+    UNDEFINED = phrase("undefined")
     ARGUMENTS = phrase("arguments")
     RESULT = phrase("result")
     CONSTANT = phrase("const")
