@@ -18,7 +18,7 @@ _CPP_MAIN_FAILURE = re.compile(rf"{_CPP_FAILURE.pattern}|\breturn\s+(?P<code>-\s
 _ARGUMENT_COUNT = re.compile(r"\bargc\s*(?:[<>]=?|[!=]=)\s*\d+|\b\d+\s*(?:[<>]=?|[!=]=)\s*argc\b")
 _PYTHON_FAILURE = re.compile(r"(?:^|:)\s*raise\s+\w|(?<![\w.])(?:sys\.)?(?P<exit>exit)\s*\(")
 _READ = re.compile(
-    r"\b\w*[pP]aram\w*\s*(?:<[^<>;()]*>)?\s*\(\s*\"[~/]*(?P<name>[\w./]+)\"\s*,\s*(?:this->)?(?P<variable>[A-Za-z_]\w*)\s*[,)]"
+    r"\b\w*[pP]aram\w*\s*(?:<[^<>;()]*>)?\s*\(\s*(?:\w+\s*\+\s*)?\"[~/.]*(?P<name>[\w./]+)\"\s*,\s*(?:this->)?(?P<variable>[A-Za-z_]\w*)\s*[,)]"
 )
 """A call that reads a parameter into a variable."""
 _ASSIGNED = re.compile(
