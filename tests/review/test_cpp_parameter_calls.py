@@ -144,3 +144,34 @@ def test_a_number_without_a_value_makes_a_new_parameter_breaking(repository, com
     reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
     name = "load" if "load" in code else "mass"
     assert reasons == ([f"where '{name}' is not set, its variable has no value"] if is_breaking else [])
+
+
+RANGE = """Arm::Arm() : Node("arm") {{
+  rcl_interfaces::msg::ParameterDescriptor slider;
+  rcl_interfaces::msg::FloatingPointRange range;
+  {}
+  declare_parameter<double>("gain", 1.0, slider);
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("", "range.set__from_value(-0.5).set__to_value(2.0).set__step(0.1); slider.floating_point_range = {range};",
+         {"parameter 'gain': minimum - -> -0.5": "values below -0.5 are rejected",
+          "parameter 'gain': maximum - -> 2.0": "values above 2.0 are rejected"}),
+        ("range.to_value = 2.0; slider.floating_point_range.push_back(range);",
+         "range.to_value = 3.0; slider.floating_point_range.push_back(range);",
+         {"parameter 'gain': maximum 2.0 -> 3.0": None}),
+        ("slider.integer_range[0].from_value = 2;", "slider.integer_range[0].from_value = 3;",
+         {"parameter 'gain': minimum 2 -> 3": "values below 3 are rejected"}),
+        ("", "range.to_value = 2.0; other.floating_point_range.push_back(range);", {}),
+    ],
+)  # fmt: skip
+def test_the_range_of_a_parameter_rejects_values(repository, compare, old, new, expected):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": RANGE.format(old)})
+    repository.write({"arm/src/arm.cpp": RANGE.format(new)})
+    changes = [change for found in compare(repository).subjects for change in found.changes]
+    lines = {str(item.sentence): item.reason and str(item.reason) for item in changes if "gain" in str(item.sentence)}
+    assert lines == expected

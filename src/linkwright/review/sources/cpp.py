@@ -66,6 +66,7 @@ from linkwright.review.sources.parameter_helpers import (
     is_parameter_name,
     read_elements,
 )
+from linkwright.review.sources.parameter_ranges import find_range
 from linkwright.review.sources.registrations import find_registrations
 
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
@@ -366,6 +367,7 @@ class _Reader:
                 declared = declared or find_type_of_default(self._text, texts)
                 declared = declared or self._variable_types.find_passed(offsets[1])
                 details += [(Detail.VALUE_TYPE, declared)] if declared else []
+                details += find_range(self._text, call.start, texts)
             elif read_type := type_name or self._variable_types.find_passed(offsets[1]):
                 details.append((Detail.READ_AS, read_type))
             if is_required_parameter(self._text, call, texts):

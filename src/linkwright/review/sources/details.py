@@ -247,6 +247,8 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
         return phrase("code that calls '{name}' on constant objects does not build", name=name.name)
     if detail is Detail.VALUE_TYPE and name.kind is NameKind.PARAMETER and before and after:
         return phrase("values of the old type are rejected")
+    if detail in (Detail.MINIMUM, Detail.MAXIMUM) and Detail.LEVEL not in dict(name.details):
+        return _find_limit_reason(detail, before, after)
     if detail is Detail.READ_AS and rejects_values(old, new):
         return phrase("values of the old type are not read")
     if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:
@@ -264,6 +266,20 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
         return phrase("callers that pass '{name}' get an error", name=", ".join(lost)) if lost else None
     if detail is Detail.LATCH and before:
         return phrase("subscribers that start later do not get the last message")
+    return None
+
+
+def _find_limit_reason(detail: Detail, before: str | None, after: str | None) -> Phrase | None:
+    """Return the reason why another limit of a parameter of ROS 2 is breaking; None if it rejects no more values.
+
+    dynamic_reconfigure has levels, and sets a value to the limit instead.
+    """
+    if after is None:
+        return None
+    if detail is Detail.MINIMUM and (before is None or float(after) > float(before)):
+        return phrase("values below {limit} are rejected", limit=after)
+    if detail is Detail.MAXIMUM and (before is None or float(after) < float(before)):
+        return phrase("values above {limit} are rejected", limit=after)
     return None
 
 
