@@ -342,3 +342,9 @@ def test_a_source_in_c_is_read(repository, compare):
     repository.write({"arm/src/driver.c": text.replace("3", "4")})
     (found,) = compare(repository).subjects
     assert sentences(found) == ["values in limit: min(value, 3 -> 4)"]
+
+
+def test_an_added_source_in_c_is_only_another_file(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    repository.write({"arm/src/driver.c": "#define LIMIT 3\nint limit(int value) { return value + LIMIT; }\n"})
+    assert not compare(repository).subjects

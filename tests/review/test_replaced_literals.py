@@ -67,3 +67,23 @@ def test_literal_that_a_parameter_replaces_in_cpp(repository, compare, read, old
     repository.write({"arm/arm.cpp": CPP.format(read, new)})
     found = sentences(subject(compare(repository), "arm/arm.cpp"))
     assert [line for line in found if "replaces" in line] == expected
+
+
+HEADER = "class Arm {{\n  {}\n}};\n"
+
+
+@pytest.mark.parametrize(
+    ("member", "more", "expected"),
+    [
+        ("double limit_ = 3.0;", "", ["'limit_' (3.0) replaces 2.5 in 'Arm::step()'"]),
+        ("double limit_{2.50};", "", []),
+        ("double limit_ = 3.0;", "limit_ = find_limit();", []),
+        ("double limit_;", "", []),
+    ],
+)
+def test_literal_that_a_member_replaces_in_cpp(repository, compare, member, more, expected):
+    source = '#include "arm.hpp"\n' + CPP
+    repository.commit({"arm/arm.hpp": HEADER.format(""), "arm/arm.cpp": source.format("", "send(2.5);")})
+    repository.write({"arm/arm.hpp": HEADER.format(member), "arm/arm.cpp": source.format(more, "send(limit_);")})
+    found = sentences(subject(compare(repository), "arm/arm.cpp"))
+    assert [line for line in found if "replaces" in line] == expected

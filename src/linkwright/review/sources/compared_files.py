@@ -11,6 +11,7 @@ from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
+_C_SUFFIX = ".c"
 _SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
 _PYTHON_TEST = re.compile(
     r"^\s*(?:import|from)\s+(?:unittest|pytest|nose|rostest|launch_testing)\b|^\s*def test_", re.MULTILINE
@@ -24,6 +25,8 @@ def is_compared_source(versions: Versions, file: ChangedFile) -> bool:
         return False
     if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
         return False
+    if path.suffix == _C_SUFFIX and None in (file.old_path, file.new_path):
+        return False  # most are libraries of others, and a node in C++ uses them
     version = versions.new if file.new_path else versions.old
     is_test = path.name.startswith("test_") and _has_tests(version.text(file.path), is_cpp=path.suffix in CPP_SUFFIXES)
     return not is_test and is_program_text(version.file(file.path))

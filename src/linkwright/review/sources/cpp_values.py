@@ -180,11 +180,16 @@ class InitialValues:
 
     def find_text(self, name: str) -> str | None:
         """Return the text with which a member is initialized and that nothing else sets; None for others."""
-        value = self._values.get(name, "")
-        if not value.startswith('"') or _is_output(self._text, name):
+        value = self.find_kept_value(name) or ""
+        return value[1:-1] if value.startswith('"') else None
+
+    def find_kept_value(self, name: str) -> str | None:
+        """Return the literal with which a member or variable is initialized and that nothing else sets, or None."""
+        value = self._values.get(name)
+        if value is None or _is_output(self._text, name):
             return None
-        is_assigned = re.search(rf"(?<![\w\"]){name}\s*\+?=(?!=)(?!\s*{re.escape(value)}\s*;)", self._text)
-        return None if is_assigned else value[1:-1]
+        is_assigned = re.search(rf"(?<![\w\"]){name}\s*[-+*/]?=(?!=)(?!\s*{re.escape(value)}\s*[;,])", self._text)
+        return None if is_assigned else value
 
 
 def _find_initial_values(text: str) -> Iterator[tuple[str, str]]:

@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import Phrase, Span, phrase
+from linkwright.review.sources.cpp_members import read_included_headers
 from linkwright.review.sources.cpp_statements import read_cpp_statements
 from linkwright.review.sources.cpp_text import blank_comments
+from linkwright.review.sources.cpp_values import InitialValues
 from linkwright.review.sources.names import NameKind, SourceNames
 from linkwright.review.sources.new_failures import find_read_parameters
 from linkwright.review.sources.reading import try_read_source
+from linkwright.review.sources.statements import Statement
 from linkwright.review.sources.tokens import Token, TokenKind
 
 _NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?", re.IGNORECASE)
 _BEFORE_SIGN = frozenset({"(", "[", "{", ",", "=", "return", "<", ">", "<=", ">=", "==", "!=", "*", "/", "?", ":"})
+_MEMBER = re.compile(r"(?![A-Z][A-Z0-9_]*\Z)[A-Za-z_]\w*")
+"""A name of a member or variable. Constants in capitals have lines of their own."""
 _BOOLEANS = frozenset({"true", "false"})
 
 
 def find_replaced_cpp_literals(
     old_path: Path, new_path: Path, names: SourceNames, reported: Sequence[str]
 ) -> Iterator[tuple[Phrase, Span]]:
-    """Yield the literals of functions of both versions that a new parameter replaces, unless it has the same default.
+    """Yield the literals of functions of both versions that a new parameter or member with another value replaces.
 
     Args:
         old_path: the old source.
@@ -39,21 +44,28 @@ def find_replaced_cpp_literals(
         for variable, name in find_read_parameters(blank_comments(new_source.text)).items()
         if variable not in known
     }
-    if not parameters:
-        return
     try:
         old, new = read_cpp_statements(old_source.text), read_cpp_statements(new_source.text)
     except (ValueError, RecursionError):
         return
+    members = _find_members(new_path, new_source.text, new, known | parameters.keys())
+    variables = parameters | members
     found: dict[tuple[str, str, str], Token] = {}
     for function, statements in new.items():
         after = [_join_signs(statement.tokens) for statement in statements if function in old]
         kept = {_get_texts(tokens) for tokens in after}
         before = {_get_texts(_join_signs(statement.tokens)) for statement in old.get(function, [])} - kept
-        for tokens in after if before else ():
-            for literal, variable, token in _find_replaced(before, tokens, parameters):
-                found.setdefault((function, literal, parameters[variable]), token)
-    for (function, literal, name), token in found.items():
+        for tokens in after if before and variables else ():
+            for literal, variable, token in _find_replaced(before, tokens, variables):
+                found.setdefault((function, literal, variable), token)
+    for (function, literal, variable), token in found.items():
+        if variable in members:
+            if not _is_same(literal, members[variable]):
+                values = {"variable": variable, "value": members[variable], "old": literal, "name": function}
+                text = phrase("'{variable}' ({value}) replaces {old} in '{name}()'", **values)
+                yield text, new_source.span(token.start, token.end)
+            continue
+        name = parameters[variable]
         default = _find_default(name, names)
         is_reported = any(f"'{name}'" in line and literal.strip('"') in line for line in reported)
         if not _is_same(literal, default) and not (literal.startswith('"') and is_reported):
@@ -66,6 +78,26 @@ def find_replaced_cpp_literals(
                     default=default,
                 )
             yield text, new_source.span(token.start, token.end)
+
+
+def _find_members(
+    path: Path, text: str, statements: Mapping[str, Sequence[Statement]], known: Collection[str]
+) -> dict[str, str]:
+    """Return the initial values of new members and variables that nothing else sets, by name.
+
+    Args:
+        path: the source.
+        text: its text.
+        statements: its statements by function.
+        known: the names of other variables, which are left out.
+    """
+    words = {token.text for items in statements.values() for item in items for token in item.tokens} - set(known)
+    names = {word for word in words if _MEMBER.fullmatch(word)}
+    if not names:
+        return {}
+    values = InitialValues(blank_comments(text), [blank_comments(item) for item in read_included_headers(path)])
+    found = {name: values.find_kept_value(name) for name in names}
+    return {name: value for name, value in found.items() if value is not None}
 
 
 def _join_signs(tokens: Sequence[Token]) -> list[tuple[str, Token]]:
