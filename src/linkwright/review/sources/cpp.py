@@ -159,7 +159,8 @@ class _Reader:
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for interface in find_hardware_interfaces(text):
             details = ((Detail.REQUIRED, YES),) if interface.is_required else ()
-            self._add(interface.kind, interface.name, interface.start, interface.end, details=details)
+            default = interface.variable and self._initial_values.find_default(interface.variable, interface.start)
+            self._add(interface.kind, interface.name, interface.start, interface.end, default or "", details)
         for declared in find_declared_groups(text):
             details = ((Detail.VALUE_TYPE, declared.type),) if declared.type else ()
             self._add(NameKind.PARAMETER, declared.name, declared.start, declared.end, declared.default, details)

@@ -155,7 +155,7 @@ def _compare_types(
         elif accepts_all(old.type, new.type) and not has_other_class:
             reason = None
         yield format_overload_change(new.name, old.type, new.type), reason
-    elif new.kind in (NameKind.PARAMETER, NameKind.OPTION, NameKind.ELEMENT):
+    elif new.kind in (NameKind.PARAMETER, NameKind.HARDWARE_PARAMETER, NameKind.OPTION, NameKind.ELEMENT):
         text = phrase(
             "{kind} '{name}': default {old} -> {new}",
             kind=new.kind.title,

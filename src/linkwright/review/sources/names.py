@@ -128,6 +128,7 @@ class FoundName(NamedTuple):
         end: the end of the name.
         base: the base class as which programs load an exported class; empty if there is none.
         is_required: whether a program fails without the parameter.
+        variable: the variable that keeps its value without the parameter; empty if it is unknown.
     """
 
     kind: NameKind
@@ -136,6 +137,7 @@ class FoundName(NamedTuple):
     end: int
     base: str = ""
     is_required: bool = False
+    variable: str = ""
 
 
 @dataclass(frozen=True)
