@@ -43,7 +43,7 @@ def find_hardware_interfaces(text: str) -> Iterator[FoundName]:
 
 
 def _find_variable(text: str, position: int, name: str) -> str:
-    """Return the variable that gets a parameter behind the check whether it is there; empty if there is none."""
+    """Return the variable that gets a parameter behind a check for it; empty if there is none."""
     value = rf"->\s*second\b|parameters\s*(?:\[|\.\s*at\s*\()\s*\"{re.escape(name)}\""
     assigned = re.compile(rf"\b(\w+)\s*=(?!=)[^;=]*(?:{value})[^;]*;")
     match = assigned.search(text, position, position + _MAX_BRANCH_CHARACTERS)
