@@ -334,3 +334,24 @@ Rover::Rover() : Node("rover") {
     repository.commit({**MANIFEST, "arm/src/rover.cpp": text})
     repository.write({"arm/src/rover.cpp": text.replace('"use_stamped"', '"is_stamped"')})
     assert breaking(compare(repository)) == ["parameter 'use_stamped' (false) renamed to 'is_stamped' (false)"]
+
+
+def test_a_source_in_c_is_read(repository, compare):
+    text = "static int limit(int value) {\n  return min(value, 3);\n}\n"
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/driver.c": text})
+    repository.write({"arm/src/driver.c": text.replace("3", "4")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == ["values in limit: min(value, 3 -> 4)"]
+
+
+def test_an_added_source_in_c_is_only_another_file(repository, compare):
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    repository.write({"arm/src/driver.c": "#define LIMIT 3\nint limit(int value) { return value + LIMIT; }\n"})
+    assert not compare(repository).subjects
+
+
+def test_a_generated_source_in_c_is_only_another_file(repository, compare):
+    text = "/* This file was auto-generated. */\nint limit(int value) {\n  return min(value, 3);\n}\n"
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/driver.c": text})
+    repository.write({"arm/src/driver.c": text.replace("3", "4")})
+    assert not compare(repository).subjects

@@ -89,3 +89,89 @@ def test_a_function_of_the_repository_takes_the_default_before_the_variable(repo
     repository.write({"arm/src/arm.cpp": SOURCE.format(code)})
     lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
     assert f"parameters added: {shown}" in lines
+
+
+GROUP = """Arm::Arm() : Node("arm") {
+  declare_parameters<int>("limits", {{"count", 3}, {"depth", {4, describe("depth")}}});
+  node->declare_parameters("", std::map<std::string, double>{{"gain", 1.5}});
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('"count", 3', '"count", 5', "parameter 'limits.count': default 3 -> 5"),
+        ("{4, d", "{5, d", "parameter 'limits.depth': default 4 -> 5"),
+        ('{"count", 3}, ', "", "parameters removed: 'limits.count' (3)"),
+        ('"gain"', '"kp"', "parameter 'gain' (1.5) renamed to 'kp' (1.5)"),
+        ("<int>", "<double>", "parameter 'limits.count': type int -> double"),
+    ],
+)
+def test_parameters_that_are_declared_together_have_their_namespace(repository, compare, old, new, expected):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": GROUP})
+    repository.write({"arm/src/arm.cpp": GROUP.replace(old, new)})
+    (found,) = compare(repository).subjects
+    assert sentences(found)[0] == expected
+
+
+UNDEFINED = """class Arm {{
+  double mass_{0};
+  bool read() {{
+    {1};
+    return ok();
+  }}
+}};
+"""
+
+
+@pytest.mark.parametrize(
+    ("value", "code", "is_breaking"),
+    [
+        ("", 'nh_.getParam("mass", mass_)', True),
+        ("", 'double load; nh_.getParam("load", load)', True),
+        (" = 1.0", 'nh_.getParam("mass", mass_)', False),
+        ("", 'mass_ = 1.0; nh_.getParam("mass", mass_)', False),
+        ("", 'if (!nh_.getParam("mass", mass_)) warn()', False),
+        ("", 'nh_.param("mass", mass_, 1.0)', False),
+        ("", 'read(mass_); nh_.getParam("mass", mass_)', False),
+        ("", 'std::string mass; nh_.getParam("mass", mass)', False),  # empty
+    ],
+)
+def test_a_number_without_a_value_makes_a_new_parameter_breaking(repository, compare, value, code, is_breaking):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": UNDEFINED.format(value, "start()")})
+    repository.write({"arm/src/arm.cpp": UNDEFINED.format(value, code)})
+    reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
+    name = "load" if "load" in code else "mass"
+    assert reasons == ([f"where '{name}' is not set, its variable has no value"] if is_breaking else [])
+
+
+RANGE = """Arm::Arm() : Node("arm") {{
+  rcl_interfaces::msg::ParameterDescriptor slider;
+  rcl_interfaces::msg::FloatingPointRange range;
+  {}
+  declare_parameter<double>("gain", 1.0, slider);
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("", "range.set__from_value(-0.5).set__to_value(2.0).set__step(0.1); slider.floating_point_range = {range};",
+         {"parameter 'gain': minimum - -> -0.5": "values below -0.5 are rejected",
+          "parameter 'gain': maximum - -> 2.0": "values above 2.0 are rejected"}),
+        ("range.to_value = 2.0; slider.floating_point_range.push_back(range);",
+         "range.to_value = 3.0; slider.floating_point_range.push_back(range);",
+         {"parameter 'gain': maximum 2.0 -> 3.0": None}),
+        ("slider.integer_range[0].from_value = 2;", "slider.integer_range[0].from_value = 3;",
+         {"parameter 'gain': minimum 2 -> 3": "values below 3 are rejected"}),
+        ("", "range.to_value = 2.0; other.floating_point_range.push_back(range);", {}),
+    ],
+)  # fmt: skip
+def test_the_range_of_a_parameter_rejects_values(repository, compare, old, new, expected):
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/src/arm.cpp": RANGE.format(old)})
+    repository.write({"arm/src/arm.cpp": RANGE.format(new)})
+    changes = [change for found in compare(repository).subjects for change in found.changes]
+    lines = {str(item.sentence): item.reason and str(item.reason) for item in changes if "gain" in str(item.sentence)}
+    assert lines == expected

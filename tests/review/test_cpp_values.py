@@ -17,14 +17,18 @@ class Arm : public rclcpp::Node {
   std::string topic_{"state"};
   std::string read_{"scan"};
   Limits limits_;
+  unsigned int period_ = 5, count_{7};
 };
 """
 SOURCE = """#include "arm/arm.hpp"
+Result Arm::on_parameters(const std::vector<rclcpp::Parameter> & changed) { period_ = changed[0].as_int(); }
 Arm::Arm() : Node("arm"), depth_(4) {
   rate_ = declare_parameter("rate", rate_);
   nh_.param("is_slow", is_slow_, is_slow_);
   declare_parameter("depth", depth_);
   declare_parameter("speed", limits_.speed);
+  declare_parameter<int>("period", period_);
+  declare_parameter<int>("count", count_);
   width_ = compute();
   declare_parameter("width", width_);
   create_publisher<std_msgs::msg::String>(topic_, 10);
@@ -48,6 +52,8 @@ def review_source(repository, compare, old, new):
         ("{10.0}", "{20.0}", "parameter 'rate': default 10.0 -> 20.0"),
         ("= true", "= false", "parameter 'is_slow': default true -> false"),
         ("depth_(4)", "depth_(5)", "parameter 'depth': default 4 -> 5"),
+        ("{7}", "{8}", "parameter 'count': default 7 -> 8"),
+        ("= 5", "= 6", "parameter 'period': default 5 -> 6"),
         ("{1.5}", "{2.5}", "parameter 'speed': default 1.5 -> 2.5"),
         ('"state"', '"status"', "publisher 'state' (String) renamed to 'status' (String)"),
     ],

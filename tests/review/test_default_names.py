@@ -203,3 +203,83 @@ def test_a_name_that_something_unknown_precedes_is_shown(repository, compare):
     repository.write({"arm/src/arm.cpp": text.replace("NAME", 'prefix_ + "/" + t')})
     (found,) = compare(repository).subjects
     assert sentences(found) == ["publisher 't' (Bool) renamed to 'prefix_ + \"/\" + t' (Bool)"]
+
+
+GIVEN = """class Arm : public rclcpp::Node {{
+  Arm() : Node("arm") {{
+    {0}
+    out_ = create_publisher<Imu>("done", 1);
+  }}
+  void send() {{ message_.header.frame_id = {1}; {2} out_->publish(message_); }}
+  std::string topic_, frame_;
+}};
+"""
+DECLARED = 'declare_parameter("{0}", {0}_); get_parameter("{0}", {0}_); '
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (('s_ = create_publisher<Bool>("flag", 1);', "frame_", ""),
+         (DECLARED.format("topic") + "s_ = create_publisher<Bool>(topic_, 1);", "frame_", ""),
+         ("publisher 'flag' (Bool) comes from parameter 'topic' now ('' by default)",
+          "by default, programs that use the name 'flag' do not find it")),
+        (("", '"tool"', ""), (DECLARED.format("frame"), "frame_", ""),
+         ("frame of messages 'tool' comes from parameter 'frame' now ('' by default)",
+          "by default, programs that look for the frame 'tool' in the messages do not find it")),
+        (("", '"tool"', ""),
+         ('declare_parameter<std::string>("frame", "tip"); get_parameter("frame", frame_);', "frame_", ""),
+         ("frame of messages 'tool' comes from parameter 'frame' now ('tip' by default)",
+          "by default, programs that look for the frame 'tool' in the messages do not find it")),
+    ],
+)  # fmt: skip
+def test_a_parameter_that_gives_another_name_by_default_is_breaking(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": GIVEN.format(*old)})
+    repository.write({"arm/src/arm.cpp": GIVEN.format(*new)})
+    changes = [change for found in compare(repository).subjects for change in found.changes if change.reason]
+    assert [(str(change.sentence), str(change.reason)) for change in changes] == [expected]
+
+
+@pytest.mark.parametrize(
+    "new",
+    [
+        # the source sets another text if it is empty
+        (DECLARED.format("topic") + 'if (topic_ == "") topic_ = "flag"; s_ = create_publisher<Bool>(topic_, 1);',
+         "frame_", ""),
+        (DECLARED.format("topic") + "if (!topic_.empty()) s_ = create_publisher<Bool>(topic_, 1);", "frame_", ""),
+    ],
+)  # fmt: skip
+def test_a_name_that_may_be_the_old_one_by_default_is_not_called_empty(repository, compare, new):
+    old = ('s_ = create_publisher<Bool>("flag", 1);', '"tool"', "")
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": GIVEN.format(*old)})
+    repository.write({"arm/src/arm.cpp": GIVEN.format(*new)})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert lines
+    assert not any("comes from parameter" in line for line in lines)
+
+
+def test_a_frame_is_not_given_by_the_parameter_of_another_message(repository, compare):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": GIVEN.format("", '"tool"', "")})
+    new = GIVEN.format(DECLARED.format("frame"), "frame_", "").replace("message_.h", "other.h")
+    repository.write({"arm/src/arm.cpp": new})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert "frames of messages removed: 'tool'" in lines
+
+
+CMAKE = """cmake_minimum_required(VERSION 3.8)
+project(arm)
+find_package(ament_cmake REQUIRED)
+add_executable(arm src/arm.cpp)
+add_executable(viewer src/viewer.cpp)
+install(TARGETS arm viewer DESTINATION lib/${PROJECT_NAME})
+ament_package()
+"""
+
+
+@pytest.mark.parametrize(("program", "reasons"), [("arm", []), ("viewer", [NOT_FOUND])])
+def test_a_launch_file_sets_parameters_only_for_the_programs_that_it_names(repository, compare, program, reasons):
+    launch = LAUNCH.replace('exec="arm"', f'exec="{program}"')
+    files = {"arm/CMakeLists.txt": CMAKE, "arm/src/viewer.cpp": "", "arm/launch/arm.launch.xml": launch}
+    (sentence,), found = find_changes(repository, compare, CPP.format(SUBSCRIPTION), files)
+    assert sentence == 'parameter \'input\': default "scan" -> "points"'
+    assert found == reasons

@@ -85,3 +85,20 @@ def test_parameters_that_hardware_reads_from_its_description_are_names(repositor
     result = compare(repository)
     assert breaking(result) == expected
     assert not [line for line in sentences(result.subjects[0]) if "keys" in line]
+
+
+KEPT = """class Arm : public hardware_interface::SystemInterface {{
+  double limit_ = {};
+  void init() {{
+    if (auto it = info_.hardware_parameters.find("limit"); it != info_.hardware_parameters.end()) {{
+      limit_ = std::stod(it->second);
+    }}
+  }}
+}};
+"""
+
+
+def test_a_parameter_of_hardware_has_the_value_of_its_variable_by_default(repository, compare):
+    repository.commit({**MANIFEST, PATH: KEPT.format("0.5")})
+    repository.write({PATH: KEPT.format("0.1")})
+    assert sentences(subject(compare(repository), PATH))[0] == "parameter of the hardware 'limit': default 0.5 -> 0.1"

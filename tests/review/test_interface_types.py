@@ -35,6 +35,7 @@ ROSCPP_SERVICE = """#include <{0}_msgs/State.h>
 bool f({0}_msgs::State::Request & request, {0}_msgs::State::Response & response) {{ return true; }}
 int main() {{ ros::NodeHandle n; auto s = n.advertiseService("state", f); }}
 """
+ROSCPP_REQUEST = ROSCPP_SERVICE.replace("::Re", "Re")
 
 
 @pytest.mark.parametrize(
@@ -47,6 +48,7 @@ int main() {{ ros::NodeHandle n; auto s = n.advertiseService("state", f); }}
         ("arm/src/arm.cpp", RCLCPP_ALIAS, ("old", "new")),
         ("arm/src/arm.cpp", ROSCPP, ("old", "new")),
         ("arm/src/arm.cpp", ROSCPP_SERVICE, ("old", "new")),
+        ("arm/src/arm.cpp", ROSCPP_REQUEST, ("old", "new")),
     ],
 )
 def test_type_of_another_package_is_another_type(repository, compare, path, text, values):
@@ -67,6 +69,7 @@ def test_type_of_another_package_is_another_type(repository, compare, path, text
         ("arm/arm/arm.py", ROSPY.format("new_srv"), ROSPY_START.replace("as new_srv", "") +
          "rospy.Service('state', new_msgs.srv.State, f)\n"),
         ("arm/src/arm.cpp", RCLCPP.format("old"), RCLCPP_ALIAS.format("old")),
+        ("arm/src/arm.cpp", ROSCPP_SERVICE.format("old"), ROSCPP_REQUEST.format("old")),
         # a name that may mean two types
         ("arm/arm/arm.py", RCLPY.format("old"), "try:\n    from old_msgs.msg import State\nexcept ImportError:\n"
          "    from new_msgs.msg import State\n" + RCLPY.format("new")),

@@ -125,3 +125,26 @@ def test_frames_of_whole_headers_and_of_expressions(repository, compare, old, ne
     lines = [line for subject in result.subjects for line in sentences(subject) if line.startswith("frame_id of")]
     assert lines == ([expected] if expected else [])
     assert breaking(result) == (lines if is_breaking else [])
+
+
+TWO = """void Arm::send(const Image & image) {{
+  m.header.frame_id = "{}"; {}
+  send(m);
+  n.header.frame_id = "{}";
+  send(n);
+}}
+void Arm::stop() {{ k.header.frame_id = "odom"; l.header.frame_id = "map"; }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("child", "is_breaking"),
+    [("", True), ('m.child_frame_id = "tool";', False)],  # the parent of a transform is no frame of data
+)
+def test_another_literal_frame_that_the_source_also_had_is_told(repository, compare, child, is_breaking):
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": TWO.format("odom", child, "base")})
+    repository.write({"arm/src/arm.cpp": TWO.format("map", child, "base")})
+    result = compare(repository)
+    expected = ['frame_id of \'m\': "odom" -> "map"']
+    assert [line for subject in result.subjects for line in sentences(subject)] == expected
+    assert breaking(result) == (expected if is_breaking else [])

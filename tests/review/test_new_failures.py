@@ -81,3 +81,30 @@ def test_a_new_function_that_fails_is_no_new_failure(repository, compare):
     repository.write({"arm/src/arm.cpp": CPP.format("") + f"void Arm::check() {{ if (rate_ < 0) {THROW} }}\n"})
     lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
     assert not any(" now if " in line for line in lines)
+
+
+MAIN = """int main(int argc, char ** argv) {{
+  start(argc, argv);
+  {}
+  return 0;
+}}
+"""
+OTHER_ARGUMENTS = "callers that pass other arguments get an error"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("", "if (argc < 3) return -1;", [("'main()' exits now if argc < 3", OTHER_ARGUMENTS)]),
+        ("open(argv[2]);", "if (argc < 3) return -1; open(argv[2]);", [("'main()' exits now if argc < 3", None)]),
+        ("", "if (!open()) { log(); return EXIT_FAILURE; }", [("'main()' exits now if !open()", None)]),
+        ("", "if (stop()) return 0;", []),
+        ("if (argc < 3) return -1;", "if (argc < 4) return -1;", []),
+    ],
+)
+def test_a_result_of_main_that_is_an_error_ends_the_program(repository, compare, old, new, expected):
+    repository.commit({**MANIFEST, "arm/src/main.cpp": MAIN.format(old)})
+    repository.write({"arm/src/main.cpp": MAIN.format(new)})
+    changes = [change for subject in compare(repository).subjects for change in subject.changes]
+    lines = [(str(change.sentence), change.reason and str(change.reason)) for change in changes]
+    assert [line for line in lines if " now if " in line[0]] == expected

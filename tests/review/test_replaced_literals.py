@@ -35,3 +35,55 @@ def test_literal_that_a_parameter_replaces(repository, compare, old, new, expect
     found = find_replaced(repository, compare, old, new)
     assert [line for line in found if "by default" in line] == ([] if expected is None else [expected])
     assert not any(line.startswith("values in") for line in found) or expected is None
+
+
+CPP = """void Arm::configure() {{
+  {}
+  start();
+}}
+void Arm::step() {{
+  {}
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("read", "old", "new", "expected"),
+    [
+        ('nh_.param("rate", rate_, 20);', "ros::Rate rate(50);", "const ros::Rate rate(rate_);",
+         ["parameter 'rate' replaces 50 in 'Arm::step()': 20 by default"]),
+        ('nh_.getParam(ns_ + "gain", gain_);', "send(x * -0.5);", "send(x * this->gain_);",
+         ["parameter 'gain' replaces -0.5 in 'Arm::step()'"]),
+        ('rate_ = declare_parameter("rate", 50.0);', "sleep(50);", "sleep(rate_);", []),  # the same value
+        ('nh_.param("rate", rate_, 20);', "sleep(50);", "sleep(50); sleep(rate_);", []),  # the old statement is kept
+        ('nh_.param("rate", rate_, 20);', "sleep(50); wait(50);", "sleep(rate_);",
+         ["parameter 'rate' replaces 50 in 'Arm::step()': 20 by default"]),
+        ('nh_.param("rate", rate_, 20);', "sleep(50);", "sleep(2 * rate_);", []),
+        ('nh_.param("rate", rate_, 20);', "sleep(50);", "sleep(period_);", []),
+    ],
+)  # fmt: skip
+def test_literal_that_a_parameter_replaces_in_cpp(repository, compare, read, old, new, expected):
+    repository.commit({"arm/arm.cpp": CPP.format("", old)})
+    repository.write({"arm/arm.cpp": CPP.format(read, new)})
+    found = sentences(subject(compare(repository), "arm/arm.cpp"))
+    assert [line for line in found if "replaces" in line] == expected
+
+
+HEADER = "class Arm {{\n  {}\n}};\n"
+
+
+@pytest.mark.parametrize(
+    ("member", "more", "expected"),
+    [
+        ("double limit_ = 3.0;", "", ["'limit_' (3.0) replaces 2.5 in 'Arm::step()'"]),
+        ("double limit_{2.50};", "", []),
+        ("double limit_ = 3.0;", "limit_ = find_limit();", []),
+        ("double limit_;", "", []),
+    ],
+)
+def test_literal_that_a_member_replaces_in_cpp(repository, compare, member, more, expected):
+    source = '#include "arm.hpp"\n' + CPP
+    repository.commit({"arm/arm.hpp": HEADER.format(""), "arm/arm.cpp": source.format("", "send(2.5);")})
+    repository.write({"arm/arm.hpp": HEADER.format(member), "arm/arm.cpp": source.format(more, "send(limit_);")})
+    found = sentences(subject(compare(repository), "arm/arm.cpp"))
+    assert [line for line in found if "replaces" in line] == expected

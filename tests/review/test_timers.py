@@ -96,3 +96,32 @@ def test_another_clock_of_a_timer(repository, compare, old, new, expected):
     lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
     assert [line for line in lines if "timer" in line] == expected
     assert not expected or lines == expected
+
+
+LOOP = """int main(int argc, char ** argv) {{
+  ros::init(argc, argv, "arm");
+  {}
+}}
+"""
+RATE = "ros::Rate rate(hz); while (ros::ok()) { send(); ros::spinOnce(); rate.sleep(); }"
+
+
+@pytest.mark.parametrize(("old", "new", "word"), [(RATE, "ros::spin();", "removed"), ("ros::spin();", RATE, "added")])
+def test_the_rate_of_the_only_loop_is_told(repository, compare, old, new, word):
+    repository.commit({**MANIFEST, "arm/a.cpp": LOOP.format(old)})
+    repository.write({"arm/a.cpp": LOOP.format(new)})
+    assert f"rate {word}: ros::Rate(hz)" in sentences(compare(repository).subjects[0])
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ({"arm/a.cpp": LOOP.format(RATE), "arm/b.cpp": "int b;\n"},
+         {"arm/a.cpp": LOOP.format("ros::spin();"), "arm/b.cpp": "int b;\n" + LOOP.format(RATE)}),
+        ({"arm/a.cpp": LOOP.format(RATE)}, {"arm/a.cpp": LOOP.format(RATE.replace("rate", "loop"))}),
+    ],
+)  # fmt: skip
+def test_a_loop_that_moves_or_has_another_name_keeps_its_rate(repository, compare, old, new):
+    repository.commit({**MANIFEST, **old})
+    repository.write(new)
+    assert all("rate " not in text for found in compare(repository).subjects for text in sentences(found))

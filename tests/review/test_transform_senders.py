@@ -43,3 +43,22 @@ def test_a_line_about_lost_frames_is_enough(repository, compare):
     assert [line for line in breaking(compare(repository)) if "transform" in line or "frame" in line] == [
         "frames removed: 'tool'"
     ]
+
+
+NEW_LINE = "publishes transforms now"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_new"),
+    [
+        ({"node.cpp": SENDER.replace(CALL, "log(frame);")}, {"node.cpp": SENDER}, True),
+        ({"node.cpp": SENDER.replace(CALL, "log(frame);"), "b.cpp": SENDER},
+         {"node.cpp": SENDER, "b.cpp": SENDER.replace(CALL, "log(frame);")}, False),
+        ({"node.cpp": SENDER}, {"node.cpp": SENDER.replace("now()", "time")}, False),
+    ],
+)  # fmt: skip
+def test_new_transforms_are_told(repository, compare, old, new, is_new):
+    repository.commit({"arm/package.xml": PACKAGE_XML, **{f"arm/src/{path}": text for path, text in old.items()}})
+    repository.write({f"arm/src/{path}": content for path, content in new.items()})
+    lines = [str(change.sentence) for subject in compare(repository).subjects for change in subject.changes]
+    assert (NEW_LINE in lines) is is_new

@@ -25,11 +25,14 @@ _COMPARISONS = ("==", "!=")
 _READING_METHODS = frozenset(
     {
         *("get", "at", "find", "count", "contains", "has", "has_key", "HasMember", "hasMember", "isMember", "pop"),
-        *("startswith", "endswith", "starts_with", "ends_with"),
+        *("startswith", "endswith", "starts_with", "ends_with", "compare"),
     }
 )
 """The methods whose first argument is a key or a text to compare with."""
-_READING_FUNCTIONS = frozenset({"getenv", "strcmp"})
+_COMPARING_FUNCTIONS = frozenset({"strcmp", "strncmp", "strcasecmp", "strncasecmp", "iequals"})
+_READING_FUNCTIONS = frozenset({"getenv", *_COMPARING_FUNCTIONS})
+_OUTPUT_CALLS = frozenset({"param", "getParam", "get_parameter", "get_parameter_or"})
+"""The functions that write the value of a parameter into the variable behind its name."""
 _QUOTED = re.compile("\"([^\"]*)\"|'([^']*)'")
 _CONSTANT_NAME = re.compile(r"_?[A-Z][A-Z0-9_]+")
 _ARITHMETIC = frozenset("+-*/")
@@ -204,7 +207,20 @@ def _is_key(tokens: Sequence[Token], literal: Literal) -> bool:
     if before == "[" and after == "]":
         return owner.kind is TokenKind.WORD or owner.text in (")", "]")
     is_method = literal.first > 2 and tokens[literal.first - 3].text in (".", "->")
+    if before == "," and _find_function(tokens, literal.first) in _COMPARING_FUNCTIONS:
+        return True
     return before == "(" and (owner.text in _READING_FUNCTIONS or (is_method and owner.text in _READING_METHODS))
+
+
+def _find_function(tokens: Sequence[Token], index: int) -> str:
+    """Return the name of the function that takes the token at an index; empty if there is none."""
+    depth = 0
+    for place in range(index - 1, 0, -1):
+        text = tokens[place].text
+        depth += (text in (")", "]", "}")) - (text in ("(", "[", "{"))
+        if depth < 0:
+            return tokens[place - 1].text
+    return ""
 
 
 # --- constants ------------------------------------------------------------------------------------------------------
@@ -262,7 +278,16 @@ def _is_constant(statement: Statement) -> bool:
 
 
 def _list_assigned(statement: Statement) -> Iterator[str]:
-    """Yield the names that a statement assigns or changes outside of brackets."""
+    """Yield the names that a statement assigns or changes outside of brackets, and those that a call may set."""
+    tokens = statement.tokens
+    for index, token in enumerate(tokens[1:], start=1):
+        before = tokens[index - 1].text
+        is_passed = before == "&" and index > 1 and tokens[index - 2].text in ("(", ",")
+        is_read = (
+            before == "," and index > 3 and tokens[index - 4].text in _OUTPUT_CALLS and tokens[index - 3].text == "("
+        )
+        if token.kind is TokenKind.WORD and (is_passed or is_read or before in ("++", "--")):
+            yield token.text
     depth = 0
     for token, following in pairwise(statement.tokens):
         if token.kind is TokenKind.OPERATOR:

@@ -64,7 +64,11 @@ class ChangedSources:
 
     def list_timers(self, path: str | None) -> list[Timer]:
         """Return the timers in all changed sources except one."""
-        return [timer for other, names in self._names.items() if other != path for timer in names.timers]
+        return [timer for names in self.list_others(path) for timer in names.timers]
+
+    def list_others(self, path: str | None) -> list[SourceNames]:
+        """Return the names in each changed source except one."""
+        return [names for other, names in self._names.items() if other != path]
 
     @cached_property
     def codes(self) -> Mapping[str, Code]:

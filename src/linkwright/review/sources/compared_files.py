@@ -11,6 +11,11 @@ from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.reading import is_program_text
 from linkwright.review.versions import TEST_FOLDERS, Versions
 
+_C_SUFFIX = ".c"
+_GENERATED = re.compile(
+    r"auto(?:matically)?[- ]?generated|\bgenerated (?:by|with|from|using)\b|do not edit", re.IGNORECASE
+)
+_MAX_HEAD_CHARACTERS = 2000
 _SKIPPED_FILES = frozenset({"setup.py", "conf.py"})
 _PYTHON_TEST = re.compile(
     r"^\s*(?:import|from)\s+(?:unittest|pytest|nose|rostest|launch_testing)\b|^\s*def test_", re.MULTILINE
@@ -25,8 +30,15 @@ def is_compared_source(versions: Versions, file: ChangedFile) -> bool:
     if not TEST_FOLDERS.isdisjoint(path.parts) or is_launch_file_name(path.name):
         return False
     version = versions.new if file.new_path else versions.old
+    if path.suffix == _C_SUFFIX and (None in (file.old_path, file.new_path) or _is_generated(version.text(file.path))):
+        return False  # most are libraries of others, and a node in C++ uses them
     is_test = path.name.startswith("test_") and _has_tests(version.text(file.path), is_cpp=path.suffix in CPP_SUFFIXES)
     return not is_test and is_program_text(version.file(file.path))
+
+
+def _is_generated(text: str) -> bool:
+    """Return whether the first lines of a source say that a program wrote it."""
+    return _GENERATED.search(text, 0, _MAX_HEAD_CHARACTERS) is not None
 
 
 def _has_tests(text: str, *, is_cpp: bool) -> bool:

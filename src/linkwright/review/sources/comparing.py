@@ -30,6 +30,7 @@ from linkwright.review.sources.function_changes import (
     find_ignored_reason,
     merge_function_changes,
 )
+from linkwright.review.sources.given_frames import find_given_frame, format_given
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
 from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
@@ -113,12 +114,13 @@ class _SourcePair(WholeSourcePair):
         changes = [*self.find_added_header(), *self.find_unbuilt()]
         changes += [change for kind in NameKind for change in self._compare_kind(kind, old_names, new_names)]
         changes += self.compare_rates(old_names, new_names)
+        changes += self.find_unused_parameters(new_names)
         for change in compare_conditions(old_names, new_names):
             path = (self.file.old_path if change.is_old else self.file.new_path) or self.file.path
             reason = self._find_condition_reason(change, new_names)
             effect = Effect.CHANGED if reason is None else Effect.BREAKING
             changes.append(Change(change.text, effect, reason, Location(path, change.line, 1, change.is_old)))
-        changes += self.find_lost_transforms(changes)
+        changes += self.find_changed_senders(changes)
         changes += self.compare_imports(old_names, new_names)
         changes += self.find_undefined(old_names, new_names)
         changes += self.compare_header(old_names, new_names)
@@ -193,6 +195,7 @@ class _SourcePair(WholeSourcePair):
             removed = [item for item in removed if item is not old_item]
             added = [item for item in added if item is not new_item]
         yield from self._compare_expressions(kind, removed, added)
+        yield from self._report_given_frame(removed, old_names, new_names)
         removed, added = [*removed, *variants.removed], [*added, *variants.added]
         yield from self._report_unpaired(kind, removed, added, old_names)
 
@@ -271,9 +274,13 @@ class _SourcePair(WholeSourcePair):
         return [*pairs, *pair_similar(unpaired_old, unpaired_new)]
 
     def _read_uses(self, old_items: Sequence[SourceName], new_items: Sequence[SourceName]) -> ParameterUses:
-        sides = ((self.old.version, self.file.old_path), (self.new.version, self.file.new_path))
-        old_text, new_text = ("" if path is None else version.text(path) for version, path in sides)
-        return ParameterUses(old_text, new_text, [item.name for item in old_items], [item.name for item in new_items])
+        return ParameterUses(*self._read_texts(), [item.name for item in old_items], [item.name for item in new_items])
+
+    def _read_texts(self) -> tuple[str, str]:
+        """Return the texts of both versions, empty for one that lacks the source."""
+        old_path, new_path = self.file.old_path, self.file.new_path
+        old_text = "" if old_path is None else self.old.version.text(old_path)
+        return old_text, "" if new_path is None else self.new.version.text(new_path)
 
     def _pair_by_code(
         self, removed: Sequence[SourceName], added: Sequence[SourceName]
@@ -334,7 +341,11 @@ class _SourcePair(WholeSourcePair):
                 SourceName(lost.kind, lost.name, "", item.span), SourceName(lost.kind, "", "", item.span), old_names
             ),
         )
-        return None if reason is None or is_set_in_package(self.new.version, package, item.name) else reason
+        return (
+            None
+            if reason is None or is_set_in_package(self.new.version, package, item.name, self.file.path)
+            else reason
+        )
 
     def _find_condition_reason(self, change: ConditionChange, new_names: SourceNames) -> Phrase | None:
         """Return the reason why a new condition is breaking: a parameter does not fulfill it by default, or None."""
@@ -343,7 +354,7 @@ class _SourcePair(WholeSourcePair):
         text = self.new.version.text(self.file.new_path or "")
         parameter = find_unmet_parameter(change.conditions, new_names, text)
         package = self.new.find_package(self.file.path)
-        if parameter is None or is_set_in_package(self.new.version, package, parameter):
+        if parameter is None or is_set_in_package(self.new.version, package, parameter, self.file.path):
             return None
         return phrase("by default, {reason}", reason=name_reason(", ".join(change.names)))
 
@@ -443,14 +454,10 @@ class _SourcePair(WholeSourcePair):
             )
             default = new_names.find_default(other)
             if default is not None:
-                text = phrase(
-                    "{kind} {name} comes from parameter '{parameter}' now ('{default}' by default)",
-                    kind=kind.title,
-                    name=format_name(item),
-                    parameter=default.parameter,
-                    default=default.name,
-                )
+                text = format_given(item, default)
             reason = self._find_default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
+            if default is not None and not default.name:
+                reason = self._find_lost_reason(item, old_names)
             if reason is None and not can_make(other.name, item.name):
                 reason = self._find_removal_reason([item], old_names)
             yield self.make_change(text, other.span, self.new, reason)
@@ -485,6 +492,17 @@ class _SourcePair(WholeSourcePair):
             yield self.make_change(text, removed_expressions[0].span, self.old, reason)
             drop_replaceable(added, removed_expressions)
 
+    def _report_given_frame(
+        self, removed: list[SourceName], old_names: SourceNames, new_names: SourceNames
+    ) -> Iterator[Change]:
+        """Yield a line about a frame that a parameter gives now. It is removed from the list."""
+        given = find_given_frame(removed, old_names, new_names, self._read_texts())
+        if given is None:
+            return
+        item, default = removed.pop(), given.default
+        reason = self._find_lost_reason(item, old_names)
+        yield self.make_change(format_given(item, default), given.span, self.new, reason)
+
     def _compare_prefixed(self, kind: NameKind, removed: list[SourceName], added: list[SourceName]) -> Iterator[Change]:
         """Yield a line about two or more names that are computed now, because another text precedes them.
 
@@ -502,6 +520,11 @@ class _SourcePair(WholeSourcePair):
         lost = [old for old, new in pairs if not can_make(new.name, old.name)]
         reason = self._find_removal_reason(lost, self.old.get_names(self.file.old_path)) if lost else None
         yield self.make_change(text, pairs[0][1].span, self.new, reason)
+
+    def _find_lost_reason(self, item: SourceName, names: SourceNames) -> Phrase | None:
+        """Return the reason why it is breaking that a parameter gives another name by default; None if it is not."""
+        reason = self._find_rename_reason(item, replace(item, name=""), names)
+        return None if reason is None else phrase("by default, {reason}", reason=reason)
 
     def _find_default_reason(self, item: SourceName, old: str, new: str, names: SourceNames) -> Phrase | None:
         """Return the reason why another name by default is breaking; None if it is unknown or equal."""
@@ -548,7 +571,8 @@ class _SourcePair(WholeSourcePair):
         package = self.new.find_package(self.file.path)
         joined = new_default.parameter.split(SUM)  # a value that a file sets is only a part of the name now
         is_set = old_default.parameter not in joined and any(
-            is_set_in_package(self.new.version, package, item.parameter) for item in (old_default, new_default)
+            is_set_in_package(self.new.version, package, item.parameter, self.file.path)
+            for item in (old_default, new_default)
         )
         names = self.old.get_names(self.file.old_path)
         reason = None if is_set else self._find_default_reason(old, old_default.name, new_default.name, names)

@@ -51,6 +51,7 @@ from linkwright.review.sources.cpp_values import (
     parse_literal,
 )
 from linkwright.review.sources.cpp_variable_types import VariableTypes
+from linkwright.review.sources.declared_groups import find_declared_groups
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
@@ -65,6 +66,7 @@ from linkwright.review.sources.parameter_helpers import (
     is_parameter_name,
     read_elements,
 )
+from linkwright.review.sources.parameter_ranges import find_range
 from linkwright.review.sources.registrations import find_registrations
 
 _DECLARED_KINDS = (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER)
@@ -157,7 +159,11 @@ class _Reader:
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
         for interface in find_hardware_interfaces(text):
             details = ((Detail.REQUIRED, YES),) if interface.is_required else ()
-            self._add(interface.kind, interface.name, interface.start, interface.end, details=details)
+            default = interface.variable and self._initial_values.find_default(interface.variable, interface.start)
+            self._add(interface.kind, interface.name, interface.start, interface.end, default or "", details)
+        for declared in find_declared_groups(text):
+            details = ((Detail.VALUE_TYPE, declared.type),) if declared.type else ()
+            self._add(NameKind.PARAMETER, declared.name, declared.start, declared.end, declared.default, details)
         for option in find_options(text, find_arguments):
             self._add(NameKind.OPTION, option.name, option.start, option.end, option.default, option.details)
         for rate in find_rates(text):
@@ -308,10 +314,20 @@ class _Reader:
     def _add_default(self, kind: NameKind, expression: str) -> bool:
         """Add the name that an expression has by default, and return whether a parameter gives it."""
         is_parameter = kind is NameKind.PARAMETER
-        parameter = None if is_parameter else find_cpp_parameter_default(self._text, expression)
+        parameter = None
+        if not is_parameter:
+            parameter = find_cpp_parameter_default(self._text, expression, self._find_known_default)
         if parameter is not None:
             self._names.add_default(kind, expression, *parameter)
         return parameter is not None
+
+    def _find_known_default(self, parameter: str) -> str | None:
+        """Return the text that a parameter has by default, as a call before tells; None if it is unknown."""
+        for item in self._names.of_kind(NameKind.PARAMETER):
+            if item.name.lstrip("~/") == parameter.lstrip("~/"):
+                literal = TEXT.fullmatch(item.type)
+                return None if literal is None else literal["text"]
+        return None
 
     def _add_frame(self, kind: NameKind, begin: int, end: int) -> None:
         """Add a frame that is a literal, or that a parameter gives."""
@@ -352,10 +368,13 @@ class _Reader:
                 declared = declared or find_type_of_default(self._text, texts)
                 declared = declared or self._variable_types.find_passed(offsets[1])
                 details += [(Detail.VALUE_TYPE, declared)] if declared else []
+                details += find_range(self._text, call.start, texts)
             elif read_type := type_name or self._variable_types.find_passed(offsets[1]):
                 details.append((Detail.READ_AS, read_type))
             if is_required_parameter(self._text, call, texts):
                 details.append((Detail.REQUIRED, YES))
+            elif call.function in _OUTPUT_CALLS and texts and self._initial_values.is_undefined(texts[0], call.start):
+                details.append((Detail.UNDEFINED, YES))
             is_output = call.function in _OUTPUT_CALLS or is_known_to_be_set(self._text, name, call.start)
             type_name = (
                 self._parameter_defaults.find_kept(call, texts)

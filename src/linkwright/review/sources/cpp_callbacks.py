@@ -29,11 +29,13 @@ def find_message_type(function: str, texts: Iterable[str]) -> str:
 def find_service_type(function: str, texts: Iterable[str]) -> str:
     """Return the type of the service that calls a function of ROS 1, as written; empty if it is unknown.
 
+    The function takes a request such as ``std_srvs::Empty::Request`` or ``std_srvs::EmptyRequest``.
+
     Args:
         function: the name of the function without its class.
         texts: the texts, without comments, in which the function may be defined or declared.
     """
-    pattern = re.compile(rf"\b{re.escape(function)}\s*\(\s*(?:const\s+)?(?P<type>(?:\w+::)+\w+)::Request\s*&")
+    pattern = re.compile(rf"\b{re.escape(function)}\s*\(\s*(?:const\s+)?(?P<type>(?:\w+::)+\w+?)(?:::)?Request\s*&")
     for text in texts:
         types = {match["type"] for match in pattern.finditer(text)}
         if types:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+
+from linkwright.review.sources.cpp_text import find_closing_bracket
 
 TEXT = re.compile(r'\s*(?:(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"\s*\)?\s*')
 VARIABLE = re.compile(r"\s*(?:\w+::)*(?P<name>\w+)\s*(?:\.c_str\(\))?\s*")
@@ -18,16 +20,25 @@ _ASSIGNED_TEXT = re.compile(
     r'\s*(?:=|(?P<open>[({]))\s*(?P<made>(?:std::)?string\s*\(\s*)?"(?P<text>[^"\\]*)"(?(made)\s*\))(?(open)\s*[)}])\s*;'
 )
 _TYPE = r"\b(?:double|float|int|bool|auto|size_t|u?int(?:8|16|32|64)_t|unsigned|long|short|string)"
-_VALUE = r"(?P<value>-?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")"
+_UNNAMED_VALUE = r"(?:-?(?:\d+\.?\d*|\.\d+)(?:e-?\d+)?f?|true|false|\"[^\"\\]*\")"
+_VALUE = rf"(?P<value>{_UNNAMED_VALUE})"
 _DECLARED = re.compile(rf"{_TYPE}\s+(?P<names>\w+(?:\s*,\s*\w+)*)\s*(?=[;={{])")
 """A declaration of members or variables, with or without a value."""
-_INITIAL = re.compile(
-    rf"{_TYPE}\s+(?P<name>\w+)\s*(?:=\s*{_VALUE}|[({{]\s*{_VALUE.replace('value', 'made')}\s*[)}}])\s*;"
-)
+_SET = rf"\w+\s*(?:=\s*{_UNNAMED_VALUE}|[({{]\s*{_UNNAMED_VALUE}\s*[)}}])?"
+_INITIAL = re.compile(rf"{_TYPE}\s+(?P<list>{_SET}(?:\s*,\s*{_SET})*)\s*;")
+"""A declaration of members or variables with literal values."""
+_INITIAL_ITEM = re.compile(rf"(?P<name>\w+)\s*(?:=|[({{])\s*{_VALUE}")
 _INITIALIZED = re.compile(rf"(?<=[:,])\s*(?P<name>\w+)\s*(?:\(\s*|\{{\s*){_VALUE}\s*[)}}]\s*(?=[,{{])")
 """An entry of the initializer list of a constructor."""
 _MEMBER = re.compile(r"\s*(?:\*?this\s*->\s*)?(?:\w+\s*(?:\.|->)\s*)*(?P<name>[A-Za-z_]\w*)\s*")
 _READ = r"\w*[pP]aram\w*\s*(?:<[^<>;()]*>)?\s*\("
+_STATEMENT = re.compile(r"(?:this\s*->\s*)?[\w:]*(?:\s*\(\s*\))?\s*(?:\.|->|::)?\s*")
+"""The start of a statement that only makes a call, before the name of the function."""
+_NUMBER_TYPE = (
+    r"(?:(?:unsigned|signed|long|short)\s+)*(?:double|float|int|bool|unsigned|long|short|size_t|u?int(?:8|16|32|64)_t)"
+)
+_PARAMETERS_CALLBACK = re.compile(r"\([^(){};]*\bParameter\s*>?\s*(?:const\s*)?&?\s*\w+\s*\)[^(){};]*\{")
+"""The head of a function or lambda that gets changed parameters of ROS 2."""
 
 
 def parse_literal(text: str) -> str | None:
@@ -85,8 +96,8 @@ def _is_output(text: str, name: str) -> bool:
     return re.search(output, text) is not None
 
 
-_EMPTY_TEXT = re.compile(r"(?<![\w:<])(?:std::)?string\s+(?P<name>\w+)\s*;")
-"""The declaration of a text without a value, which is empty."""
+_EMPTY_TEXT = re.compile(r"(?<![\w:<])(?:std::)?string\s+(?P<names>\w+(?:\s*,\s*\w+)*)\s*;")
+"""The declaration of texts without a value, which are empty."""
 
 
 class InitialValues:
@@ -101,16 +112,19 @@ class InitialValues:
 
     def __init__(self, text: str, headers: Sequence[str]) -> None:
         self._text = text
+        self._headers = headers
+        self._code = _blank_callbacks(text)
         declared, initial, listed = set[str](), dict[str, set[str]](), dict[str, set[str]]()
         for source in (*headers, text):
             declared |= {name for match in _DECLARED.finditer(source) for name in re.findall(r"\w+", match["names"])}
-            for match in _INITIAL.finditer(source):
-                initial.setdefault(match["name"], set()).add(match["value"] or match["made"])
+            for name, value in _find_initial_values(source):
+                initial.setdefault(name, set()).add(value)
             for match in _INITIALIZED.finditer(source):
                 listed.setdefault(match["name"], set()).add(match["value"])
         values = initial | {name: found for name, found in listed.items() if name in declared}
         self._values = {name: next(iter(found)) for name, found in values.items() if len(found) == 1}
-        texts = {match["name"] for source in (*headers, text) for match in _EMPTY_TEXT.finditer(source)}
+        empty = (match["names"] for source in (*headers, text) for match in _EMPTY_TEXT.finditer(source))
+        texts = {name for names in empty for name in re.findall(r"\w+", names)}
         self._empty_texts = texts - initial.keys() - listed.keys()
 
     def find_default(self, expression: str, position: int) -> str | None:
@@ -130,7 +144,7 @@ class InitialValues:
         name = re.escape(match["name"])
         assigned = re.compile(rf"(?<!\w){name}\s*(?:[-+*/|&]?=(?!=))(?!\s*{re.escape(value)}\s*;)|>>\s*{name}\b")
         read = re.compile(rf"\b{_READ}[^;()]*[,&.>\s]{name}\s*[,)]")
-        is_changed = any(pattern.search(self._text, 0, start) for pattern in (assigned, read))
+        is_changed = any(pattern.search(self._code, 0, start) for pattern in (assigned, read))
         return None if is_changed else value
 
     def _is_empty_text(self, name: str, position: int) -> bool:
@@ -138,22 +152,63 @@ class InitialValues:
         if name not in self._empty_texts:
             return False
         start = max(self._text.rfind(mark, 0, position) for mark in ";{}") + 1
-        before = _EMPTY_TEXT.sub("", self._text[:start])
+        before = _EMPTY_TEXT.sub("", self._code[:start])
         initialized = re.search(rf"[:,]\s*{re.escape(name)}\s*[({{]", self._text)
         return initialized is None and re.search(rf"\b{re.escape(name)}\b", before) is None
 
+    def is_undefined(self, expression: str, position: int) -> bool:
+        """Return whether a number has no value if a call does not set it, whose result nothing checks.
+
+        Args:
+            expression: the argument of the call, such as ``rate_``.
+            position: the offset of the call.
+        """
+        match = _MEMBER.fullmatch(expression)
+        start = max(self._text.rfind(mark, 0, position) for mark in ";{}") + 1
+        if match is None or not _STATEMENT.fullmatch(self._text[start:position].strip()):
+            return False
+        name = match["name"]
+        sources = (*self._headers, self._text)
+        declared = re.compile(rf"^[ \t]+{_NUMBER_TYPE}\s+(?:\w+\s*,\s*)*{name}\s*(?:,\s*\w+\s*)*;", re.MULTILINE)
+        set_value = re.compile(
+            rf"(?<!\w){name}\s*(?:[-+*/|&]?=(?!=)|[({{\[]|\+\+|--)|(?:>>|[&,(]\s*&|\+\+|--)\s*{name}\b"
+        )
+        if any(map(set_value.search, sources)) or sum(len(declared.findall(source)) for source in sources) != 1:
+            return False
+        is_used_before = re.search(rf"\b{name}\b", declared.sub("", self._code[:start])) is not None
+        return not is_used_before and len(re.findall(rf"{_READ}[^;()]*\b{name}\b", self._text)) == 1
+
     def find_text(self, name: str) -> str | None:
         """Return the text with which a member is initialized and that nothing else sets; None for others."""
-        value = self._values.get(name, "")
-        if not value.startswith('"') or _is_output(self._text, name):
+        value = self.find_kept_value(name) or ""
+        return value[1:-1] if value.startswith('"') else None
+
+    def find_kept_value(self, name: str) -> str | None:
+        """Return the literal with which a member or variable is initialized and that nothing else sets, or None."""
+        value = self._values.get(name)
+        if value is None or _is_output(self._text, name):
             return None
-        is_assigned = re.search(rf"(?<![\w\"]){name}\s*\+?=(?!=)(?!\s*{re.escape(value)}\s*;)", self._text)
-        return None if is_assigned else value[1:-1]
+        is_assigned = re.search(rf"(?<![\w\"]){name}\s*[-+*/]?=(?!=)(?!\s*{re.escape(value)}\s*[;,])", self._text)
+        return None if is_assigned else value
+
+
+def _find_initial_values(text: str) -> Iterator[tuple[str, str]]:
+    """Yield the members and variables that declarations initialize with literals, each with its value."""
+    for match in _INITIAL.finditer(text):
+        yield from ((item["name"], item["value"]) for item in _INITIAL_ITEM.finditer(match["list"]))
+
+
+def _blank_callbacks(text: str) -> str:
+    """Return a source with spaces for the functions that get changed parameters, which run after their declaration."""
+    for match in _PARAMETERS_CALLBACK.finditer(text):
+        end = find_closing_bracket(text, match.end() - 1)
+        text = text[: match.end()] + re.sub(r"[^\n]", " ", text[match.end() : end]) + text[end:]
+    return text
 
 
 def read_initial_values(text: str) -> dict[str, str]:
     """Return the literals with which a header initializes members. Names with several values are left out."""
     values: dict[str, set[str]] = {}
-    for match in _INITIAL.finditer(text):
-        values.setdefault(match["name"], set()).add(match["value"] or match["made"])
+    for name, value in _find_initial_values(text):
+        values.setdefault(name, set()).add(value)
     return {name: next(iter(found)) for name, found in values.items() if len(found) == 1}

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.sources.names import DefaultName, NameKind, SourceNames
 from linkwright.review.sources.parameter_defaults import SUM
+from linkwright.review.sources.separate_programs import find_programs
 from linkwright.review.versions import Version
 
 _SETTING_SUFFIXES = (".yaml", ".yml", ".launch", ".launch.py", ".xml")
 """The ends of the names of files that set parameters of nodes."""
+_LAUNCH_SUFFIXES = (".launch", ".launch.py", ".launch.xml")
 
 
 def find_default_reason(
@@ -46,9 +48,30 @@ def _is_empty_by_default(item: DefaultName, new: SourceNames) -> bool:
     return defaults in (["''"], ['""']) and all(known.name != item.name for known in new.of_kind(item.kind))
 
 
-def is_set_in_package(version: Version, package: str | None, parameter: str) -> bool:
-    """Return whether a launch file or parameter file of a package may set a parameter, which hides its default."""
+def is_set_in_package(version: Version, package: str | None, parameter: str, path: str) -> bool:
+    """Return whether a launch file or parameter file of a package may set a parameter, which hides its default.
+
+    A launch file that names programs of the package, but none that contains the source, sets it for other nodes.
+
+    Args:
+        version: the version of the repository.
+        package: the folder of the package; None if the source is in none.
+        parameter: the name of the parameter.
+        path: the path of the source that reads it.
+    """
+    if package is None:
+        return False
     name = re.escape(parameter.lstrip("~/"))
     setting = re.compile(rf"(?<![\w/.-]){name}[\"']?\s*:|[\"']~?{name}[\"']")
-    paths = version.paths(_SETTING_SUFFIXES, package) if package is not None else ()
-    return any(setting.search(version.text(path)) for path in paths)
+    own, others = find_programs(version, package, path)
+    for setting_path in version.paths(_SETTING_SUFFIXES, package):
+        text = version.text(setting_path)
+        is_of_others = setting_path.endswith(_LAUNCH_SUFFIXES) and _names(text, others) and not _names(text, own)
+        if setting.search(text) and not (own and is_of_others):
+            return True
+    return False
+
+
+def _names(text: str, programs: Collection[str]) -> bool:
+    """Return whether a launch file starts one of several programs by its name."""
+    return any(re.search(rf"\b(?:exec|executable|type)\s*=\s*[\"']{re.escape(item)}[\"']", text) for item in programs)

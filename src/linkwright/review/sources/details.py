@@ -91,7 +91,7 @@ def compare_details(
     for detail in Detail:
         before, after = old_details.get(detail), new_details.get(detail)
         sides = (before, old_details), (after, new_details)
-        if before == after or (detail in _KNOWN_IN_BOTH and None in (before, after)):
+        if before == after or detail is Detail.UNDEFINED or (detail in _KNOWN_IN_BOTH and None in (before, after)):
             continue
         if detail is Detail.DEFAULT:
             yield from _compare_missing_defaults(old, new)
@@ -160,7 +160,7 @@ def _compare_types(
         elif accepts_all(old.type, new.type) and not has_other_class:
             reason = None
         yield format_overload_change(new.name, old.type, new.type), reason
-    elif new.kind in (NameKind.PARAMETER, NameKind.OPTION, NameKind.ELEMENT):
+    elif new.kind in (NameKind.PARAMETER, NameKind.HARDWARE_PARAMETER, NameKind.OPTION, NameKind.ELEMENT):
         text = phrase(
             "{kind} '{name}': default {old} -> {new}",
             kind=new.kind.title,
@@ -254,6 +254,8 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
         return phrase("code that calls '{name}' on constant objects does not build", name=name.name)
     if detail is Detail.VALUE_TYPE and name.kind is NameKind.PARAMETER and before and after:
         return phrase("values of the old type are rejected")
+    if detail in (Detail.MINIMUM, Detail.MAXIMUM) and Detail.LEVEL not in dict(name.details):
+        return _find_limit_reason(detail, before, after)
     if detail is Detail.READ_AS and rejects_values(old, new):
         return phrase("values of the old type are not read")
     if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:
@@ -274,6 +276,20 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
     return None
 
 
+def _find_limit_reason(detail: Detail, before: str | None, after: str | None) -> Phrase | None:
+    """Return the reason why another limit of a parameter of ROS 2 is breaking; None if it rejects no more values.
+
+    dynamic_reconfigure has levels, and sets a value to the limit instead.
+    """
+    if after is None:
+        return None
+    if detail is Detail.MINIMUM and (before is None or float(after) > float(before)):
+        return phrase("values below {limit} are rejected", limit=after)
+    if detail is Detail.MAXIMUM and (before is None or float(after) < float(before)):
+        return phrase("values above {limit} are rejected", limit=after)
+    return None
+
+
 def make_required_reason(kind: NameKind, names: Phrase | str) -> Phrase:
     """Return the reason why an option or parameter without a default is breaking."""
     if kind is NameKind.PARAMETER:
@@ -286,6 +302,9 @@ def make_required_reason(kind: NameKind, names: Phrase | str) -> Phrase:
 def find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
     """Return the reason why added names are breaking, or None if none of them is required."""
     names = [item.name for item in items if (Detail.REQUIRED, YES) in item.details]
+    undefined = [item.name for item in items if (Detail.UNDEFINED, YES) in item.details]
+    if not names and undefined:
+        return phrase("where '{name}' is not set, its variable has no value", name=joined_first(undefined, MAX_NAMES))
     if not names:
         return None
     if items[0].kind is NameKind.FUNCTION:

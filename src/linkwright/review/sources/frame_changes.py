@@ -44,20 +44,23 @@ class _Assigned(NamedTuple):
 
 
 def find_frame_changes(old: Code, new: Code) -> Iterator[FrameChange]:
-    """Yield the messages of each function that get another frame now, unless both versions have a literal one.
+    """Yield the messages of each function that get another frame now.
 
-    Of two variables, one is the frame of a message that the function has in both versions, so that neither is only
-    another name of the other.
+    Two literal frames count only if both versions have both, because others are compared as names. Of two variables,
+    one is the frame of a message that the function has in both versions, so that neither is only another name of the
+    other.
     """
+    literals = [_list_literals(code) for code in (old, new)]
     for name, parts in new.functions.items():
         if name not in old.functions:
             continue
         before, after = _read_assignments(old.functions[name]), _read_assignments(parts)
-        texts = [" ".join(part.text for part in items) for items in (old.functions[name], parts)]
+        texts = [" ".join(join_operators(part.text) for part in items) for items in (old.functions[name], parts)]
         groups: dict[tuple[tuple[str, ...], tuple[str, ...]], list[str]] = {}
         for target in before.keys() & after.keys():
             pair = before[target].expressions, after[target].expressions
             is_other = _is_left(pair[0], texts[1]) or _is_left(pair[1], texts[0]) or _is_computed(*pair)
+            is_other = is_other or _is_known_literal(*pair, *literals)
             if pair[0] != pair[1] and is_other:
                 groups.setdefault(pair, []).append(target)
         for (old_values, new_values), targets in sorted(groups.items()):
@@ -68,8 +71,38 @@ def find_frame_changes(old: Code, new: Code) -> Iterator[FrameChange]:
                 new=_SEPARATOR.join(new_values),
             )
             text = _TEXT.fullmatch(old_values[0]) if len(old_values) == 1 else None
-            reason = None if text is None else message_frame_reason(text["text"])
+            is_transform = any(
+                f"{target}{joiner}child_frame_id" in texts[1] for target in targets for joiner in (".", "->")
+            )
+            reason = None if text is None or is_transform else message_frame_reason(text["text"])
             yield FrameChange(sentence, min(after[target].line for target in targets), reason)
+
+
+def _list_literals(code: Code) -> set[str]:
+    """Return the literal frames that a source assigns to messages."""
+    expressions = (
+        expression
+        for parts in code.functions.values()
+        for assigned in _read_assignments(parts).values()
+        for expression in assigned.expressions
+    )
+    return {match["text"] for expression in expressions if (match := _TEXT.fullmatch(expression)) is not None}
+
+
+def _is_known_literal(old: Sequence[str], new: Sequence[str], before: set[str], after: set[str]) -> bool:
+    """Return whether a literal frame replaces another one, and both versions have both.
+
+    Args:
+        old: the old expressions.
+        new: the new expressions.
+        before: the literal frames in the old source.
+        after: the literal frames in the new source.
+    """
+    matches = [_TEXT.fullmatch(values[0]) if len(values) == 1 else None for values in (old, new)]
+    if matches[0] is None or matches[1] is None:
+        return False
+    names = matches[0]["text"].strip("/"), matches[1]["text"].strip("/")
+    return names[0] != names[1] and matches[0]["text"] in after and matches[1]["text"] in before
 
 
 def join_operators(text: str) -> str:

@@ -19,6 +19,8 @@ _PARAMETER = re.compile(
 )
 """A parameter that hardware reads from its description, such as ``info_.hardware_parameters["port"]``."""
 _HARDWARE = re.compile(r"\bhardware_interface\b|\bHardwareInfo\b")
+_CHECKS = frozenset({"find", "count", "contains"})
+_MAX_BRANCH_CHARACTERS = 250
 _CONTROLLER = re.compile(r"\bInterfaceConfiguration\b")
 
 
@@ -36,7 +38,16 @@ def find_hardware_interfaces(text: str) -> Iterator[FoundName]:
     for match in reads:
         is_required = match["name"] not in optional and not is_caught
         name, start, end = match["name"], match.start("name"), match.end("name")
-        yield FoundName(NameKind.HARDWARE_PARAMETER, name, start, end, is_required=is_required)
+        variable = "" if match["call"] not in _CHECKS else _find_variable(text, match.end(), name)
+        yield FoundName(NameKind.HARDWARE_PARAMETER, name, start, end, is_required=is_required, variable=variable)
+
+
+def _find_variable(text: str, position: int, name: str) -> str:
+    """Return the variable that gets a parameter behind a check for it; empty if there is none."""
+    value = rf"->\s*second\b|parameters\s*(?:\[|\.\s*at\s*\()\s*\"{re.escape(name)}\""
+    assigned = re.compile(rf"\b(\w+)\s*=(?!=)[^;=]*(?:{value})[^;]*;")
+    match = assigned.search(text, position, position + _MAX_BRANCH_CHARACTERS)
+    return "" if match is None else match[1]
 
 
 def _get_word(match: re.Match[str], group: str) -> str:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import Phrase, Span, phrase
 
 HEADER_SUFFIXES = (".hpp", ".hh", ".hxx", ".h")
-CPP_SUFFIXES = (".cpp", ".cc", ".cxx", *HEADER_SUFFIXES)
+CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".c", *HEADER_SUFFIXES)
 PYTHON_SUFFIX = ".py"
 DYNAMIC_SUFFIX = ".cfg"
 """The suffix of dynamic_reconfigure descriptions, which are Python files."""
@@ -77,6 +77,7 @@ class Detail(Enum):
     SHORT_FORM = phrase("short form")
     LEVEL = phrase("level")
     REQUIRED = phrase("required")
+    UNDEFINED = phrase("undefined")
     ARGUMENTS = phrase("arguments")
     RESULT = phrase("result")
     RETURNED = phrase("returned value")
@@ -128,6 +129,7 @@ class FoundName(NamedTuple):
         end: the end of the name.
         base: the base class as which programs load an exported class; empty if there is none.
         is_required: whether a program fails without the parameter.
+        variable: the variable that keeps its value without the parameter; empty if it is unknown.
     """
 
     kind: NameKind
@@ -136,6 +138,7 @@ class FoundName(NamedTuple):
     end: int
     base: str = ""
     is_required: bool = False
+    variable: str = ""
 
 
 @dataclass(frozen=True)

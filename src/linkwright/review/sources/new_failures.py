@@ -13,9 +13,12 @@ from linkwright.review.sources.cpp_text import blank_comments
 from linkwright.review.sources.names import NameKind, SourceNames
 
 _CPP_FAILURE = re.compile(r"\bthrow\s+[\w:]|(?<![\w.>])(?:std::)?(?P<exit>exit|abort)\s*\(")
+_CPP_MAIN_FAILURE = re.compile(rf"{_CPP_FAILURE.pattern}|\breturn\s+(?P<code>-\s*\d+|[1-9]\d*|EXIT_FAILURE)\s*;")
+"""A failure of ``main``, which ends the program by its result, too."""
+_ARGUMENT_COUNT = re.compile(r"\bargc\s*(?:[<>]=?|[!=]=)\s*\d+|\b\d+\s*(?:[<>]=?|[!=]=)\s*argc\b")
 _PYTHON_FAILURE = re.compile(r"(?:^|:)\s*raise\s+\w|(?<![\w.])(?:sys\.)?(?P<exit>exit)\s*\(")
 _READ = re.compile(
-    r"\b\w*[pP]aram\w*\s*(?:<[^<>;()]*>)?\s*\(\s*\"[~/]*(?P<name>[\w./]+)\"\s*,\s*(?:this->)?(?P<variable>[A-Za-z_]\w*)\s*[,)]"
+    r"\b\w*[pP]aram\w*\s*(?:<[^<>;()]*>)?\s*\(\s*(?:\w+\s*\+\s*)?\"[~/.]*(?P<name>[\w./]+)\"\s*,\s*(?:this->)?(?P<variable>[A-Za-z_]\w*)\s*[,)]"
 )
 """A call that reads a parameter into a variable."""
 _ASSIGNED = re.compile(
@@ -86,15 +89,18 @@ class FailureSide:
         self.names = names
         self.conditions = {_compact(branch.condition) for branch in names.conditional_lines}
         self.failures = {
-            name: list(self._find_failures(text.split("\n"), parts[0].first_line, parts[-1].last_line))
+            name: list(self._find_failures(text.split("\n"), name, parts[0].first_line, parts[-1].last_line))
             for name, parts in code.functions.items()
             if parts
         }
         self.parameters = find_read_parameters(text)
+        self.reads_arguments = re.search(r"\bargv\s*\[\s*[1-9]", text) is not None
 
-    def _find_failures(self, lines: Sequence[str], first: int, last: int) -> Iterator[_Failure]:
+    def _find_failures(self, lines: Sequence[str], function: str, first: int, last: int) -> Iterator[_Failure]:
         """Yield the failures in the lines of a function that are in branches."""
-        pattern = _CPP_FAILURE if self.is_cpp else _PYTHON_FAILURE
+        pattern = _PYTHON_FAILURE
+        if self.is_cpp:
+            pattern = _CPP_MAIN_FAILURE if function == "main" else _CPP_FAILURE
         for number in range(first, min(last + 1, len(lines)) + 1):
             line = _TEXT.sub("", lines[number - 1])
             match = pattern.search(line if self.is_cpp else line.partition("#")[0])
@@ -105,7 +111,8 @@ class FailureSide:
             ]
             branches.sort(key=lambda branch: (branch.first - branch.last, branch.line))
             if branches:
-                yield _Failure(tuple(branch.condition for branch in branches), number, match["exit"] is not None)
+                is_exit = any(match.groupdict().values())
+                yield _Failure(tuple(branch.condition for branch in branches), number, is_exit)
 
 
 def find_read_parameters(text: str) -> Mapping[str, str]:
@@ -145,6 +152,8 @@ def _make_change(name: str, failure: _Failure, old: FailureSide, new: FailureSid
     sentence = phrase("'{name}()' throws an error now if {condition}", name=name, condition=shown)
     if failure.is_exit:
         sentence = phrase("'{name}()' exits now if {condition}", name=name, condition=shown)
+    if failure.is_exit and _ARGUMENT_COUNT.search(failure.condition) and not old.reads_arguments:
+        return FailureChange(sentence, failure.line, phrase("callers that pass other arguments get an error"))
     parameters = _find_parameters(failure.conditions, new)
     known_before = {item.name.lstrip("~/") for item in old.names.of_kind(NameKind.PARAMETER)}
     kept = sorted(parameters & known_before)

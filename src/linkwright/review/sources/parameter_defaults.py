@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
@@ -42,20 +42,26 @@ class ParameterDefault(NamedTuple):
     default: str
 
 
-def find_cpp_parameter_default(text: str, expression: str) -> ParameterDefault | None:
+def find_cpp_parameter_default(
+    text: str, expression: str, find_known: Callable[[str], str | None]
+) -> ParameterDefault | None:
     """Return the parameter that an expression of a C++ source reads, such as ``topic_``; None for others.
 
-    A sum of texts and parameters, such as ``prefix_ + "/state"``, is read as well.
+    A sum of texts and parameters, such as ``prefix_ + "/state"``, is read as well. A default is empty only if the
+    variable keeps it, and nothing asks whether it is empty.
 
     Args:
         text: the source without comments.
         expression: the text of the expression.
+        find_known: returns the default of a parameter whose calls give no literal; None if it is unknown.
     """
     parts = split_sum(expression)
     if len(parts) > 1:
         literals = (_CPP_TEXT.fullmatch(part) for part in parts)
         return _join(
-            find_cpp_parameter_default(text, part) if literal is None else ParameterDefault("", literal["text"])
+            ParameterDefault("", literal["text"])
+            if literal is not None
+            else find_cpp_parameter_default(text, part, find_known)
             for part, literal in zip(parts, literals, strict=True)
         )
     call = _CPP_READ.search(expression)
@@ -71,8 +77,19 @@ def find_cpp_parameter_default(text: str, expression: str) -> ParameterDefault |
     defaults = {(match["name"], match["default"] or _find_declared_default(text, match["name"])) for match in reads}
     if len(defaults) != 1:
         return None
-    ((parameter, default),) = defaults
-    return ParameterDefault(parameter.lstrip("~/."), default) if default else None
+    ((parameter, found),) = defaults
+    default = found or find_known(parameter)
+    is_known = default or (default == "" and variable is not None and _keeps_empty_text(text, variable["name"]))
+    return ParameterDefault(parameter.lstrip("~/."), default or "") if is_known else None
+
+
+def _keeps_empty_text(text: str, variable: str) -> bool:
+    """Return whether a C++ source neither sets a variable to another text nor asks whether it is empty."""
+    name = re.escape(variable)
+    own = rf"\bstring\s+{name}\s*(?:=\s*)?[\"{{(][^;]*;|\b{name}\s*=\s*[^;=]*\b(?:get_|declare_|as_)\w+\s*[<(]"
+    assigned = re.sub(own, "", text)
+    asked = rf"\b{name}\s*(?:==|!=|\.\s*(?:empty|size|length|compare)\b)|(?:==|!=)\s*{name}\b"
+    return re.search(rf"\b{name}\s*(?:\+?=(?!=)|\.\s*(?:append|assign|insert)\b)|{asked}", assigned) is None
 
 
 def split_sum(expression: str) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from linkwright.diagnostics import joined_first, phrase
+from linkwright.diagnostics import Span, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.names import SourceNames, Timer, TimerClock
 from linkwright.review.sources.namespaces import HeaderChange
@@ -14,6 +14,7 @@ _UNIT_NAMES = re.compile(
     r"\b(?:ros|rospy|rclcpp|rclpy|std|chrono|(?:nano|micro|milli)?seconds|duration|Duration|from_sec|to_sec|n?secs|"
     r"[num]?s|Hz|from_seconds|float|int|WallDuration|SteadyDuration)\b"
 )
+_LOOP = re.compile(r"(?:\w+(?:::|\.))*(?:Rate|WallRate|create_rate)\(.*", re.DOTALL)
 _TIMERS = frozenset({"create_wall_timer", "create_timer"})
 
 
@@ -43,6 +44,31 @@ def compare_rates(old: SourceNames, new: SourceNames, *, is_added: bool) -> Iter
         is_same_call = old_call[0] == new_call[0] or {old_call[0], new_call[0]} <= _TIMERS
         if is_same_call and old_call[1:] != new_call[1:] and (_is_number(old_text) or _is_number(new_text)):
             yield HeaderChange(phrase("rate or period: {old} -> {new}", old=old_text, new=new_text), span)
+
+
+def compare_loops(
+    old: SourceNames, new: SourceNames, others: tuple[Sequence[SourceNames], Sequence[SourceNames]]
+) -> Iterator[HeaderChange]:
+    """Yield the rates of loops if only one version of a source has any.
+
+    Args:
+        old: the names in the old version.
+        new: the names in the new version.
+        others: the names in the other changed sources of both versions, to which a loop may move.
+    """
+    loops = _find_loops(old), _find_loops(new)
+    moved = [{text for names in side for text in _find_loops(names)} for side in others]
+    if loops[0] and not loops[1] and moved[1] <= moved[0]:
+        for text, span in loops[0].items():
+            yield HeaderChange(phrase("rate removed: {rate}", rate=text), span, is_old=True)
+    if loops[1] and not loops[0] and moved[0] <= moved[1]:
+        for text, span in loops[1].items():
+            yield HeaderChange(phrase("rate added: {rate}", rate=text), span)
+
+
+def _find_loops(names: SourceNames) -> dict[str, Span]:
+    """Return the rates of the loops of a source, each with its first location."""
+    return {text: span for text, span in reversed(names.rates) if _LOOP.fullmatch(text)}
 
 
 def compare_timers(old: SourceNames, new: SourceNames, other: Sequence[Timer]) -> Iterator[HeaderChange]:

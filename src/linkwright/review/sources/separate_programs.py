@@ -34,6 +34,13 @@ def are_in_separate_programs(version: Version, package: str, path: str, others: 
     )
 
 
+def find_programs(version: Version, package: str, path: str) -> tuple[frozenset[str], frozenset[str]]:
+    """Return the programs of a package that contain a source, and the others, as the build file tells."""
+    programs = _find_programs(version, package)
+    own = programs.get(path, frozenset())
+    return own, frozenset().union(*programs.values()) - own
+
+
 @lru_cache(maxsize=16)
 def _find_programs(version: Version, package: str) -> dict[str, frozenset[str]]:
     """Return the programs that each source of a package is built into, also through libraries, by path."""

@@ -24,6 +24,7 @@ from linkwright.review.sources.new_failures import FailureSide, find_new_failure
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 from linkwright.review.sources.renamed_variables import find_renamed_variables
 from linkwright.review.sources.renamed_words import rename_words
+from linkwright.review.sources.replaced_cpp_literals import find_replaced_cpp_literals
 from linkwright.review.sources.replaced_literals import find_replaced_literals
 from linkwright.review.sources.returned_codes import find_returned_codes
 from linkwright.review.sources.small_changes import find_small_changes
@@ -67,7 +68,11 @@ def _compare_values(
     if file.old_path is None or file.new_path is None:
         return
     paths = old.version.file(file.old_path), new.version.file(file.new_path)
-    replaced = [] if file.path.endswith(CPP_SUFFIXES) else [*find_replaced_literals(*paths)]
+    if file.path.endswith(CPP_SUFFIXES):
+        lines = [str(change.sentence) for change in reported]
+        replaced = [*find_replaced_cpp_literals(*paths, new.get_names(file.new_path), lines)]
+    else:
+        replaced = [*find_replaced_literals(*paths)]
     sentences = [*(str(change.sentence) for change in reported), *(str(text) for text, _ in replaced)]
     for text, span in (*replaced, *find_value_changes(*paths, sentences)):
         yield Change(text, location=Location(file.new_path, span.line, span.column))

@@ -1,4 +1,4 @@
-"""Find sources that no longer publish transforms."""
+"""Find sources that no longer publish transforms, or newly do."""
 
 from __future__ import annotations
 
@@ -30,6 +30,20 @@ def find_lost_sender(old: ChangedSources, new: ChangedSources, file: ChangedFile
     others = (path for path in new.paths if path != file.new_path and _sends(new, path))
     has_moved = any(_find_sender(old.version, path) is None for path in others)
     return None if has_moved else span
+
+
+def find_new_sender(old: ChangedSources, new: ChangedSources, file: ChangedFile) -> Span | None:
+    """Return the place where the new source publishes a transform, or None if the old one may have done so.
+
+    A source that no longer publishes transforms may have had the code.
+    """
+    if file.old_path is None or file.new_path is None:
+        return None
+    span = _find_sender(new.version, file.new_path)
+    if span is None or _sends(old, file.old_path):
+        return None
+    others = (path for path in old.paths if path != file.old_path and _sends(old, path))
+    return None if any(_find_sender(new.version, path) is None for path in others) else span
 
 
 def _sends(side: ChangedSources, path: str) -> bool:

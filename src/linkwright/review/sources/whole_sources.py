@@ -13,7 +13,7 @@ from linkwright.review.changes import Change, Effect, Location, Problem
 from linkwright.review.installed_paths import find_include_text, is_exported_header, read_package_facts
 from linkwright.review.sources.changed_sources import ChangedSources
 from linkwright.review.sources.enumerators import compare_enumerations
-from linkwright.review.sources.names import HEADER_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceNames
+from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceNames
 from linkwright.review.sources.namespaces import compare_namespaces, has_namespace
 from linkwright.review.sources.package_imports import (
     find_failing_imports,
@@ -21,15 +21,17 @@ from linkwright.review.sources.package_imports import (
     is_installed_package,
 )
 from linkwright.review.sources.protected_members import compare_protected
-from linkwright.review.sources.rates import compare_rates, compare_timers
+from linkwright.review.sources.rates import compare_loops, compare_rates, compare_timers
+from linkwright.review.sources.reasons import find_removal_reason
 from linkwright.review.sources.swapped_arguments import (
     compare_argument_order,
     find_swapped_definitions,
     is_declared_without_order,
 )
-from linkwright.review.sources.transform_senders import find_lost_sender
+from linkwright.review.sources.transform_senders import find_lost_sender, find_new_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.undefined_uses import find_undefined_uses
+from linkwright.review.sources.unused_parameters import find_unused_parameters
 from linkwright.review.sources.used_packages import compare_usage
 
 
@@ -112,8 +114,23 @@ class WholeSourcePair:
         if not is_added and not is_removed:
             others = [*self.old.list_timers(self.file.old_path), *self.new.list_timers(self.file.new_path)]
             changes += compare_timers(old_names, new_names, others)
+            sides = self.old.list_others(self.file.old_path), self.new.list_others(self.file.new_path)
+            changes += compare_loops(old_names, new_names, sides)
         for change in changes:
             yield self.make_change(change.text, change.span, self.old if change.is_old else self.new, None)
+
+    def find_unused_parameters(self, names: SourceNames) -> Iterator[Change]:
+        """Yield the parameters that the source still reads, but whose values nothing uses any more."""
+        old_path, new_path = self.file.old_path, self.file.new_path
+        if old_path is None or new_path is None or not new_path.endswith(CPP_SUFFIXES):
+            return
+        texts = self.old.version.text(old_path), self.new.version.text(new_path)
+        list_others = (partial(_list_texts, self.old, old_path), partial(_list_texts, self.new, new_path))
+        unused = set(find_unused_parameters(texts, list_others))
+        for item in names.of_kind(NameKind.PARAMETER):
+            if item.name.lstrip("~/") in unused:
+                text = phrase("{kind} '{name}' is no longer used", kind=item.kind.title, name=item.name)
+                yield self.make_change(text, item.span, self.new, find_removal_reason([item], names, names, new_path))
 
     def compare_imports(self, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield new absolute imports of modules of the same package.
@@ -157,14 +174,17 @@ class WholeSourcePair:
             effect = Effect.CHANGED if reason is None else Effect.BREAKING
             yield Change(phrase("no target builds the source"), effect, reason, Location(path, 1, 1))
 
-    def find_lost_transforms(self, reported: Sequence[Change]) -> Iterator[Change]:
-        """Yield a line if the source no longer publishes transforms, unless a line names the lost frames."""
+    def find_changed_senders(self, reported: Sequence[Change]) -> Iterator[Change]:
+        """Yield a line if the source no longer publishes transforms or newly does, unless a line names the frames."""
         frames = (NameKind.FRAME.title, NameKind.FRAME.plural)
         if not any(change.core.arguments.get("kind") in frames for change in reported):
             span = find_lost_sender(self.old, self.new, self.file)
             if span is not None:
                 reason = phrase("programs that need these transforms do not find them")
                 yield self.make_change(phrase("no longer publishes transforms"), span, self.old, reason)
+            span = find_new_sender(self.old, self.new, self.file)
+            if span is not None:
+                yield self.make_change(phrase("publishes transforms now"), span, self.new, None)
 
     def compare_packages(self, *, are_headers_told: bool) -> Iterator[Change]:
         """Yield the packages, or else the headers, that the source is the first or was the last to use."""
@@ -207,3 +227,10 @@ class WholeSourcePair:
         path = side.version.relative(span.file)
         location = None if path is None else Location(path, span.line, span.column, side.version.is_old)
         return Change(text, Effect.CHANGED if reason is None else Effect.BREAKING, reason, location)
+
+
+def _list_texts(side: ChangedSources, path: str) -> list[str]:
+    """Return the texts of the other C++ sources and headers in the package of a source."""
+    package = side.find_package(path)
+    paths = side.version.paths(CPP_SUFFIXES, package) if package is not None else ()
+    return [side.version.text(other) for other in paths if other != path]
