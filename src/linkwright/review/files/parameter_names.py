@@ -80,10 +80,14 @@ class NameRules:
         old: the old values by path.
         new: the new values by path.
         readers: the programs that may read the values.
+        has_types: whether another type of a value is another type of a parameter.
     """
 
-    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], readers: KeyReaders) -> None:
+    def __init__(
+        self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], readers: KeyReaders, *, has_types: bool = True
+    ) -> None:
         self._readers = readers
+        self._has_types = has_types
         self._new_nodes = {node for name in new if (node := find_node_name(name)) is not None}
         self._added_nodes = self._new_nodes - {find_node_name(name) for name in old}
         self._controllers = {*find_controllers(old), *find_controllers(new)}
@@ -133,8 +137,8 @@ class NameRules:
         reason = self._topics.find_reason(parameter)
         if reason is not None or not is_parameter(parameter) or self._readers.is_replaced(new):
             return reason
-        if new_value.is_list and _PLUGIN_LISTS.search(parameter):
-            return None  # the node accepts nothing else
+        if not self._has_types or (new_value.is_list and _PLUGIN_LISTS.search(parameter)):
+            return None  # ROS 1 has no types, and the lists of Nav2 accept nothing else
         return find_type_reason(old_value, new_value)
 
     def find_addition_reason(self, parameter: str, value: str) -> Phrase | None:
