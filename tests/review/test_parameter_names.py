@@ -214,7 +214,13 @@ def test_types_and_nodes_of_parameters_are_compared(review_changes, old, new, ex
 
 @pytest.mark.parametrize(
     ("old", "new"),
-    [("scale: 1.0", "scale: 1.00"), ('["a", "b"]', "[a, b]"), ("use_map: true", "use_map: True"), ("[a", "[ a")],
+    [
+        ("scale: 1.0", "scale: 1.00"),
+        ("scale: 1.0", "scale: 1.0000000001"),
+        ('["a", "b"]', "[a, b]"),
+        ("use_map: true", "use_map: True"),
+        ("[a", "[ a"),
+    ],
 )
 def test_another_writing_of_a_parameter_is_not_reported(repository, compare, old, new):
     repository.commit({"a/package.xml": PACKAGE_XML, PATH: NODES})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
 from dataclasses import replace
 
@@ -38,6 +39,8 @@ from linkwright.review.versions import Version
 _MAX_VALUES = 32
 """The maximum number of values in the line about an added file, divided among the nodes or keys."""
 _MIN_VALUES_OF_PART = 3
+_ROUNDING = 1e-9
+"""The relative difference up to which two numbers differ only by rounding."""
 _MAX_VALUE_CHARACTERS = 60
 _ITEM_NAME_KEYS = ("name", "id")
 NameRule = Callable[[str, YamlValue, YamlValue], "Phrase | None"]
@@ -307,8 +310,12 @@ def _are_equal(name: str, old: YamlValue, new: YamlValue, has_types: bool) -> bo
     if old.type is new.type is YamlType.TRUTH:
         return old.text.lower() == new.text.lower()
     try:
-        return [float(word) for word in old.text.strip("[]").split(", ")] == [
-            float(word) for word in new.text.strip("[]").split(", ")
-        ]
+        old_numbers, new_numbers = (
+            [float(word) for word in value.text.strip("[]").split(", ")] for value in (old, new)
+        )
     except ValueError:
         return False
+    tolerance = 0 if old.type is new.type is YamlType.INTEGER else _ROUNDING
+    return len(old_numbers) == len(new_numbers) and all(
+        math.isclose(*pair, rel_tol=tolerance, abs_tol=0) for pair in zip(old_numbers, new_numbers, strict=True)
+    )

@@ -6,11 +6,11 @@ The names are those of controllers, joints and frames.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
-from linkwright.review.breaking import name_reason
+from linkwright.review.breaking import names_reason
 from linkwright.review.files.costmap_topics import CostmapTopics
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.yaml_values import YamlValue
@@ -128,12 +128,12 @@ class NameRules:
             patterns = (_FRAME_PARAMETER, _JOINT_PARAMETER, _ODOMETRY_FRAME)
             is_offered = any(pattern.search(parameter) is not None for pattern in patterns)
         if removed and is_offered:
-            return name_reason(", ".join(sorted(removed)))
+            return names_reason(sorted(removed))
         if removed and _PLUGIN_LIST.search(parameter):
             lost = removed - self._find_plugins(parameter)
             return _make_plugin_reason(lost) if lost else None
         if removed and old_value.is_list and _CONTROLLER_LIST.search(parameter):
-            return make_controller_reason(", ".join(sorted(removed)))
+            return make_controllers_reason(sorted(removed))
         reason = self._topics.find_reason(parameter)
         if reason is not None or not is_parameter(parameter) or self._readers.is_replaced(new):
             return reason
@@ -284,6 +284,13 @@ def make_controller_reason(name: str) -> Phrase:
     return phrase("programs that load or command the controller '{name}' do not find it", name=name)
 
 
+def make_controllers_reason(names: Sequence[str]) -> Phrase:
+    """Return the reason why removing some controllers is breaking."""
+    if len(names) == 1:
+        return make_controller_reason(names[0])
+    return phrase("programs that load or command the controllers {names} do not find them", names=quoted_names(names))
+
+
 def _find_ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
     """Yield the paths of ROS 1 controllers: parts with a type outside of node parameters."""
     for name, text in values.items():
@@ -345,7 +352,7 @@ def find_part_renaming_reason(part: str, new_part: str, values: Mapping[str, Yam
     ]
     names = [name for name in names if not can_evaluate_to(f"{new_part}{name.removeprefix(part)}", name)]
     if names:
-        return make_controller_reason(", ".join(map(_separate_by_slashes, names)))
+        return make_controllers_reason(list(map(_separate_by_slashes, names)))
     node, new_node = find_node_name(f"{part}."), find_node_name(f"{new_part}.")
     if node is None or list_part_paths(part)[:-1] == list_part_paths(new_part)[:-1]:
         return _find_node_renaming_reason(part, new_part, values)

@@ -7,7 +7,7 @@ from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase, quoted_names
-from linkwright.review.breaking import name_reason, possible_name_reason
+from linkwright.review.breaking import name_reason, names_reason, possible_name_reason, possible_names_reason
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.excerpts import LONG_VALUE, differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
@@ -384,6 +384,5 @@ def _join_reasons(group: Sequence[_Setting]) -> Phrase | None:
         return reasons[0] if reasons else None
     certain = [reason for reason in reasons if reason.template == name_reason("").template]
     names = list(dict.fromkeys(str(reason.arguments["name"]) for reason in certain or reasons))
-    text = ", ".join([*names[:MAX_NAMES], *["..."][: len(names) > MAX_NAMES]])
     is_possible = all(reason.template == possible_name_reason("").template for reason in reasons)
-    return possible_name_reason(text) if is_possible else name_reason(text)
+    return possible_names_reason(names) if is_possible else names_reason(names)
