@@ -22,7 +22,7 @@ _MIN_VALUES = 6
 _MAX_FILES = 20
 """The maximum number of removed or added files of a kind that are compared with each other."""
 _Contents = Counter[Hashable]
-"""What two versions of a file have in common: the programs of a launch file, or the values of a parameter file."""
+"""The programs that a launch file starts, or the values of a parameter file."""
 
 
 def join_replaced_files(versions: Versions, files: Sequence[ChangedFile]) -> list[ChangedFile]:
@@ -74,8 +74,8 @@ def _rank_pairs(
 ) -> Iterator[tuple[float, str, str]]:
     for old_path, old_group, old_contents in removed:
         for new_path, new_group, new_contents in added:
-            names = (PurePosixPath(path).name.partition(".")[0] for path in (old_path, new_path))
-            similarity = SequenceMatcher(None, *names, autojunk=False).ratio()
+            old_name, new_name = (PurePosixPath(path).name.partition(".")[0] for path in (old_path, new_path))
+            similarity = SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()
             is_close = old_group == new_group and similarity >= _MIN_NAME_SIMILARITY
             if is_close and are_alike(old_contents, new_contents):
                 yield similarity, old_path, new_path
