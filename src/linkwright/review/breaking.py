@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
-from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, interfaces_of
+from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, find_lost_interfaces
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.joint_limits import find_limited_reason
@@ -34,7 +34,7 @@ def find_breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phra
     if difference.subject == "joint":
         return _find_joint_reason(difference, old, new)
     if difference.subject == "extension":
-        return find_extension_reason(difference, interfaces_of(old.extensions) - interfaces_of(new.extensions))
+        return find_extension_reason(difference, find_lost_interfaces(old.extensions, new.extensions))
     return None
 
 
@@ -116,7 +116,7 @@ def find_extension_reason(difference: Difference, lost: Collection[tuple[str, st
 
     Args:
         difference: the difference between both versions.
-        lost: the ros2_control interfaces that the new robot no longer offers; see `interfaces_of`. None if
+        lost: the ros2_control interfaces that the new robot no longer offers; see `find_lost_interfaces`. None if
             the robots are unknown.
     """
     if difference.name.startswith(ROS2_CONTROL):
