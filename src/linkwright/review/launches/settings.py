@@ -17,7 +17,7 @@ from linkwright.review.launches.effects import explain_argument_removal, find_se
 from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
 from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
-from linkwright.review.launches.lost_values import explain_lost_frames
+from linkwright.review.launches.lost_values import explain_enabled_namespace, explain_lost_frames
 from linkwright.review.launches.moved_parameters import follow_moved_parameters
 from linkwright.review.launches.outlines import (
     CONDITION,
@@ -187,6 +187,7 @@ class SettingChanges:
             has_different_default = pair.has_defaults and defaults[0] != defaults[1]
             reason = self._find_reason(new, pair.name, *defaults) if has_different_default else None
             reason = reason or explain_lost_frames(new, pair.name, pair.old, pair.new, self._old)
+            reason = reason or explain_enabled_namespace(pair.name, pair.old, pair.new, self._old)
             if new.kind == READING and reason is None:
                 continue
             keeps_names = reason is not None and self._keeps_names(old, new, pair.name)
