@@ -45,6 +45,8 @@ _CLAIM = re.compile(r"(?:[^.]+\.)*(?P<controller>[^.]+)\.ros__parameters\.(comma
 """The parameters that only controllers have."""
 _JOINT_PARAMETER = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
 """The parameters that name joints of a controller. Other nodes only use the joints."""
+_CONTROLLER_TOPIC = re.compile(r"(^|[._])(odom|odometry|command|cmd_vel)_topic$")
+"""The parameters that name the topics of a controller. Other nodes only use the topics."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]*[./])?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
 _OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
 _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|controller_list)$")
@@ -92,6 +94,7 @@ class NameRules:
         self._added_nodes = self._new_nodes - {find_node_name(name) for name in old}
         self._controllers = {*find_controllers(old), *find_controllers(new)}
         self._controllers |= {match["controller"] for name in old if (match := _CLAIM.fullmatch(name)) is not None}
+        self._ros1_controllers = set(_find_ros1_controllers({name: value.text for name, value in new.items()}))
         self._old, self._new = old, new
         self._clock_nodes = {node for name in old if (node := find_node_name(name)) and name.endswith(_CLOCK_PARAMETER)}
         self._clock_nodes -= {find_node_name(name) for name in old if not name.endswith(f".{_CLOCK_PARAMETER}")}
@@ -125,7 +128,7 @@ class NameRules:
         if is_offered:
             removed -= self._new_frames
         if self._belongs_to_controller(parameter):
-            patterns = (_FRAME_PARAMETER, _JOINT_PARAMETER, _ODOMETRY_FRAME)
+            patterns = (_FRAME_PARAMETER, _JOINT_PARAMETER, _ODOMETRY_FRAME, _CONTROLLER_TOPIC)
             is_offered = any(pattern.search(parameter) is not None for pattern in patterns)
         if removed and is_offered:
             return names_reason(sorted(removed))
@@ -210,7 +213,8 @@ class NameRules:
         """Return whether a parameter belongs to a controller."""
         node = _NODE.match(parameter)
         name = node["node"].rpartition(".")[2] if node else parameter.partition(".")[0]
-        return name in self._controllers or name.endswith("controller")
+        is_of_ros1 = any(parameter.startswith(f"{controller}.") for controller in self._ros1_controllers)
+        return name in self._controllers or name.endswith("controller") or is_of_ros1
 
     def _is_frame_of_odometry(self, parameter: str) -> bool:
         """Return whether a parameter names the parent frame of the odometry that its node publishes."""

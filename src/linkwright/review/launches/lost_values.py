@@ -54,7 +54,7 @@ def explain_enabled_namespace(setting: str, old: str | None, new: str | None, ou
     switched = _SWITCHED_NAMESPACE.fullmatch(old or "") if setting in (NAMESPACE, NAMESPACE_OF_INCLUDED) else None
     if switched is None or switched["name"] != new or evaluate_condition(outline.resolve(switched["condition"])):
         return None
-    names = _USED_ARGUMENT.findall(new)
+    names = _USED_ARGUMENT.findall(switched["name"])
     if not names:
         return None
     return phrase("callers that pass '{name}' find the node, its topics and its services in a namespace", name=names[0])
