@@ -272,3 +272,23 @@ def test_interface_that_all_joints_gain_is_one_change(repository, compare):
     (change,) = subject(compare(repository), URDF).changes
     assert str(change.sentence) == "extension 'ros2_control arm': joint a state_interface effort added"
     assert change.other_names == ("joint b",)
+
+
+def test_numbered_interfaces_that_take_the_place_of_an_array_are_not_lost(repository, compare):
+    repository.commit({URDF: INTERFACES.format(name="arm", interface='<command_interface name="out" size="4"/>')})
+    interfaces = "".join(f'<command_interface name="out_{index}" data_type="bool"/>' for index in range(4))
+    repository.write({URDF: INTERFACES.format(name="arm", interface=interfaces)})
+    result = compare(repository)
+    assert sentences(subject(result, URDF)) == [
+        "extension 'ros2_control arm': joint a command_interface out_0 to out_3 added: data_type=bool",
+        "extension 'ros2_control arm': joint a command_interface out removed: size=4",
+    ]
+    assert not result.breaking_changes
+
+
+def test_array_of_interfaces_whose_last_item_has_no_name_is_lost(repository, compare):
+    repository.commit({URDF: INTERFACES.format(name="arm", interface='<command_interface name="out" size="4"/>')})
+    interfaces = "".join(f'<command_interface name="out_{index}"/>' for index in range(3))
+    repository.write({URDF: INTERFACES.format(name="arm", interface=interfaces)})
+    (change,) = [change for _, change in compare(repository).breaking_changes]
+    assert str(change.sentence) == "extension 'ros2_control arm': joint a command_interface out removed: size=4"

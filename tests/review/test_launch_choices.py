@@ -101,6 +101,7 @@ CHOICE    return LaunchDescription(nodes)
         ("os.environ.get('MODEL') and os.environ['MODEL']", False),
         ("'OTHER' in os.environ and os.environ['MODEL']", True),
         ("os.environ['ROS_DISTRO']", False),
+        ("os.environ['LD_LIBRARY_PATH']", False),
     ],
 )
 def test_environment_variable_that_is_only_read_if_it_is_set_is_not_required(review_code, reading, is_breaking):

@@ -135,3 +135,33 @@ def test_values_in_the_notation_of_ros2_and_the_name_that_the_script_gives_are_n
     repository.write({"arm/launch/arm.launch": None, "arm/launch/arm.launch.py": ROS2_FILE.format(value=value)})
     found = [line for found in compare(repository).subjects for line in sentences(found)]
     assert [line for line in found if line.startswith("node ")] == expected
+
+
+NAMES_IN_EVALUATION = """<launch>
+  <arg name="robot" default=""/>
+  <arg name="name" value="$(arg robot)"/>
+  <arg name="is_real" default="false"/>
+  <arg if="$(eval {condition})" name="prefix" default=""/>
+  <arg unless="$(eval {condition})" name="prefix" default="left_"/>
+  <arg name="fixed_frame" default="{prefix}base_link"/>
+  <node pkg="arm" type="view" name="view" args="-f $(arg fixed_frame)"/>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("condition", "is_breaking"),
+    [
+        ("name == ''", False),
+        ("arg('name') == ''", False),
+        ("name == '' and not is_real", False),
+        ("name == 'arm'", True),
+        ("is_real", True),
+    ],
+)
+def test_names_in_an_evaluation_of_ros_1_have_the_values_of_the_arguments(repository, compare, condition, is_breaking):
+    path = "arm/launch/view.launch"
+    repository.commit({path: NAMES_IN_EVALUATION.format(condition=condition, prefix="")})
+    repository.write({path: NAMES_IN_EVALUATION.format(condition=condition, prefix="$(arg prefix)")})
+    (change,) = subject(compare(repository), path).changes
+    assert (change.reason is not None) is is_breaking

@@ -41,3 +41,40 @@ def test_a_value_that_callers_lose(repository, compare, old, new, reasons):
     repository.write({"lamp/launch/lamp.launch": FILE.replace(old, new)})
     changes = subject(compare(repository), "lamp/launch/lamp.launch").changes
     assert {str(change.reason) for change in changes if change.reason is not None} == reasons
+
+
+NAMESPACE_FILE = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, GroupAction
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node, PushRosNamespace
+
+
+def generate_launch_description():
+    namespace = LaunchConfiguration('namespace')
+    return LaunchDescription([
+        DeclareLaunchArgument('namespace', default_value=''),
+        DeclareLaunchArgument('use_namespace', default_value='DEFAULT'),
+        GroupAction([
+            PushRosNamespace(condition=IfCondition(LaunchConfiguration('use_namespace')), namespace=namespace),
+            Node(package='lamp', executable='lamp'),
+        ]),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("default", "reasons"),
+    [
+        ("false", ["callers that pass 'namespace' find the node, its topics and its services in a namespace"]),
+        ("true", []),
+    ],
+)
+def test_a_namespace_that_callers_had_to_switch_on(repository, compare, default, reasons):
+    path = "lamp/launch/lamp.launch.py"
+    old = NAMESPACE_FILE.replace("DEFAULT", default)
+    repository.commit({path: old})
+    repository.write({path: old.replace("condition=IfCondition(LaunchConfiguration('use_namespace')), ", "")})
+    changes = subject(compare(repository), path).changes
+    found = [str(change.reason) for change in changes if change.reason is not None and "node" in str(change.sentence)]
+    assert found == reasons

@@ -193,11 +193,29 @@ def test_unreadable_robots_that_did_not_change_are_counted_in_a_note(package, co
     ],
 )
 def test_removed_call_of_a_macro_of_a_missing_package_is_breaking(package, compare, new, expected):
+    assert review_calls(package, compare, '<xacro:lidar name="front" parent="lower"/>', new) == expected
+
+
+def review_calls(package, compare, old: str, new: str) -> list[str]:
+    """Return the breaking lines of a robot whose call of a macro of a missing package changes."""
     include = '<xacro:include filename="$(find lidar_description)/urdf/lidar.xacro"/>'
-    call = '<xacro:lidar name="front" parent="lower"/>'
-    package.commit({PATH: ARM.replace("</robot>", f"{include}{call}</robot>")})
+    package.commit({PATH: ARM.replace("</robot>", f"{include}{old}</robot>")})
     package.write({PATH: ARM.replace("</robot>", f"{include}{new}</robot>")})
-    assert breaking(compare(package)) == expected
+    return breaking(compare(package))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_breaking"),
+    [
+        ('<xacro:zed prefix="left_zed" parent="lower"/>', "", True),
+        ('<xacro:zed prefix="left_zed" parent="lower"/>', '<xacro:zed2 prefix="left_zed" parent="lower"/>', False),
+        ('<xacro:zed prefix="low" parent="lower"/>', "", False),
+        ('<xacro:zed prefix="left_zed"/>', "", False),
+        ('<xacro:zed prefix="" parent="lower"/>', "", False),
+    ],
+)
+def test_removed_call_of_a_macro_that_names_a_part_by_a_prefix_is_breaking(package, compare, old, new, is_breaking):
+    assert bool(review_calls(package, compare, old, new)) is is_breaking
 
 
 def test_topic_that_a_call_of_a_missing_macro_newly_passes_may_be_breaking(sensor_package, compare):

@@ -214,7 +214,13 @@ def test_types_and_nodes_of_parameters_are_compared(review_changes, old, new, ex
 
 @pytest.mark.parametrize(
     ("old", "new"),
-    [("scale: 1.0", "scale: 1.00"), ('["a", "b"]', "[a, b]"), ("use_map: true", "use_map: True"), ("[a", "[ a")],
+    [
+        ("scale: 1.0", "scale: 1.00"),
+        ("scale: 1.0", "scale: 1.0000000001"),
+        ('["a", "b"]', "[a, b]"),
+        ("use_map: true", "use_map: True"),
+        ("[a", "[ a"),
+    ],
 )
 def test_another_writing_of_a_parameter_is_not_reported(repository, compare, old, new):
     repository.commit({"a/package.xml": PACKAGE_XML, PATH: NODES})
@@ -401,4 +407,27 @@ def test_velocity_commands_of_a_node_that_newly_have_a_header_are_breaking(revie
     text = SERVERS.format(checkers="[near]", rate=10)
     found, found_breaking = review_changes(other + text if old else other, other + text + STAMPED.format(value))
     assert found
+    assert bool(found_breaking) is is_breaking
+
+
+ROS1_BASE = """base_control:
+  type: lamp_controllers/OmniController
+  odom_topic: base_control/odom
+  twist_mux_topic: cmd
+planner:
+  odom_topic: odom
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_breaking"),
+    [
+        ("base_control/odom", "lamp/odom", True),
+        ("topic: cmd", "topic: command", False),
+        ("topic: odom", "topic: lamp/odom", False),
+        ("type: lamp_controllers/OmniController\n  odom_topic: base_control/odom", "odom_topic: odom", True),
+    ],
+)
+def test_topic_of_a_controller_of_ros_1_is_breaking(review_changes, old, new, is_breaking):
+    _, found_breaking = review_changes(ROS1_BASE, ROS1_BASE.replace(old, new))
     assert bool(found_breaking) is is_breaking

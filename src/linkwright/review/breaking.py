@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
-from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, interfaces_of
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, find_lost_interfaces
+from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.joint_limits import find_limited_reason
 from linkwright.review.names_in_plugins import NAME_TAGS, NAMESPACE_TAG, extract_used_name
 from linkwright.urdf import Robot
@@ -33,7 +34,7 @@ def find_breaking_reason(difference: Difference, old: Robot, new: Robot) -> Phra
     if difference.subject == "joint":
         return _find_joint_reason(difference, old, new)
     if difference.subject == "extension":
-        return find_extension_reason(difference, interfaces_of(old.extensions) - interfaces_of(new.extensions))
+        return find_extension_reason(difference, find_lost_interfaces(old.extensions, new.extensions))
     return None
 
 
@@ -79,9 +80,30 @@ def name_reason(name: str) -> Phrase:
     return phrase("programs that use the name '{name}' do not find it", name=name)
 
 
+def names_reason(names: Sequence[str]) -> Phrase:
+    """Return the reason why removing some topics, services or other names is breaking."""
+    if len(names) == 1:
+        return name_reason(names[0])
+    return phrase("programs that use the names {names} do not find them", names=_quote(names))
+
+
+def _quote(names: Sequence[str]) -> Phrase:
+    return joined_first([f"'{name}'" for name in names], MAX_NAMES)
+
+
 def possible_name_reason(name: str) -> Phrase:
     """Return the reason why removing a name may be breaking if the node offers it."""
     return phrase("if the node publishes or serves '{name}', programs that use it do not find it", name=name)
+
+
+def possible_names_reason(names: Sequence[str]) -> Phrase:
+    """Return the reason why removing some names may be breaking if the node offers them."""
+    if len(names) == 1:
+        return possible_name_reason(names[0])
+    return phrase(
+        "if the node publishes or serves {names}, programs that use the names do not find them",
+        names=_quote(names),
+    )
 
 
 def joint_name_reason(name: str) -> Phrase:
@@ -94,7 +116,7 @@ def find_extension_reason(difference: Difference, lost: Collection[tuple[str, st
 
     Args:
         difference: the difference between both versions.
-        lost: the ros2_control interfaces that the new robot no longer offers; see `interfaces_of`. None if
+        lost: the ros2_control interfaces that the new robot no longer offers; see `find_lost_interfaces`. None if
             the robots are unknown.
     """
     if difference.name.startswith(ROS2_CONTROL):

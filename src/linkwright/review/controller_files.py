@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.file_pair import UnreadableFileError
-from linkwright.review.files.parameter_names import find_all_controllers, make_controller_reason
+from linkwright.review.files.parameter_names import find_all_controllers, make_controllers_reason
 from linkwright.review.files.yaml_values import read_yaml_values
 from linkwright.review.versions import Version, Versions
 
@@ -44,7 +44,7 @@ def find_controller_file_reason(difference: Difference, versions: Versions) -> P
         lost = _read_controllers(versions.old, old_path) - _read_controllers(versions.new, new_path)
     except UnreadableFileError:
         return None
-    return make_controller_reason(", ".join(sorted(lost))) if lost else None
+    return make_controllers_reason(sorted(lost)) if lost else None
 
 
 def _find_file(version: Version, text: str) -> str | None:

@@ -15,7 +15,6 @@ _PARAMETER = re.compile(r"(?P<parent>(?:.* )?)(?P<parameter>param \S+)")
 """A parameter of hardware of ros2_control, or of one of its joints, as a whole."""
 _INTERFACE = re.compile(r"(?P<parent>(?:.* )?(?:command|state)_interface) \S+")
 """An interface of ros2_control as a whole."""
-_NO_VALUES = ("None", "None")
 _TRANSMISSION = "transmission "
 _PART_OF_TRANSMISSION = re.compile(r"(joint|actuator) \S+")
 """A joint or motor of a transmission. Its name differs in each transmission."""
@@ -23,6 +22,9 @@ _TOKEN = re.compile(r"[^\W_]+|[\W_]")
 """A word or number in a name, or a separating character."""
 _NO_NAME = re.compile(r"None|[\d\s.,;:+\-e<>()]*", re.ASCII)
 """A missing value or numbers. They are the same change only if they are equal."""
+_END_NUMBER = re.compile(r"\d+$")
+_MIN_RUN = 3
+"""The minimum number of names with consecutive numbers that are shown as one."""
 _OWN_NAME = "*"
 """The mark for the name of the changed link, joint or extension in its properties and values."""
 
@@ -51,8 +53,8 @@ def _merge_interfaces(changes: Sequence[Change]) -> list[Change]:
     for number, change in enumerate(changes):
         key: Hashable = number
         interface = _INTERFACE.fullmatch(change.property_name)
-        if interface is not None and change.core is change.sentence and change.values[2:] == _NO_VALUES:
-            content = change.effect, change.name, change.other_names, change.core.template, change.cases
+        if interface is not None and change.core is change.sentence:
+            content = change.effect, change.name, change.other_names, change.values, change.cases
             key = *content, interface["parent"], change.reason is None
         groups.setdefault(key, []).append(change)
     return [group[0] if len(group) == 1 else _join_interfaces(group) for group in groups.values()]
@@ -62,8 +64,23 @@ def _join_interfaces(changes: Sequence[Change]) -> Change:
     first = changes[0]
     names = [change.property_name.rpartition(" ")[2] for change in changes]
     parent = first.property_name.rpartition(" ")[0]
-    sentence = first.sentence.with_arguments(property=f"{parent} {', '.join(names)}")
+    sentence = first.sentence.with_arguments(property=f"{parent} {', '.join(_join_numbered(names))}")
     return replace(first, sentence=sentence, reason=merge_reasons(change.reason for change in changes))
+
+
+def _join_numbered(names: Sequence[str]) -> list[str]:
+    """Return names in their order, with consecutive numbers at their ends as one, such as ``a_0 to a_6``."""
+    runs: list[list[str]] = []
+    for name in names:
+        number = _END_NUMBER.search(name)
+        stem = name[: number.start()] if number is not None else name
+        last = None if not runs else _END_NUMBER.search(runs[-1][-1])
+        is_next = number is not None and last is not None and int(number[0]) == int(last[0]) + 1
+        if is_next and runs[-1][-1][: last.start() if last is not None else None] == stem:
+            runs[-1].append(name)
+        else:
+            runs.append([name])
+    return [name for run in runs for name in (run if len(run) < _MIN_RUN else [f"{run[0]} to {run[-1]}"])]
 
 
 def merge_reasons(reasons: Iterable[Phrase | None]) -> Phrase | None:

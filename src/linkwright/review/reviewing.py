@@ -76,6 +76,7 @@ from linkwright.review.removed_programs import merge_removed_options
 from linkwright.review.renamed_findings import drop_renamed_findings
 from linkwright.review.renamed_folders import merge_renamed_folders
 from linkwright.review.renamed_packages import find_renamed_packages, match_moved_files, remove_consequences
+from linkwright.review.replaced_files import join_replaced_files
 from linkwright.review.required_packages import is_named
 from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.comparing import source_subjects
@@ -145,7 +146,7 @@ class _Reviewer:
         self._versions = versions
         self._drawings = drawings
         self._folders = folders
-        changed_files = join_format_changes(versions.changed_files)
+        changed_files = join_replaced_files(versions, join_format_changes(versions.changed_files))
         self._changed_files = [file for file in changed_files if self._is_in_scope(file.path)]
         self._new_paths = {
             file.old_path: file.new_path for file in self._changed_files if file.old_path and file.new_path

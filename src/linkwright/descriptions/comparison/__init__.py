@@ -8,7 +8,7 @@ from linkwright.descriptions.comparison.difference import Difference, Difference
 from linkwright.descriptions.comparison.elements import ElementComparison
 from linkwright.descriptions.comparison.file_contents import has_same_bytes
 from linkwright.descriptions.comparison.gazebo_blocks import GAZEBO, joined_block
-from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, interfaces_of
+from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, find_lost_interfaces
 from linkwright.descriptions.comparison.report import as_data, as_text, sentence
 
 __all__ = [
@@ -24,8 +24,8 @@ __all__ = [
     "as_data",
     "as_text",
     "compare",
+    "find_lost_interfaces",
     "has_same_bytes",
-    "interfaces_of",
     "joined_block",
     "sentence",
 ]

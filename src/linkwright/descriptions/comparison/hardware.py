@@ -46,6 +46,30 @@ def interfaces_of(elements: Iterable[Element]) -> set[tuple[str, str]]:
     }
 
 
+def find_lost_interfaces(old: Iterable[Element], new: Iterable[Element]) -> set[tuple[str, str]]:
+    """Return the interfaces that only the old hardware has, in the form of `interfaces_of`.
+
+    Hardware exports each item of an interface with a size, such as ``output_0`` to ``output_6``. The interface is not
+    lost if the new hardware names the items.
+    """
+    old = list(old)
+    offered = interfaces_of(new)
+    arrays = {
+        (owner.attributes.get("name", ""), interface.attributes.get("name"), interface.attributes["size"])
+        for element in _select_hardware(old)
+        for owner in element.elements()
+        for interface in owner.elements()
+        if interface.attributes.get("size", "").isdecimal()
+    }
+    named = {
+        (owner, f"{kind}{name}")
+        for owner, name, size in arrays
+        for kind in ("", "state ")
+        if int(size) and all((owner, f"{kind}{name}_{index}") in offered for index in range(int(size)))
+    }
+    return interfaces_of(old) - offered - named
+
+
 def _select_hardware(elements: Iterable[Element]) -> list[Element]:
     return [element for element in elements if element.tag == ROS2_CONTROL]
 

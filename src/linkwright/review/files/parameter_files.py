@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
 from dataclasses import replace
 
@@ -15,6 +16,7 @@ from linkwright.review.files.bridges import compare_bridges, read_bridges
 from linkwright.review.files.generated_parameters import compare_generated_parameters, is_parameter_description
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.lost_groups import find_group_reason
+from linkwright.review.files.migrated_parameters import describe_migration, find_migrated_nodes, rename_migrated
 from linkwright.review.files.moveit_names import MoveItRules
 from linkwright.review.files.parameter_names import (
     NameRules,
@@ -37,6 +39,8 @@ from linkwright.review.versions import Version
 _MAX_VALUES = 32
 """The maximum number of values in the line about an added file, divided among the nodes or keys."""
 _MIN_VALUES_OF_PART = 3
+_ROUNDING = 1e-9
+"""The relative difference up to which two numbers differ only by rounding."""
 _MAX_VALUE_CHARACTERS = 60
 _ITEM_NAME_KEYS = ("name", "id")
 NameRule = Callable[[str, YamlValue, YamlValue], "Phrase | None"]
@@ -129,10 +133,14 @@ def _find_changes(
 ) -> Iterator[ValueChange]:
     labels = find_item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
     old_values, new = ({} if root is None else collect_values(root, labels) for root in (old_root, new_root))
+    migrated = find_migrated_nodes(old_values, new)
+    if migrated:
+        pair.changes.append(describe_migration(migrated, new, pair.new_path))
+        old_values = {rename_migrated(name, migrated): value for name, value in old_values.items()}
     moveit = MoveItRules(old_values, new, pair.versions, pair.new_path)
     readers = KeyReaders(pair.versions, pair.new_path)
     old = _report_renamed(pair, old_values, new, moveit, readers)
-    rules = NameRules(old, new, readers)
+    rules = NameRules(old, new, readers, has_types=not migrated)
     plugins = PluginPackages(pair.versions, pair.new_path)
     find_name_reason = read_names(new)
     new_keys = frozenset(_get_last_key(part) for name in new for part in list_part_paths(name))
@@ -140,7 +148,7 @@ def _find_changes(
         old_value = old.get(name)
         if (
             old_value is not None
-            and not _are_equal(name, old_value, value)
+            and not _are_equal(name, old_value, value, has_types=not migrated)
             and not _is_new_label(name, old_value, value)
         ):
             location = Location(pair.new_path, value.line, value.column)
@@ -288,12 +296,12 @@ def _follows_node(part: str, new_part: str, values: Mapping[str, YamlValue], rea
     return None not in (node, new_node) and node != new_node and readers.have_renamed_node(node or "", [new_node or ""])
 
 
-def _are_equal(name: str, old: YamlValue, new: YamlValue) -> bool:
+def _are_equal(name: str, old: YamlValue, new: YamlValue, has_types: bool) -> bool:
     """Return whether two values are equal as texts or as numbers, such as ``0`` and ``0.000``.
 
-    The parameters of a node must also have the same type.
+    The parameters of a node must also have the same type, unless the old ones are of ROS 1, which has no types.
     """
-    if is_parameter(name) and has_different_type(old, new):
+    if has_types and is_parameter(name) and has_different_type(old, new):
         return False
     if old.is_null or new.is_null:
         return old.is_null and new.is_null
@@ -302,8 +310,12 @@ def _are_equal(name: str, old: YamlValue, new: YamlValue) -> bool:
     if old.type is new.type is YamlType.TRUTH:
         return old.text.lower() == new.text.lower()
     try:
-        return [float(word) for word in old.text.strip("[]").split(", ")] == [
-            float(word) for word in new.text.strip("[]").split(", ")
-        ]
+        old_numbers, new_numbers = (
+            [float(word) for word in value.text.strip("[]").split(", ")] for value in (old, new)
+        )
     except ValueError:
         return False
+    tolerance = 0 if old.type is new.type is YamlType.INTEGER else _ROUNDING
+    return len(old_numbers) == len(new_numbers) and all(
+        math.isclose(*pair, rel_tol=tolerance, abs_tol=0) for pair in zip(old_numbers, new_numbers, strict=True)
+    )

@@ -6,11 +6,11 @@ The names are those of controllers, joints and frames.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
-from linkwright.review.breaking import name_reason
+from linkwright.review.breaking import names_reason
 from linkwright.review.files.costmap_topics import CostmapTopics
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.yaml_values import YamlValue
@@ -45,6 +45,8 @@ _CLAIM = re.compile(r"(?:[^.]+\.)*(?P<controller>[^.]+)\.ros__parameters\.(comma
 """The parameters that only controllers have."""
 _JOINT_PARAMETER = re.compile(r"(^|[._])(joints?|joint_names?|wheel_names)$")
 """The parameters that name joints of a controller. Other nodes only use the joints."""
+_CONTROLLER_TOPIC = re.compile(r"(^|[._])(odom|odometry|command|cmd_vel)_topic$")
+"""The parameters that name the topics of a controller. Other nodes only use the topics."""
 _CONTROLLER_TYPE = re.compile(r"(?:[^.]*[./])?controller_manager\.ros__parameters\.(?P<controller>[^.]+)\.type")
 _OWN_TYPE = re.compile(r"(?:.+\.)?(?P<controller>[^.]+)\.ros__parameters\.type")
 _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|controller_list)$")
@@ -80,14 +82,19 @@ class NameRules:
         old: the old values by path.
         new: the new values by path.
         readers: the programs that may read the values.
+        has_types: whether another type of a value is another type of a parameter.
     """
 
-    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], readers: KeyReaders) -> None:
+    def __init__(
+        self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], readers: KeyReaders, *, has_types: bool = True
+    ) -> None:
         self._readers = readers
+        self._has_types = has_types
         self._new_nodes = {node for name in new if (node := find_node_name(name)) is not None}
         self._added_nodes = self._new_nodes - {find_node_name(name) for name in old}
         self._controllers = {*find_controllers(old), *find_controllers(new)}
         self._controllers |= {match["controller"] for name in old if (match := _CLAIM.fullmatch(name)) is not None}
+        self._ros1_controllers = set(_find_ros1_controllers({name: value.text for name, value in new.items()}))
         self._old, self._new = old, new
         self._clock_nodes = {node for name in old if (node := find_node_name(name)) and name.endswith(_CLOCK_PARAMETER)}
         self._clock_nodes -= {find_node_name(name) for name in old if not name.endswith(f".{_CLOCK_PARAMETER}")}
@@ -121,20 +128,20 @@ class NameRules:
         if is_offered:
             removed -= self._new_frames
         if self._belongs_to_controller(parameter):
-            patterns = (_FRAME_PARAMETER, _JOINT_PARAMETER, _ODOMETRY_FRAME)
+            patterns = (_FRAME_PARAMETER, _JOINT_PARAMETER, _ODOMETRY_FRAME, _CONTROLLER_TOPIC)
             is_offered = any(pattern.search(parameter) is not None for pattern in patterns)
         if removed and is_offered:
-            return name_reason(", ".join(sorted(removed)))
+            return names_reason(sorted(removed))
         if removed and _PLUGIN_LIST.search(parameter):
             lost = removed - self._find_plugins(parameter)
             return _make_plugin_reason(lost) if lost else None
         if removed and old_value.is_list and _CONTROLLER_LIST.search(parameter):
-            return make_controller_reason(", ".join(sorted(removed)))
+            return make_controllers_reason(sorted(removed))
         reason = self._topics.find_reason(parameter)
         if reason is not None or not is_parameter(parameter) or self._readers.is_replaced(new):
             return reason
-        if new_value.is_list and _PLUGIN_LISTS.search(parameter):
-            return None  # the node accepts nothing else
+        if not self._has_types or (new_value.is_list and _PLUGIN_LISTS.search(parameter)):
+            return None  # ROS 1 has no types, and the lists of Nav2 accept nothing else
         return find_type_reason(old_value, new_value)
 
     def find_addition_reason(self, parameter: str, value: str) -> Phrase | None:
@@ -206,7 +213,8 @@ class NameRules:
         """Return whether a parameter belongs to a controller."""
         node = _NODE.match(parameter)
         name = node["node"].rpartition(".")[2] if node else parameter.partition(".")[0]
-        return name in self._controllers or name.endswith("controller")
+        is_of_ros1 = any(parameter.startswith(f"{controller}.") for controller in self._ros1_controllers)
+        return name in self._controllers or name.endswith("controller") or is_of_ros1
 
     def _is_frame_of_odometry(self, parameter: str) -> bool:
         """Return whether a parameter names the parent frame of the odometry that its node publishes."""
@@ -280,6 +288,13 @@ def make_controller_reason(name: str) -> Phrase:
     return phrase("programs that load or command the controller '{name}' do not find it", name=name)
 
 
+def make_controllers_reason(names: Sequence[str]) -> Phrase:
+    """Return the reason why removing some controllers is breaking."""
+    if len(names) == 1:
+        return make_controller_reason(names[0])
+    return phrase("programs that load or command the controllers {names} do not find them", names=quoted_names(names))
+
+
 def _find_ros1_controllers(values: Mapping[str, str]) -> Iterator[str]:
     """Yield the paths of ROS 1 controllers: parts with a type outside of node parameters."""
     for name, text in values.items():
@@ -341,7 +356,7 @@ def find_part_renaming_reason(part: str, new_part: str, values: Mapping[str, Yam
     ]
     names = [name for name in names if not can_evaluate_to(f"{new_part}{name.removeprefix(part)}", name)]
     if names:
-        return make_controller_reason(", ".join(map(_separate_by_slashes, names)))
+        return make_controllers_reason(list(map(_separate_by_slashes, names)))
     node, new_node = find_node_name(f"{part}."), find_node_name(f"{new_part}.")
     if node is None or list_part_paths(part)[:-1] == list_part_paths(new_part)[:-1]:
         return _find_node_renaming_reason(part, new_part, values)

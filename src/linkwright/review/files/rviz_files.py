@@ -18,6 +18,8 @@ from linkwright.review.versions import Version
 _MANAGER = "Visualization Manager"
 _GLOBAL_PREFIX = f"{_MANAGER}.Global Options."
 _VIEW_PREFIX = f"{_MANAGER}.Views.Current."
+_VIEW_PROPERTIES = ("Class", "Target Frame")
+"""The compared properties of the view. The others are the point from which it looks, which RViz saves each time."""
 _IGNORED_PROPERTIES = frozenset(
     {"Class", "Name", "Value", "Displays", "Links", "Frames", "Tree", "Namespaces", "Status"}
 )
@@ -141,7 +143,8 @@ def _compare_values(pair: FilePair, old: Mapping[str, str], new: Mapping[str, st
         if name.startswith(_GLOBAL_PREFIX) and not _are_equal(before, after):
             pair.add(_format_change(name.removeprefix(_GLOBAL_PREFIX), before, after), None)
     old_view, new_view = (
-        {name: values[name] for name in values if name.startswith(_VIEW_PREFIX)} for values in (old, new)
+        {name: values[name] for name in values if name.removeprefix(_VIEW_PREFIX) in _VIEW_PROPERTIES}
+        for values in (old, new)
     )
     changes = [
         _format_change(name.removeprefix(_VIEW_PREFIX), old_view.get(name), new_view.get(name))
@@ -150,7 +153,7 @@ def _compare_values(pair: FilePair, old: Mapping[str, str], new: Mapping[str, st
     ]
     if changes:
         classes = [view.get(f"{_VIEW_PREFIX}Class", "-") for view in (old_view, new_view)]
-        text = _join_changes(phrase("view: {changes}", changes=joined(changes[:_MAX_PROPERTIES])), changes)
+        text = phrase("view: {changes}", changes=joined(changes))
         if classes[0] != classes[1]:
             text = phrase("view {old} -> {new}", old=classes[0], new=classes[1])
         pair.add(text, None)

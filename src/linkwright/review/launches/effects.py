@@ -85,6 +85,7 @@ _RUN_OPTION = re.compile(r"(?:^|\s)-\w*r\w*(?=\s|$)")
 _FRAME_PREFIXES = (f"{PARAMETER}frame_prefix", f"{PARAMETER}tf_prefix")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
+_ENABLED_CONDITION = re.compile(r" \((if (true|1)|unless (false|0))\)", re.IGNORECASE)
 _DISABLED_NAMESPACE = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
 """A namespace that is pushed with a condition that does not hold."""
 _STANDARD_VARIABLES = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
@@ -524,7 +525,7 @@ def _is_default_node_name(entry: Entry, name: str) -> bool:
 def _resolve_name(text: str | None, outline: LaunchOutline) -> str:
     """Return a name with the defaults of the arguments; empty for None."""
     resolved = outline.resolve(text or "").strip("/")
-    return _DISABLED_NAMESPACE.sub("", resolved).strip("/")
+    return _DISABLED_NAMESPACE.sub("", _ENABLED_CONDITION.sub("", resolved)).strip("/")
 
 
 def _find_remapping_reason(

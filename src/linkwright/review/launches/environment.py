@@ -15,8 +15,10 @@ _READING_FUNCTIONS = re.compile(r"(os\.)?(environ\.get|getenv)")
 _ENVIRON = ("os.environ", "environ")
 _SUBSTITUTION = re.compile(r"\$\((?P<kind>env|optenv) (?P<name>\w+)(?P<default> [^()]*)?\)")
 _NAME = re.compile(r"\w+")
-_ALWAYS_SET = re.compile(r"ROS_(?:DISTRO|VERSION|PYTHON_VERSION)")
-"""The variables that the setup files of ROS set."""
+_ALWAYS_SET = re.compile(
+    r"ROS_(?:DISTRO|VERSION|PYTHON_VERSION)|(?:AMENT_|CMAKE_)PREFIX_PATH|LD_LIBRARY_PATH|PYTHONPATH|PATH|HOME"
+)
+"""The variables that the setup files of ROS or the system set."""
 _DEFAULT = "default"
 
 

@@ -5,10 +5,19 @@ from __future__ import annotations
 import re
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.launches.outlines import CONDITION, SERVER_PARAMETER, Entry, LaunchOutline
+from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.outlines import (
+    CONDITION,
+    NAMESPACE,
+    NAMESPACE_OF_INCLUDED,
+    SERVER_PARAMETER,
+    Entry,
+    LaunchOutline,
+)
 from linkwright.review.launches.static_transforms import find_child_frame
 
 _USED_ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w./-]+)")
+_SWITCHED_NAMESPACE = re.compile(r"(?P<name>.+) \((?P<condition>(?:if|unless) .+)\)")
 _FRAME_PREFIX = re.compile(r"(?:parameter )?(?:.*/)?(?:tf|frame)_prefix")
 
 
@@ -31,6 +40,24 @@ def explain_lost_frames(
     if not lost:
         return None
     return phrase("for callers that pass '{name}', programs do not find the frames by their old names", name=lost[0])
+
+
+def explain_enabled_namespace(setting: str, old: str | None, new: str | None, outline: LaunchOutline) -> Phrase | None:
+    """Return the reason why a namespace is breaking that an argument switched off by default before, or None.
+
+    Args:
+        setting: the name of the setting.
+        old: the old value as it is written; None if there was none.
+        new: the new value as it is written; None if there is none.
+        outline: the actions of the old version.
+    """
+    switched = _SWITCHED_NAMESPACE.fullmatch(old or "") if setting in (NAMESPACE, NAMESPACE_OF_INCLUDED) else None
+    if switched is None or switched["name"] != new or evaluate_condition(outline.resolve(switched["condition"])):
+        return None
+    names = _USED_ARGUMENT.findall(switched["name"])
+    if not names:
+        return None
+    return phrase("callers that pass '{name}' find the node, its topics and its services in a namespace", name=names[0])
 
 
 def explain_lost_value(entry: Entry, old: LaunchOutline, new: LaunchOutline) -> Phrase | None:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Span
 from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.evaluations import replace_names_in_evaluations
 
 TEST = "test"
 """The kind of the nodes of ROS 1 that test others."""
@@ -149,7 +150,6 @@ class LaunchOutline:
         code: the code besides the actions.
         definitions: the statements that assign a name. Its value is compared where the name is used.
         scope_sources: the source of each function and class, by qualified name.
-        scope_sources: the source of each function and class, by qualified name.
         is_ros1: whether it is a launch file of ROS 1.
         root: the folder of the repository; None if it is unknown.
         has_unknown_actions: whether the file has imported actions whose values are unknown.
@@ -166,8 +166,13 @@ class LaunchOutline:
     def resolve(self, text: str) -> str:
         """Return a text with values in place of ``$(var NAME)``.
 
-        The values are the defaults of arguments and environment variables.
+        The values are the defaults of arguments and environment variables. In ``$(eval ...)`` of ROS 1, names are
+        replaced, too.
         """
+        resolved = self._replace_variables(text)
+        return replace_names_in_evaluations(resolved, self._find_value) if self.is_ros1 else resolved
+
+    def _replace_variables(self, text: str) -> str:
         for _ in range(_MAX_VARIABLE_DEPTH):
             resolved = _ENVIRONMENT_SUBSTITUTION.sub(
                 lambda match: match["default"] or "", _VARIABLE.sub(self._replace_variable, text)
@@ -176,6 +181,11 @@ class LaunchOutline:
                 break
             text = resolved
         return text
+
+    def _find_value(self, name: str) -> str | None:
+        """Return the default or value of a name, or None if it is unknown."""
+        value = self.values.get(name)
+        return None if value is None else self._replace_variables(value)
 
     def with_defaults(self, values: Mapping[str, str]) -> LaunchOutline:
         """Return the outline with passed values in place of the defaults of arguments."""

@@ -7,7 +7,7 @@ from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase, quoted_names
-from linkwright.review.breaking import name_reason, possible_name_reason
+from linkwright.review.breaking import name_reason, names_reason, possible_name_reason, possible_names_reason
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.excerpts import LONG_VALUE, differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
@@ -17,7 +17,7 @@ from linkwright.review.launches.effects import explain_argument_removal, find_se
 from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
 from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
-from linkwright.review.launches.lost_values import explain_lost_frames
+from linkwright.review.launches.lost_values import explain_enabled_namespace, explain_lost_frames
 from linkwright.review.launches.moved_parameters import follow_moved_parameters
 from linkwright.review.launches.outlines import (
     CONDITION,
@@ -187,6 +187,7 @@ class SettingChanges:
             has_different_default = pair.has_defaults and defaults[0] != defaults[1]
             reason = self._find_reason(new, pair.name, *defaults) if has_different_default else None
             reason = reason or explain_lost_frames(new, pair.name, pair.old, pair.new, self._old)
+            reason = reason or explain_enabled_namespace(pair.name, pair.old, pair.new, self._old)
             if new.kind == READING and reason is None:
                 continue
             keeps_names = reason is not None and self._keeps_names(old, new, pair.name)
@@ -384,6 +385,5 @@ def _join_reasons(group: Sequence[_Setting]) -> Phrase | None:
         return reasons[0] if reasons else None
     certain = [reason for reason in reasons if reason.template == name_reason("").template]
     names = list(dict.fromkeys(str(reason.arguments["name"]) for reason in certain or reasons))
-    text = ", ".join([*names[:MAX_NAMES], *["..."][: len(names) > MAX_NAMES]])
     is_possible = all(reason.template == possible_name_reason("").template for reason in reasons)
-    return possible_name_reason(text) if is_possible else name_reason(text)
+    return possible_names_reason(names) if is_possible else names_reason(names)

@@ -34,7 +34,7 @@ def find_passed_name_reason(difference: Difference) -> Phrase | None:
 def find_lost_call_reason(difference: Difference, differences: Iterable[Difference]) -> Phrase | None:
     """Return why a removed call of an unknown macro is breaking, or None if it is not.
 
-    It passes the name of a part, such as a sensor, and no added call passes the same name.
+    It passes the name of a part, such as a sensor, or the prefix of its links, and no added call passes the same one.
 
     Args:
         difference: the difference between both versions of a robot.
@@ -49,7 +49,17 @@ def find_lost_call_reason(difference: Difference, differences: Iterable[Differen
 
 
 def _find_instance(difference: Difference) -> str:
-    """Return the name that a call of a macro passes; empty for other differences."""
+    """Return the name, or the prefix of links, that a call of a macro passes; empty for other differences."""
     if difference.subject != "extension" or not difference.name.startswith(_XACRO):
         return ""
-    return difference.name.partition(" ")[2]
+    return difference.name.partition(" ")[2] or _find_prefix(difference)
+
+
+def _find_prefix(difference: Difference) -> str:
+    """Return the prefix that a call of a macro without a name passes for the links of a part; empty if it has none.
+
+    The prefix of the robot is also that of the link to which the call attaches the part.
+    """
+    attributes = {} if difference.element is None else difference.element.attributes
+    prefix, parent = attributes.get("prefix", ""), attributes.get("parent", "")
+    return "" if not parent or parent.startswith(prefix) else prefix
