@@ -29,6 +29,9 @@ _ENVIRONMENT_CLASSES = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "
 _OTHER_ACTIONS = (*_ARGUMENT_CLASSES, "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
 ACTIONS = frozenset({*_NODE_CLASSES, *_PROCESS_CLASSES, *_ENVIRONMENT_CLASSES, *_OTHER_ACTIONS})
 """The classes whose calls make actions."""
+_VALUE_KEYWORDS = {"SetRemap": ("src", "dst")}
+_DEFAULT_VALUE_KEYWORDS = ("name", "value")
+"""The names of the arguments of the classes that set a value; the first item of each is what is set."""
 _HANDLER_CLASS = "RegisterEventHandler"
 _NAMESPACE_CLASSES = ("PushRosNamespace", "PushROSNamespace", "PushNamespace")
 _ACTION_LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
@@ -397,9 +400,7 @@ class _Reader:
             if keyword.arg is not None
         }
         extra = self.extra if any(keyword.arg is None for keyword in call.keywords) else {}
-        first = call.args[0] if call.args else next(iter(call.keywords), None)
-        first_text = text(first.value if isinstance(first, ast.keyword) else first)
-        second_text = text(call.args[1] if len(call.args) > 1 else _find_second_argument(call))
+        first_text, second_text = map(text, _find_name_and_value(call, function))
         settings: dict[str, str] = {}
         if function in _ARGUMENT_CLASSES:
             kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
@@ -563,10 +564,14 @@ def _find_unused_values(tree: ast.AST) -> frozenset[int]:
     )
 
 
-def _find_second_argument(call: ast.Call) -> ast.expr | None:
-    """Return the value of the second argument of a call, which may be the first keyword."""
-    values = [*call.args, *(keyword.value for keyword in call.keywords if keyword.arg not in (None, CONDITION))]
-    return values[1] if len(values) > 1 else None
+def _find_name_and_value(call: ast.Call, function: str) -> tuple[ast.expr | None, ast.expr | None]:
+    """Return the two arguments of a call that sets a value, which may be keywords in any order."""
+    keywords = {keyword.arg: keyword.value for keyword in call.keywords}
+    names = _VALUE_KEYWORDS.get(function, _DEFAULT_VALUE_KEYWORDS)
+    first, second = (
+        call.args[index] if len(call.args) > index else keywords.get(name) for index, name in enumerate(names)
+    )
+    return first, second
 
 
 def _find_added_action(statement: ast.stmt) -> ast.expr | None:
