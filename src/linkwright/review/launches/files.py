@@ -20,6 +20,7 @@ from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.added_nodes import explain_addition
 from linkwright.review.launches.argument_kinds import report_changed_kinds
+from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.effects import find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
@@ -56,7 +57,7 @@ from linkwright.review.launches.titles import (
 )
 from linkwright.review.launches.transforms import find_other_publisher
 from linkwright.review.launches.undefined import report_undefined_names
-from linkwright.review.launches.unused_arguments import report_unused_arguments, uses_argument
+from linkwright.review.launches.unused_arguments import report_unused_arguments
 from linkwright.review.sources.names import PYTHON_SUFFIX
 
 _MAX_STATEMENT_CHARACTERS = 120
@@ -117,7 +118,7 @@ def compare_launch_files(pair: FilePair) -> None:
     ]
     report_repeated_arguments(pair, new)
     report_changed_kinds(pair, old, new)
-    report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)], removed)
+    report_unused_arguments(pair, old, included[1], [*paired_old, *(entry for entry, _ in replaced)], removed)
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
