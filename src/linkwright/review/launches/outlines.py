@@ -36,6 +36,8 @@ _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*
 _ENVIRONMENT_SUBSTITUTION = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
 _SETTING_CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
 """The condition of a setting after its name."""
+_TEST = re.compile(r"`(?P<source>[^`]*)`")
+"""The test of an ``if`` statement in a condition."""
 _NAMESPACE_SEPARATOR = "\n"
 """The separator of pushed namespaces, which are joined when the defaults of arguments are known."""
 _MAX_VARIABLE_DEPTH = 5
@@ -153,6 +155,7 @@ class LaunchOutline:
         is_ros1: whether it is a launch file of ROS 1.
         root: the folder of the repository; None if it is unknown.
         has_unknown_actions: whether the file has imported actions whose values are unknown.
+        tests: the tests of ``if`` statements as expressions of arguments of the file, by their source.
     """
 
     entries: list[Entry]
@@ -162,12 +165,15 @@ class LaunchOutline:
     is_ros1: bool = False
     root: Path | None = None
     has_unknown_actions: bool = False
+    tests: Mapping[str, str] = field(default_factory=dict)
 
     def resolve(self, text: str) -> str:
         """Return a text with values in place of ``$(var NAME)``.
 
-        The values are the defaults of arguments and environment variables.
+        The values are the defaults of arguments and environment variables. The tests of a Python file are expressions
+        of these values.
         """
+        text = _TEST.sub(lambda match: self.tests.get(match["source"], match[0]), text)
         for _ in range(_MAX_VARIABLE_DEPTH):
             resolved = _ENVIRONMENT_SUBSTITUTION.sub(
                 lambda match: match["default"] or "", _VARIABLE.sub(self._replace_variable, text)

@@ -19,6 +19,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     Scope,
 )
+from linkwright.review.launches.python_tests import read_tests
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts, format_branches
 
 _NODE_CLASSES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
@@ -59,7 +60,8 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     entries = sorted(reader.read_entries(), key=lambda entry: (entry.span.line, entry.span.column))
     covered = reader.covered | _find_covered_literals(python, helpers, reader.evaluated)
     code = read_other_code(python, covered, reader.branches, texts)
-    return LaunchOutline(entries, code, find_definitions(python, texts), find_scope_sources(python))
+    definitions = find_definitions(python, texts)
+    return LaunchOutline(entries, code, definitions, find_scope_sources(python), tests=read_tests(python))
 
 
 def _find_covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: Sequence[ast.expr]) -> set[int]:
