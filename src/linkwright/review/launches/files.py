@@ -56,7 +56,7 @@ from linkwright.review.launches.titles import (
     format_title,
     join_titles,
 )
-from linkwright.review.launches.transforms import find_other_publisher
+from linkwright.review.launches.transforms import find_other_publisher, has_robot_with_frame
 from linkwright.review.launches.undefined import report_undefined_names
 from linkwright.review.launches.unused_arguments import report_unused_arguments
 from linkwright.review.sources.names import PYTHON_SUFFIX
@@ -236,6 +236,9 @@ def _report_unpaired_entries(
                 phrase("{change}; {entry} may publish its transform", change=text, entry=format_title(publisher)),
                 location,
             )
+            continue
+        if has_robot_with_frame(entry, old_included.outline, new_included, pair.versions.new):
+            pair.add(phrase("{change}; the robot has the frame as a link", change=text), location)
             continue
         if _is_unused_argument(pair, entry, old_included.outline):
             pair.add(phrase("{change}; the file did not use it", change=text), location)

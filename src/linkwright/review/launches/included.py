@@ -254,6 +254,12 @@ class IncludedActions:
         passed = {without_condition(setting) for setting in include.settings}
         return IncludedActions(self._version, path, outline).find_undeclared_arguments(depth + 1).keys() - passed
 
+    def find_node(self, program: re.Pattern[str]) -> Entry | None:
+        """Return a node of the launch file or of its included files whose program matches a pattern, or None."""
+        outlines = (self.outline, *self._included.values())
+        entries = (entry for outline in outlines for entry in outline.entries if entry.kind == "node")
+        return next((entry for entry in entries if program.match(entry.name)), None)
+
     def may_use(self, name: str) -> bool:
         """Return whether a file that the launch file of ROS 2 includes uses an argument, which it gets from there."""
         files = [] if self.outline.is_ros1 else self._included.items()
@@ -268,6 +274,11 @@ def find_callers(version: Version, path: str, name: str) -> Iterator[tuple[Launc
         path: the path of the included file, relative to the root.
         name: the name to search for, such as the name of an argument.
     """
+    yield from ((actions.outline, entry) for actions, entry in find_including_files(version, path, name))
+
+
+def find_including_files(version: Version, path: str, name: str = "") -> Iterator[tuple[IncludedActions, Entry]]:
+    """Yield the launch files that include another one and contain a name, each with the including action."""
     key = get_launch_file_stem(path)
     for caller in version.paths(_LAUNCH_SUFFIXES):
         text = version.text(caller) if caller != path else ""
@@ -279,7 +290,7 @@ def find_callers(version: Version, path: str, name: str) -> Iterator[tuple[Launc
             if entry.kind == "include" and get_launch_file_stem(entry.name) == key:
                 file = actions.find_included_file(entry, actions.file)
                 if file is None or version.relative(file) == path:  # another package may have a file of that name
-                    yield outline, entry
+                    yield actions, entry
 
 
 def _find_package_file(package_folder: Path, path: str) -> Path | None:
