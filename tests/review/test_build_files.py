@@ -42,7 +42,7 @@ FILES = {
     ("old", "new", "expected", "is_breaking"),
     [
         ("driver tuner RUNTIME", "driver RUNTIME", ["installed executables removed: 'tuner'"], True),
-        ("scripts/home.py DEST", "scripts/home.py scripts/up.py DEST", ["installed executables added: 'up.py'"], False),
+        ("scripts/home.py DEST", "scripts/home.py scripts/up.py DEST", ["installed executables added: 'up.py'"], True),
         (" EXPORT export_arm", "", ["exported targets removed: 'arm_core'"], True),
         ("install(DIRECTORY launch config", "install(DIRECTORY launch",
          ["no longer installed: 'share/arm/config/'"], True),
@@ -66,7 +66,7 @@ FILES = {
         ("install(DIRECTORY launch config", "install(DIRECTORY\n  config\n  launch", [], False),
         ("project(arm)", "project(arms)", [], False),
         ("launch config DEST", "launch config worlds DEST",
-         ["installed folders that the repository does not have added: 'worlds'"], False),
+         ["installed folders that the repository does not have added: 'worlds'"], True),
         ("set(CMAKE_CXX_STANDARD 14)", "set(CMAKE_EXPORT_COMPILE_COMMANDS ON)\nset(CMAKE_CXX_STANDARD 14)", [], False),
         ("ament_package()", "catkin_add_nosetests(test/a.py)\nroslaunch_add_file_check(launch)\nament_package()",
          ["tests added: 'test/a.py', 'launch'"], False),

@@ -58,3 +58,34 @@ def test_static_transform_that_the_description_of_a_newly_started_robot_has(repo
     )
     (removed,) = subject(compare(repository), "arm/launch/map.launch").changes
     assert (removed.reason is not None) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("link", "includes", "program", "is_breaking"),
+    [
+        ("camera", True, "robot_state_publisher", False),
+        ("camera", True, "joint_state_publisher", False),
+        ("camera", True, "driver", True),
+        ("camera", False, "robot_state_publisher", True),
+        ("lens", True, "robot_state_publisher", True),
+    ],
+)
+def test_frame_that_is_a_link_of_a_robot_started_together_is_not_missing(
+    repository, compare, link, includes, program, is_breaking
+):
+    static = STATIC.replace("PARENT", "base").replace("CHILD", "camera")
+    robot = f'<robot name="a"><link name="base"/><link name="{link}"/></robot>'
+    include = '<include file="$(find arm)/launch/map.launch"/>' if includes else ""
+    all_text = f'<launch><node pkg="{program}" type="{program}" name="state"/>{include}</launch>'
+    repository.commit(
+        {
+            "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+            "arm/urdf/arm.urdf": robot,
+            "arm/launch/map.launch": f"<launch>{static}</launch>",
+            "arm/launch/all.launch": all_text,
+        }
+    )
+    repository.write({"arm/launch/map.launch": "<launch></launch>"})
+    (removed,) = subject(compare(repository), "arm/launch/map.launch").changes
+    assert (removed.reason is not None) is is_breaking
+    assert str(removed.sentence).endswith("; the robot has the frame as a link") is not is_breaking

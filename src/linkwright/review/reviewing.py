@@ -26,6 +26,7 @@ from linkwright.review.changes import (
     Subject,
     SubjectKind,
 )
+from linkwright.review.failing_findings import mark_failures
 from linkwright.review.failures import Failures
 from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
@@ -198,6 +199,7 @@ class _Reviewer:
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
         added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)
         readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
+        readable, added = mark_failures(self._versions, readable, added, fixed)
         return Review(
             self._versions.old.name,
             self._versions.new.name,

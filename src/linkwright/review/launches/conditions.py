@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Callable
 
 _SEPARATOR = re.compile(r" and (?=(?:if|unless|after) )")
 _EVAL_SUBSTITUTION = re.compile(r"\$\(eval (.*)\)", re.DOTALL)
 _COMPARISON = re.compile(r"(?P<left>\S*) (?P<operator>==|!=) (?P<right>\S*)")
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+_TEXT_METHODS: dict[str, Callable[[str], str]] = {"lower": str.lower, "strip": str.strip, "upper": str.upper}
 _MAX_CHARACTERS = 500
 """The maximum length of an evaluated condition."""
 
@@ -73,6 +75,16 @@ def _evaluate_expression(node: ast.expr) -> object:
     if isinstance(node, ast.BoolOp):
         values = [_to_bool(_evaluate_expression(item)) for item in node.values]
         return all(values) if isinstance(node.op, ast.And) else any(values)
+    if isinstance(node, (ast.List, ast.Tuple)):
+        return [_evaluate_expression(item) for item in node.elts]
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and not (node.args or node.keywords):
+        owner = _evaluate_expression(node.func.value)
+        if isinstance(owner, str) and node.func.attr in _TEXT_METHODS:
+            return _TEXT_METHODS[node.func.attr](owner)
+    if isinstance(node, ast.Compare) and len(node.ops) == 1 and isinstance(node.ops[0], (ast.In, ast.NotIn)):
+        items = _evaluate_expression(node.comparators[0])
+        if isinstance(items, list):
+            return (_evaluate_expression(node.left) in items) == isinstance(node.ops[0], ast.In)
     if isinstance(node, ast.Compare) and len(node.ops) == 1 and isinstance(node.ops[0], (ast.Eq, ast.NotEq)):
         is_equal = _evaluate_expression(node.left) == _evaluate_expression(node.comparators[0])
         return is_equal == isinstance(node.ops[0], ast.Eq)

@@ -20,6 +20,7 @@ from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.added_nodes import explain_addition
 from linkwright.review.launches.argument_kinds import report_changed_kinds
+from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.effects import find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader
 from linkwright.review.launches.file_choices import FileChoices
@@ -41,6 +42,7 @@ from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
+from linkwright.review.launches.python_tests import report_object_tests
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
@@ -54,9 +56,9 @@ from linkwright.review.launches.titles import (
     format_title,
     join_titles,
 )
-from linkwright.review.launches.transforms import find_other_publisher
+from linkwright.review.launches.transforms import find_other_publisher, has_robot_with_frame
 from linkwright.review.launches.undefined import report_undefined_names
-from linkwright.review.launches.unused_arguments import report_unused_arguments, uses_argument
+from linkwright.review.launches.unused_arguments import report_unused_arguments
 from linkwright.review.sources.names import PYTHON_SUFFIX
 
 _MAX_STATEMENT_CHARACTERS = 120
@@ -117,13 +119,14 @@ def compare_launch_files(pair: FilePair) -> None:
     ]
     report_repeated_arguments(pair, new)
     report_changed_kinds(pair, old, new)
-    report_unused_arguments(pair, old, new, [*paired_old, *(entry for entry, _ in replaced)], removed)
+    report_unused_arguments(pair, old, included[1], [*paired_old, *(entry for entry, _ in replaced)], removed)
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)
     if pair.old_file.suffix == pair.new_file.suffix:
         _compare_code(pair, old, new)
         if pair.new_file.suffix == PYTHON_SUFFIX:
             compare_imports(pair)
+            report_object_tests(pair)
         report_undefined_names(pair)
     if old.is_ros1 and not new.is_ros1 and PurePosixPath(pair.old_path).name != PurePosixPath(pair.new_path).name:
         _mark_unbreaking(pair, keeps_renaming=True)  # no user starts the file by its old name
@@ -233,6 +236,9 @@ def _report_unpaired_entries(
                 phrase("{change}; {entry} may publish its transform", change=text, entry=format_title(publisher)),
                 location,
             )
+            continue
+        if has_robot_with_frame(entry, old_included.outline, new_included, pair.versions.new):
+            pair.add(phrase("{change}; the robot has the frame as a link", change=text), location)
             continue
         if _is_unused_argument(pair, entry, old_included.outline):
             pair.add(phrase("{change}; the file did not use it", change=text), location)

@@ -13,10 +13,11 @@ from typing import NamedTuple
 from linkwright.diagnostics import LinkwrightError
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import is_launch_file
+from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import offers_nothing
 from linkwright.review.launches.matching import get_launch_file_stem
-from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
+from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline, without_condition
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import find_served_names
 from linkwright.review.versions import Version, Versions
@@ -208,10 +209,10 @@ class IncludedActions:
             self._outlines[file] = _try_read_outline(file, self._version.root)
         return self._outlines[file]
 
-    def find_undeclared_arguments(self) -> dict[str, Entry]:
-        """Return the undeclared arguments without a default.
+    def find_undeclared_arguments(self, depth: int = 0) -> dict[str, Entry]:
+        """Return the undeclared arguments without a default, also those of included files of ROS 2.
 
-        Each comes with the first action that uses it.
+        Each comes with the first action that uses it, or that includes a file which does.
 
         Arguments that a file of another package may declare, and actions that cannot be read, are left out.
         """
@@ -236,7 +237,33 @@ class IncludedActions:
                 for match in _USED_ARGUMENT.finditer(text):
                     if match["name"] not in declared:
                         undeclared.setdefault(match["name"], entry)
+            for name in self._find_missing_arguments(entry, depth) - declared:
+                undeclared.setdefault(name, entry)
         return undeclared
+
+    def _find_missing_arguments(self, include: Entry, depth: int) -> set[str]:
+        """Return the arguments that an included file of ROS 2 uses, and that neither it nor the include sets."""
+        file = (
+            None if self.outline.is_ros1 or depth >= MAX_INCLUDE_DEPTH else self.find_included_file(include, self.file)
+        )
+        outline = None if file is None else self._read_outline(file)
+        path = None if file is None else self._version.relative(file)
+        holds = evaluate_condition(self.outline.resolve(include.settings.get(CONDITION, "")))
+        if outline is None or path is None or outline.is_ros1 or holds is False:
+            return set()
+        passed = {without_condition(setting) for setting in include.settings}
+        return IncludedActions(self._version, path, outline).find_undeclared_arguments(depth + 1).keys() - passed
+
+    def find_node(self, program: re.Pattern[str]) -> Entry | None:
+        """Return a node of the launch file or of its included files whose program matches a pattern, or None."""
+        outlines = (self.outline, *self._included.values())
+        entries = (entry for outline in outlines for entry in outline.entries if entry.kind == "node")
+        return next((entry for entry in entries if program.match(entry.name)), None)
+
+    def may_use(self, name: str) -> bool:
+        """Return whether a file that the launch file of ROS 2 includes uses an argument, which it gets from there."""
+        files = [] if self.outline.is_ros1 else self._included.items()
+        return any(uses_argument(self._version.file(path), name, outline.entries) for path, outline in files)
 
 
 def find_callers(version: Version, path: str, name: str) -> Iterator[tuple[LaunchOutline, Entry]]:
@@ -247,13 +274,23 @@ def find_callers(version: Version, path: str, name: str) -> Iterator[tuple[Launc
         path: the path of the included file, relative to the root.
         name: the name to search for, such as the name of an argument.
     """
+    yield from ((actions.outline, entry) for actions, entry in find_including_files(version, path, name))
+
+
+def find_including_files(version: Version, path: str, name: str = "") -> Iterator[tuple[IncludedActions, Entry]]:
+    """Yield the launch files that include another one and contain a name, each with the including action."""
     key = get_launch_file_stem(path)
     for caller in version.paths(_LAUNCH_SUFFIXES):
         text = version.text(caller) if caller != path else ""
         outline = _try_read_outline(version.file(caller), version.root) if key in text and name in text else None
-        if outline is not None:
-            includes = (entry for entry in outline.entries if entry.kind == "include")
-            yield from ((outline, entry) for entry in includes if get_launch_file_stem(entry.name) == key)
+        if outline is None:
+            continue
+        actions = IncludedActions(version, caller, outline)
+        for entry in outline.entries:
+            if entry.kind == "include" and get_launch_file_stem(entry.name) == key:
+                file = actions.find_included_file(entry, actions.file)
+                if file is None or version.relative(file) == path:  # another package may have a file of that name
+                    yield actions, entry
 
 
 def _find_package_file(package_folder: Path, path: str) -> Path | None:

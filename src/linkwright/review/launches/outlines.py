@@ -37,6 +37,8 @@ _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*
 _ENVIRONMENT_SUBSTITUTION = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
 _SETTING_CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
 """The condition of a setting after its name."""
+_TEST = re.compile(r"`(?P<source>[^`]*)`")
+"""The test of an ``if`` statement in a condition."""
 _NAMESPACE_SEPARATOR = "\n"
 """The separator of pushed namespaces, which are joined when the defaults of arguments are known."""
 _MAX_VARIABLE_DEPTH = 5
@@ -153,6 +155,7 @@ class LaunchOutline:
         is_ros1: whether it is a launch file of ROS 1.
         root: the folder of the repository; None if it is unknown.
         has_unknown_actions: whether the file has imported actions whose values are unknown.
+        tests: the tests of ``if`` statements as expressions of arguments of the file, by their source.
     """
 
     entries: list[Entry]
@@ -162,13 +165,15 @@ class LaunchOutline:
     is_ros1: bool = False
     root: Path | None = None
     has_unknown_actions: bool = False
+    tests: Mapping[str, str] = field(default_factory=dict)
 
     def resolve(self, text: str) -> str:
         """Return a text with values in place of ``$(var NAME)``.
 
-        The values are the defaults of arguments and environment variables. In ``$(eval ...)`` of ROS 1, names are
-        replaced, too.
+        The values are the defaults of arguments and environment variables. The tests of a Python file are expressions
+        of these values. In ``$(eval ...)`` of ROS 1, names are replaced, too.
         """
+        text = _TEST.sub(lambda match: self.tests.get(match["source"], match[0]), text)
         resolved = self._replace_variables(text)
         return replace_names_in_evaluations(resolved, self._find_value) if self.is_ros1 else resolved
 

@@ -19,6 +19,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     Scope,
 )
+from linkwright.review.launches.python_tests import read_tests
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts, format_branches
 
 _NODE_CLASSES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
@@ -29,6 +30,9 @@ _ENVIRONMENT_CLASSES = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "
 _OTHER_ACTIONS = (*_ARGUMENT_CLASSES, "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
 ACTIONS = frozenset({*_NODE_CLASSES, *_PROCESS_CLASSES, *_ENVIRONMENT_CLASSES, *_OTHER_ACTIONS})
 """The classes whose calls make actions."""
+_VALUE_KEYWORDS = {"SetRemap": ("src", "dst")}
+_DEFAULT_VALUE_KEYWORDS = ("name", "value")
+"""The names of the arguments of the classes that set a value; the first item of each is what is set."""
 _HANDLER_CLASS = "RegisterEventHandler"
 _NAMESPACE_CLASSES = ("PushRosNamespace", "PushROSNamespace", "PushNamespace")
 _ACTION_LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
@@ -56,7 +60,8 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     entries = sorted(reader.read_entries(), key=lambda entry: (entry.span.line, entry.span.column))
     covered = reader.covered | _find_covered_literals(python, helpers, reader.evaluated)
     code = read_other_code(python, covered, reader.branches, texts)
-    return LaunchOutline(entries, code, find_definitions(python, texts), find_scope_sources(python))
+    definitions = find_definitions(python, texts)
+    return LaunchOutline(entries, code, definitions, find_scope_sources(python), tests=read_tests(python))
 
 
 def _find_covered_literals(python: PythonFile, helpers: HelperFunctions, evaluated: Sequence[ast.expr]) -> set[int]:
@@ -397,9 +402,7 @@ class _Reader:
             if keyword.arg is not None
         }
         extra = self.extra if any(keyword.arg is None for keyword in call.keywords) else {}
-        first = call.args[0] if call.args else next(iter(call.keywords), None)
-        first_text = text(first.value if isinstance(first, ast.keyword) else first)
-        second_text = text(call.args[1] if len(call.args) > 1 else _find_second_argument(call))
+        first_text, second_text = map(text, _find_name_and_value(call, function))
         settings: dict[str, str] = {}
         if function in _ARGUMENT_CLASSES:
             kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
@@ -563,10 +566,14 @@ def _find_unused_values(tree: ast.AST) -> frozenset[int]:
     )
 
 
-def _find_second_argument(call: ast.Call) -> ast.expr | None:
-    """Return the value of the second argument of a call, which may be the first keyword."""
-    values = [*call.args, *(keyword.value for keyword in call.keywords if keyword.arg not in (None, CONDITION))]
-    return values[1] if len(values) > 1 else None
+def _find_name_and_value(call: ast.Call, function: str) -> tuple[ast.expr | None, ast.expr | None]:
+    """Return the two arguments of a call that sets a value, which may be keywords in any order."""
+    keywords = {keyword.arg: keyword.value for keyword in call.keywords}
+    names = _VALUE_KEYWORDS.get(function, _DEFAULT_VALUE_KEYWORDS)
+    first, second = (
+        call.args[index] if len(call.args) > index else keywords.get(name) for index, name in enumerate(names)
+    )
+    return first, second
 
 
 def _find_added_action(statement: ast.stmt) -> ast.expr | None:

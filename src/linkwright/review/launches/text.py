@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
-from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS
+from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, with_condition
 
 _MAX_DEPTH = 30
 _MAX_CHARACTERS = 10_000
@@ -274,6 +274,16 @@ class ExpressionTexts:
         bound = self.resolve(node)
         if bound.texts is not self:
             return bound.texts.find_pairs(bound.node, are_parameters=are_parameters)
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.BitOr):
+            return self._join_pairs([node.left, node.right], are_parameters=are_parameters)
+        if isinstance(node, ast.IfExp):
+            return self._find_chosen_pairs(node, are_parameters=are_parameters)
+        if isinstance(node, ast.Dict) and None in node.keys:
+            items = zip(node.keys, node.values, strict=True)
+            parts = [value if key is None else ast.Dict([key], [value]) for key, value in items]
+            joined = self._join_pairs(parts, are_parameters=are_parameters)
+            if joined is not None:
+                return joined
         if isinstance(node, ast.Call) and called_name(node) == "dict" and not node.args:
             return [(keyword.arg or "", format_value(keyword.value)) for keyword in node.keywords]
         if isinstance(node, ast.Dict):
@@ -283,6 +293,30 @@ class ExpressionTexts:
         pairs = [self._format_pair(item, format_value) for item in node.elts]
         known = [pair for pair in pairs if pair is not None]
         return known if len(known) == len(pairs) else None
+
+    def _join_pairs(self, parts: Sequence[ast.expr], *, are_parameters: bool) -> list[tuple[str, str]] | None:
+        """Return the pairs of the union of dictionaries, in which later values replace earlier ones, or None."""
+        pairs: dict[str, str] = {}
+        for part in parts:
+            found = self.find_pairs(part, are_parameters=are_parameters)
+            if found is None:
+                return None
+            pairs |= found
+        return list(pairs.items())
+
+    def _find_chosen_pairs(self, node: ast.IfExp, *, are_parameters: bool) -> list[tuple[str, str]] | None:
+        """Return the pairs of one of two dictionaries. Those of only one of them have the condition in the name."""
+        test = self._python.resolved(node.test)
+        if isinstance(test, ast.Constant):
+            return self.find_pairs(node.body if test.value else node.orelse, are_parameters=are_parameters)
+        branches = [self.find_pairs(value, are_parameters=are_parameters) for value in (node.body, node.orelse)]
+        known = [dict(branch) for branch in branches if branch is not None]
+        if len(known) < len(branches):
+            return None
+        common = {name: value for name, value in known[0].items() if known[1].get(name) == value}
+        for condition, pairs in zip(format_branches(node.test), known, strict=True):
+            common |= {with_condition(name, condition): value for name, value in pairs.items() if name not in common}
+        return list(common.items())
 
     def find_pair(self, node: ast.expr) -> tuple[str, str] | None:
         """Return the texts of a pair, or None for other expressions."""

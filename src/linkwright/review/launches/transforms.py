@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.included import IncludedActions, find_including_files
 from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
 from linkwright.review.launches.programs import try_read_outline
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names
@@ -17,6 +18,8 @@ from linkwright.review.versions import Version, Versions
 _ANY_FRAME_PROGRAM = re.compile(r"robot_state_publisher/|state_publisher/|apriltag\w*/|aruco\w*/|mocap\w*/|vrpn\w*/")
 """Programs that publish the transforms of any frame."""
 _STATE_PUBLISHER = re.compile(r"(robot_)?state_publisher/")
+_ROBOT_PROGRAM = re.compile(r"(robot_|joint_)?state_publisher(_gui)?/")
+"""Programs of a launch file with a robot, whose links have transforms."""
 _LOCALIZATION_PROGRAM = re.compile(
     r"fake_localization/|(nav2_)?amcl/|slam_\w+/|gmapping/|hector_mapping/|cartographer_ros/|rtabmap_\w+/|"
     r"robot_localization/(ekf|ukf)|robot_pose_ekf/|\w*odometry\w*/"
@@ -24,6 +27,9 @@ _LOCALIZATION_PROGRAM = re.compile(
 """Programs that publish the transform between the map, the odometry and the robot."""
 _LOCALIZATION_FRAME = re.compile(r"(.*/)?(map|odom|odom_combined|base|base_link|base_footprint|footprint)")
 _PARAMETER_FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<path>[^$\s,\]]+\.ya?ml)")
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_LINK = re.compile(r"<link\s+name=[\"']([^\"']+)[\"']")
+_SUBSTITUTION = re.compile(r"\$[{(][^{}()]*[)}]")
 _FRAME_WORD = re.compile(r"[\w/.-]+")
 _PARENT_FRAME = re.compile(r"--frame-id[ ,]+([^ ,\]]+)")
 
@@ -58,6 +64,24 @@ def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutlin
     return _find_added_robot(frames, versions)
 
 
+def has_robot_with_frame(transform: Entry, old: LaunchOutline, new: IncludedActions, version: Version) -> bool:
+    """Return whether a robot that is started together with a launch file has the frame of a removed publisher.
+
+    A description of the repository must have the frame as a link. Then the removed publisher gave it a second parent.
+
+    Args:
+        transform: the removed static transform publisher.
+        old: the outline of the old file.
+        new: the actions of the new file with those of its included files.
+        version: the new version, with the files that include the launch file.
+    """
+    frames = _find_parent_and_child(transform, old) if transform.name.startswith(TRANSFORM_PUBLISHERS) else []
+    if len(frames) != 2 or frames[1].strip("/") not in _list_links(version):
+        return False
+    including = (actions for actions, _ in find_including_files(version, new.path))
+    return any(actions.find_node(_ROBOT_PROGRAM) is not None for actions in (new, *including))
+
+
 def _find_added_robot(frames: Collection[str], versions: Versions) -> Entry | None:
     """Return a node that another launch file newly starts and that publishes the frames of a robot, or None.
 
@@ -72,6 +96,13 @@ def _find_added_robot(frames: Collection[str], versions: Versions) -> Entry | No
         if publisher is not None and _list_description_words(versions.new).issuperset(frames):
             return publisher
     return None
+
+
+@lru_cache(maxsize=4)
+def _list_links(version: Version) -> frozenset[str]:
+    """Return the names of the links in the descriptions of a version, without prefixes from arguments."""
+    texts = (_COMMENT.sub("", version.text(path)) for path in version.paths((".urdf", ".xacro")))
+    return frozenset(_SUBSTITUTION.sub("", name) for text in texts for name in _LINK.findall(text))
 
 
 def _read_nodes(version: Version, path: str | None) -> list[Entry]:

@@ -1,0 +1,49 @@
+"""Tell whether a launch file uses an argument."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from linkwright.review.launches.outlines import Entry
+
+USED_ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w./-]+)")
+_COMMENT = re.compile(r"<!--.*?-->|^\s*#[^\n]*", re.DOTALL | re.MULTILINE)
+_COMPUTED_USE = re.compile(r"\bLaunchConfiguration\(\s*(?![\"'\s])|\blaunch_configurations\b(?!\[[\"'])")
+"""A use of an argument whose name a Python file computes."""
+
+
+def uses_argument(file: Path, name: str, entries: Sequence[Entry], *, is_declared: bool = True) -> bool:
+    """Return whether a launch file may use an argument, apart from the files that it includes.
+
+    Args:
+        file: the launch file.
+        name: the name of the argument.
+        entries: the actions of the launch file, also those that functions of other files make.
+        is_declared: whether the file declares the argument. Otherwise, only certain uses count.
+    """
+    others = [entry for entry in entries if entry.kind != "argument" or entry.name != name]
+    if not is_declared:
+        return is_used(name, others)
+    text = read_code(file)
+    return is_used(name, others) or may_use(text, name) or _COMPUTED_USE.search(text) is not None
+
+
+def may_use(text: str, name: str) -> bool:
+    """Return whether a file may use an argument outside of its declaration."""
+    pattern = re.escape(name)
+    is_in_expression = re.search(rf"\$\([^<>]*?(?<![\w.-]){pattern}(?![\w.-])", text)
+    return is_in_expression is not None or len(re.findall(rf"[\"']{pattern}[\"']", text)) > 1
+
+
+def is_used(name: str, entries: Sequence[Entry]) -> bool:
+    """Return whether an action uses an argument."""
+    return any(
+        name in USED_ARGUMENT.findall(text) for entry in entries for text in (entry.name, *entry.settings.values())
+    )
+
+
+def read_code(file: Path) -> str:
+    """Return the text of a launch file without comments."""
+    return _COMMENT.sub("", file.read_text("utf-8", errors="replace"))

@@ -1,0 +1,247 @@
+"""Write the tests of a Python launch file as expressions of the arguments of the file, and find tests of objects."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from linkwright.diagnostics import Span, phrase
+from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
+from linkwright.review.file_pair import FilePair
+from linkwright.review.launches.expressions import unparse_on_one_line
+from linkwright.review.launches.names import LaunchPythonFile
+from linkwright.review.sources.reading import try_read_source
+
+_CONFIGURATION = "LaunchConfiguration"
+_CONFIGURATIONS = "launch_configurations"
+"""The attribute of a launch context with the values of the arguments."""
+_TEXT_METHODS = frozenset({"lower", "strip", "upper"})
+_EQUALITIES = (ast.Eq, ast.In)
+_INEQUALITIES = (ast.NotEq, ast.NotIn)
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+class _UnknownTestError(Exception):
+    """A test whose value does not only depend on arguments of the launch file."""
+
+
+class _ObjectTest(NamedTuple):
+    """A comparison of a substitution with a text, which are never equal.
+
+    Attributes:
+        source: the comparison as it is written.
+        name: the name of the argument.
+        is_always: whether the comparison is always true; else it never is.
+        span: the location of the comparison.
+    """
+
+    source: str
+    name: str
+    is_always: bool
+    span: Span
+
+
+def read_tests(python: PythonFile) -> dict[str, str]:
+    """Return the tests of ``if`` statements as ``$(eval ...)`` with ``$(var NAME)`` in it, by their source.
+
+    Tests that depend on anything else than arguments, and those that have several meanings, are left out.
+    """
+    tests: dict[str, str | None] = {}
+    for function, node in _walk(python.tree, None):
+        if isinstance(node, (ast.If, ast.IfExp)):
+            source = unparse_on_one_line(node.test)
+            try:
+                value = f"$(eval {ast.unparse(_Reader(python, function).read_test(node.test))})"
+            except _UnknownTestError:
+                value = None
+            tests[source] = value if tests.get(source, value) == value else None
+    return {source: value for source, value in tests.items() if value is not None}
+
+
+def report_object_tests(pair: FilePair) -> None:
+    """Report the comparisons of substitutions with texts that only the new version of a launch file has."""
+    known = {test.source for test in _find_object_tests(_try_parse(pair, is_old=True))}
+    for test in _find_object_tests(_try_parse(pair)):
+        if test.source not in known:
+            text = phrase(
+                "`{test}` compares the object LaunchConfiguration('{name}') with a text, instead of its value",
+                test=test.source,
+                name=test.name,
+            )
+            reason = phrase("the condition is always true") if test.is_always else phrase("the condition is never true")
+            pair.add(text, pair.location(test.span), reason)
+
+
+def _try_parse(pair: FilePair, *, is_old: bool = False) -> PythonFile | None:
+    source = try_read_source(pair.old_file if is_old else pair.new_file)
+    try:
+        return None if source is None else LaunchPythonFile(source)
+    except (SyntaxError, ValueError):
+        return None
+
+
+def _find_object_tests(python: PythonFile | None) -> Iterator[_ObjectTest]:
+    for function, node in _walk(python.tree, None) if python is not None else ():
+        operator = node.ops[0] if isinstance(node, ast.Compare) and len(node.ops) == 1 else None
+        if python is None or not isinstance(node, ast.Compare) or operator is None:
+            continue
+        reader = _Reader(python, function)
+        for item, other in ((node.left, node.comparators[0]), (node.comparators[0], node.left)):
+            name = reader.find_object(item)
+            is_membership = isinstance(operator, (ast.In, ast.NotIn))
+            if (
+                name is None
+                or not reader.is_text(other, is_list=is_membership)
+                or (is_membership and item is not node.left)
+            ):
+                continue
+            if isinstance(operator, (*_EQUALITIES, *_INEQUALITIES)):
+                source = unparse_on_one_line(node)
+                yield _ObjectTest(source, name, isinstance(operator, _INEQUALITIES), python.span(node))
+
+
+def _walk(node: ast.AST, function: _Function | None) -> Iterator[tuple[_Function | None, ast.AST]]:
+    """Yield the nodes below a node, each with the innermost function around it."""
+    for child in ast.iter_child_nodes(node):
+        yield function, child
+        yield from _walk(child, child if isinstance(child, _Function) else function)
+
+
+class _Reader:
+    """A reader of the tests of a function.
+
+    Args:
+        python: the file.
+        function: the function; None for the file itself.
+    """
+
+    def __init__(self, python: PythonFile, function: _Function | None) -> None:
+        self._python = python
+        parameters = function.args.args if function is not None else []
+        self._names = {parameter.arg for parameter in parameters}
+        self._arguments = _find_opaque_arguments(python, function) if function is not None else {}
+
+    def read_test(self, node: ast.expr) -> ast.expr:
+        """Return a test as an expression of texts, in which ``$(var NAME)`` is a value.
+
+        Raises:
+            _UnknownTestError: its value is unknown.
+        """
+        if isinstance(node, ast.BoolOp):
+            return ast.BoolOp(node.op, [self.read_test(value) for value in node.values])
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+            return ast.UnaryOp(node.op, self.read_test(node.operand))
+        if isinstance(node, ast.Compare) and len(node.ops) == 1:
+            return self._read_comparison(node, node.ops[0], node.comparators[0])
+        if self.find_object(node) is not None:
+            return ast.Constant(True)  # the object, not its value
+        value = self._resolve(node)
+        if isinstance(value, ast.Constant) and isinstance(value.value, bool):
+            return value
+        return ast.Compare(self._read_text(node), [ast.NotEq()], [ast.Constant("")])
+
+    def _read_comparison(self, node: ast.Compare, operator: ast.cmpop, right: ast.expr) -> ast.expr:
+        if not isinstance(operator, (*_EQUALITIES, *_INEQUALITIES)):
+            raise _UnknownTestError
+        is_list = isinstance(operator, (ast.In, ast.NotIn))
+        if self.find_object(node.left) is not None and self.is_text(right, is_list=is_list):
+            return ast.Constant(isinstance(operator, _INEQUALITIES))
+        if not is_list:
+            return ast.Compare(self._read_text(node.left), [operator], [self._read_text(right)])
+        values = self._resolve(right)
+        if not isinstance(values, (ast.List, ast.Tuple, ast.Set)):
+            raise _UnknownTestError
+        items: ast.expr = ast.List([self._read_text(item) for item in values.elts], ast.Load())
+        return ast.Compare(self._read_text(node.left), [operator], [items])
+
+    def _read_text(self, node: ast.expr) -> ast.expr:
+        """Return an expression of texts.
+
+        Raises:
+            _UnknownTestError: it is something else.
+        """
+        value = self._resolve(node)
+        if isinstance(value, ast.Constant) and isinstance(value.value, str):
+            return value
+        if isinstance(value, ast.Subscript) and _is_configurations(value.value):
+            return _make_variable(self._resolve(value.slice))
+        if not isinstance(value, ast.Call):
+            raise _UnknownTestError
+        function = called_name(value).rpartition(".")[2]
+        owner = value.func.value if isinstance(value.func, ast.Attribute) else None
+        if function == "str" and len(value.args) == 1:
+            return self._read_text(value.args[0])
+        if function in _TEXT_METHODS and owner is not None and not value.args:
+            return ast.Call(ast.Attribute(self._read_text(owner), function, ast.Load()), [], [])
+        performed = owner if function == "perform" else None
+        if function == "perform_substitution" and value.args:
+            performed = value.args[0]
+        name = None if performed is None else self.find_object(performed)
+        if name is None:
+            raise _UnknownTestError
+        return _make_variable(ast.Constant(name))
+
+    def find_object(self, node: ast.expr) -> str | None:
+        """Return the name of the argument whose substitution an expression is; None for other expressions."""
+        value = self._resolve(node)
+        if not isinstance(value, ast.Call) or called_name(value).rpartition(".")[2] != _CONFIGURATION:
+            return None
+        name = value.args[0] if value.args else argument_of(value, "variable_name")
+        is_name = isinstance(name, ast.Constant) and isinstance(name.value, str)
+        return name.value if is_name and isinstance(name, ast.Constant) and isinstance(name.value, str) else None
+
+    def is_text(self, node: ast.expr, *, is_list: bool = False) -> bool:
+        """Return whether an expression is a literal text, or a list of them."""
+        value = self._resolve(node)
+        if is_list:
+            is_known = isinstance(value, (ast.List, ast.Tuple, ast.Set))
+            return is_known and all(
+                self.is_text(item) for item in ast.iter_child_nodes(value) if isinstance(item, ast.expr)
+            )
+        return isinstance(value, ast.Constant) and isinstance(value.value, str)
+
+    def _resolve(self, node: ast.expr) -> ast.expr:
+        """Return the value of a name, also of a parameter of a function that ``OpaqueFunction`` calls."""
+        value = self._python.resolved(node)
+        if isinstance(value, ast.Name) and value.id in self._names:
+            return self._arguments.get(value.id, value)
+        return value
+
+
+def _make_variable(name: ast.expr) -> ast.expr:
+    if not isinstance(name, ast.Constant) or not isinstance(name.value, str):
+        raise _UnknownTestError
+    return ast.Constant(f"$(var {name.value})")
+
+
+def _is_configurations(node: ast.expr) -> bool:
+    return isinstance(node, ast.Attribute) and node.attr == _CONFIGURATIONS
+
+
+def _find_opaque_arguments(python: PythonFile, function: _Function) -> Mapping[str, ast.expr]:
+    """Return the expressions that ``OpaqueFunction`` passes to a function, by the names of its parameters.
+
+    Without exactly one such action, and if the file calls the function itself, they are unknown.
+    """
+    calls = [node for node in ast.walk(python.tree) if isinstance(node, ast.Call)]
+    actions = [
+        call
+        for call in calls
+        if called_name(call).rpartition(".")[2] == "OpaqueFunction"
+        and isinstance(called := (call.args[0] if call.args else argument_of(call, "function")), ast.Name)
+        and called.id == function.name
+    ]
+    if len(actions) != 1 or any(called_name(call) == function.name for call in calls):
+        return {}
+    passed = argument_of(actions[0], "args")
+    values = None if passed is None else python.resolved(passed)
+    names = [parameter.arg for parameter in function.args.args[1:]]
+    items = values.elts if isinstance(values, (ast.List, ast.Tuple)) else []
+    arguments = dict(zip(names, map(python.resolved, items), strict=False))
+    keywords = argument_of(actions[0], "kwargs")
+    named = None if keywords is None else python.resolved(keywords)
+    if isinstance(named, ast.Dict):
+        pairs = zip(named.keys, named.values, strict=True)
+        arguments |= {str(key.value): python.resolved(value) for key, value in pairs if isinstance(key, ast.Constant)}
+    return arguments

@@ -1,0 +1,54 @@
+"""Findings about missing files that break a build or a description are breaking changes of a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import ARM, PACKAGE_XML
+from tests.review.conftest import subject
+from tests.review.test_findings import finding_codes
+
+ROBOT = "arm_description/urdf/arm.urdf.xacro"
+INCLUDE = '<xacro:include filename="camera.xacro"/>'
+CMAKE = """cmake_minimum_required(VERSION 3.8)
+project(arm_description)
+find_package(ament_cmake REQUIRED)
+install(DIRECTORY {folders} DESTINATION share/${{PROJECT_NAME}})
+ament_package()
+"""
+BUILD = "arm_description/CMakeLists.txt"
+
+
+def list_reasons(result, path: str) -> dict[str, str]:
+    return {str(each.sentence): str(each.reason) for each in subject(result, path).changes if each.reason}
+
+
+@pytest.mark.parametrize("was_missing", [False, True])
+def test_newly_included_file_that_does_not_exist_is_breaking(package, compare, was_missing):
+    old = INCLUDE.replace("camera", "lamp") if was_missing else ""
+    package.commit({ROBOT: ARM.replace("</robot>", f"{old}</robot>")})
+    package.write({ROBOT: ARM.replace("</robot>", f"{INCLUDE}</robot>")})
+    result = compare(package)
+    codes = finding_codes(result.new_findings)
+    if was_missing:
+        assert codes == ["XML101"]
+        return
+    (reason,) = list_reasons(result, ROBOT).items()
+    assert "camera.xacro" in reason[0]
+    assert reason[1] == "the description can no longer be read"
+    assert "XML101" not in codes
+
+
+@pytest.mark.parametrize("is_added", [False, True])
+def test_installed_folder_that_does_not_exist_is_breaking(package, compare, is_added):
+    package.commit({"arm_description/package.xml": PACKAGE_XML})
+    if not is_added:
+        package.commit({BUILD: CMAKE.format(folders="urdf")})
+    package.write({BUILD: CMAKE.format(folders="urdf meshs")})
+    result = compare(package)
+    if is_added:
+        assert "LW824" in finding_codes(result.new_findings)
+        return
+    text = "installed folders that the repository does not have added: 'meshs'"
+    assert list_reasons(result, BUILD) == {text: "the build fails, because 'meshs' does not exist"}
+    assert "LW824" not in finding_codes(result.new_findings)

@@ -1,0 +1,109 @@
+"""Arguments that included launch files of ROS 2 take from the file that includes them, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+PATH = "arm/launch/arm.launch.py"
+FILE = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, RegisterEventHandler
+from launch.conditions import IfCondition
+from launch.event_handlers import OnProcessExit
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    first = Node(package="arm", executable="first")
+    return LaunchDescription([
+        DeclareLaunchArgument("hand", default_value="false"),
+        {declared}
+        first,
+        {action},
+    ])
+"""
+NODE = 'Node(package="arm", executable="hand", condition=IfCondition(LaunchConfiguration("hand")))'
+INCLUDE = """IncludeLaunchDescription(PythonLaunchDescriptionSource(
+            PathJoinSubstitution([FindPackageShare("arm"), "launch", "more.launch.py"]))"""
+EVENT = "RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[{include})]))"
+MORE = """from launch import LaunchDescription
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([Node(package="arm", executable="hand", {settings})])
+"""
+CONDITION = 'condition=IfCondition(LaunchConfiguration("hand"))'
+NAMESPACE = 'namespace=LaunchConfiguration("ns")'
+MISSING = "include of '$(find-pkg-share arm)/launch/more.launch.py' uses argument 'ns', which is not declared"
+
+
+@pytest.fixture
+def review_include(repository, compare):
+    """Review a node that moves into an included file, and return the review."""
+
+    def run(settings: str, include: str = INCLUDE + ")", declared: str = "", others: dict[str, str] | None = None):
+        files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), **(others or {})}
+        repository.commit({PATH: FILE.format(declared="", action=NODE), **files})
+        new = FILE.format(declared=declared, action=include)
+        repository.write({PATH: new, "arm/launch/more.launch.py": MORE.replace("{settings}", settings)})
+        return compare(repository)
+
+    return run
+
+
+@pytest.mark.parametrize("include", [INCLUDE + ")", EVENT.replace("{include}", INCLUDE)])
+@pytest.mark.parametrize("is_used", [True, False])
+def test_argument_that_an_included_file_uses_is_used(review_include, include, is_used):
+    result = review_include(CONDITION if is_used else "", include)
+    assert ("argument 'hand' is no longer used" in breaking(result)) != is_used, breaking(result)
+
+
+@pytest.mark.parametrize(
+    ("include", "declared", "is_missing"),
+    [
+        (INCLUDE + ")", "", True),
+        (EVENT.replace("{include}", INCLUDE), "", True),
+        (INCLUDE + ', launch_arguments={"ns": "left"}.items())', "", False),
+        (INCLUDE + ")", 'DeclareLaunchArgument("ns", default_value=""),', False),
+    ],
+)
+def test_argument_that_nothing_gives_to_an_included_file(review_include, include, declared, is_missing):
+    result = review_include(f"{CONDITION}, {NAMESPACE}", include, declared)
+    assert (MISSING in breaking(result)) == is_missing
+    if is_missing:
+        (change,) = [change for change in subject(result, PATH).changes if str(change.sentence) == MISSING]
+        assert str(change.reason) == "the launch file fails if no other file declares 'ns'"
+
+
+@pytest.mark.parametrize("package", ["arm", "other"])
+def test_file_of_another_package_with_the_same_name_is_not_included(review_include, package):
+    caller = FILE.format(
+        declared='DeclareLaunchArgument("ns", default_value=""),',
+        action=INCLUDE.replace('"arm"', f'"{package}"').replace("more.launch.py", "arm.launch.py") + ")",
+    )
+    others = {
+        "arm/launch/all.launch.py": caller,
+        "other/package.xml": PACKAGE_XML.replace("arm_description", "other"),
+        "other/launch/arm.launch.py": MORE.replace("{settings}", ""),
+    }
+    result = review_include(f"{CONDITION}, {NAMESPACE}", others=others)
+    assert (MISSING in breaking(result)) == (package == "other")
+
+
+def test_argument_that_was_missing_before_is_no_change(repository, compare):
+    more = {
+        "arm/launch/more.launch.py": MORE.replace("{settings}", NAMESPACE),
+        "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"),
+    }
+    include = INCLUDE + ")"
+    repository.commit({PATH: FILE.format(declared="", action=include), **more})
+    repository.write({PATH: FILE.format(declared="", action=include).replace('"first"', '"second"', 1)})
+    assert not [text for each in compare(repository).subjects for text in sentences(each) if "not declared" in text]
