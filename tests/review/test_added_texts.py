@@ -24,7 +24,11 @@ def load(path, name):
         use(rate)
     step()
 """
-STEPS = {".cpp": ("a/src/load.cpp", CPP, "  step();\n"), ".py": ("a/scripts/load.py", PYTHON, "    step()\n")}
+FUNCTIONS = {
+    ".cpp": ("a/src/load.cpp", CPP, "void other() {{ {} }}\n"),
+    ".py": ("a/scripts/load.py", PYTHON, "\n\ndef other():\n    {}\n"),
+}
+"""For each suffix: the path and text of a source, and a function with other code."""
 
 
 @pytest.fixture
@@ -59,16 +63,15 @@ def review_lines(repository, compare):
     ],
 )
 def test_keys_and_compared_texts_of_added_code_are_named(review_lines, suffix, code, expected):
-    path, text, step = STEPS[suffix]
-    indent = step[: len(step) - len(step.lstrip())]
-    lines = review_lines({path: text}, {path: text.replace(step, f"{indent}{code}\n{step}")})
-    assert lines == ["code changed in 'load()'", f"keys and compared texts added: {expected}"]
+    path, text, function = FUNCTIONS[suffix]
+    lines = review_lines({path: text}, {path: text + function.format(code)})
+    assert lines == ["code added: 'other()'", f"keys and compared texts added: {expected}"]
 
 
 def test_keys_that_removed_code_read_are_named(review_lines):
-    text = CPP.replace("  step();\n", '  step(sensor["pose"].as<int>());\n  step();\n')
+    text = CPP + 'void other() { step(sensor["pose"].as<int>()); }\n'
     lines = review_lines({"a/src/load.cpp": text}, {"a/src/load.cpp": CPP})
-    assert lines == ["code changed in 'load()'", 'keys and compared texts removed: sensor["pose"]']
+    assert lines == ["code removed: 'other()'", 'keys and compared texts removed: sensor["pose"]']
 
 
 @pytest.mark.parametrize(
@@ -87,8 +90,8 @@ def test_keys_that_removed_code_read_are_named(review_lines):
     ],
 )
 def test_other_texts_of_added_code_are_not_named(review_lines, code):
-    path, text, step = STEPS[".py"]
-    lines = review_lines({path: text}, {path: text.replace(step, f"    {code}\n{step}")})
+    path, text, function = FUNCTIONS[".py"]
+    lines = review_lines({path: text}, {path: text + function.format(code)})
     assert not any("texts" in line for line in lines)
 
 
@@ -102,9 +105,9 @@ def test_keys_that_moved_to_another_source_are_not_named(review_lines):
 
 
 def test_many_keys_share_one_short_line(review_lines):
-    path, text, step = STEPS[".py"]
-    code = "".join(f'    use(config["key_{number}"])\n' for number in range(30))
-    (_, line) = review_lines({path: text}, {path: text.replace(step, code + step)})
+    path, text, function = FUNCTIONS[".py"]
+    code = "\n    ".join(f'use(config["key_{number}"])' for number in range(30))
+    (_, line) = review_lines({path: text}, {path: text + function.format(code)})
     assert line.startswith('keys and compared texts added: config["key_0"], ')
     assert line.endswith(" and 22 more")
 

@@ -133,7 +133,7 @@ def test_the_functions_of_a_class_with_another_name_are_compared(repository, com
     repository.write({"arm/arm/plans.py": text.format("now()").replace("class Plan", "class Plans")})
     assert sentences(subject(compare(repository), "arm/arm/plans.py")) == [
         "class 'Plan' (name, size=1) renamed to 'Plans' (name, size=1)",
-        "code changed in 'Plans.run()'",
+        "in 'Plans.run()': `go(1)` -> `go(now())`",
     ]
 
 

@@ -56,7 +56,7 @@ def test_code_beside_the_text_is_reported_separately(repository, compare):
     repository.commit({"arm/package.xml": PACKAGE_XML, "arm/write.py": FUNCTION})
     repository.write({"arm/write.py": FUNCTION.replace("1.2.3.4", "5.6.7.8").replace("return 1", "return file")})
     (found,) = compare(repository).subjects
-    assert sentences(found)[1:] == ["code changed in 'write()'"]
+    assert sentences(found)[1:] == ["in 'write()': `return 1` -> `return file`"]
 
 
 @pytest.mark.parametrize(

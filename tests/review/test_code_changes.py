@@ -81,10 +81,14 @@ def review_lines(repository, compare):
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("= msg.data", "= msg.data.split('#')", "code changed in 'Driver.on_mode()' (callback of subscription 'mode')"),
-        ("go(request)", "go(request.pose)", "code changed in 'Driver.on_home()' (callback of service 'home')"),
-        ("item.step()", "item.stop()", "code changed in 'Driver.on_timer()' (callback of a timer)"),
-        ("goal.succeed()", "goal.abort()", "code changed in 'Driver.reach()' (callback of action 'reach')"),
+        ("= msg.data", "= msg.data.split('#')",
+         ("in 'Driver.on_mode()' (callback of subscription 'mode'): "
+         "`self.mode = msg.data` -> `self.mode = msg.data.split('#')`")),
+        ("go(request)", "go(request.pose)",
+         "in 'Driver.on_home()' (callback of service 'home'): `self.go(request)` -> `self.go(request.pose)`"),
+        ("item.step()", "item.stop()", "in 'Driver.on_timer()' (callback of a timer): `item.step()` -> `item.stop()`"),
+        ("goal.succeed()", "goal.abort()",
+         "in 'Driver.reach()' (callback of action 'reach'): `goal.succeed()` -> `goal.abort()`"),
         ("            return response\n", "        return response\n",
          "code changed in 'Driver.on_home()' (callback of service 'home')"),
         ("max(value", "min(value", "in 'clamp()': `return max(value, low)` -> `return min(value, low)`"),
@@ -121,13 +125,14 @@ def test_layout_comments_annotations_and_outputs_of_python_are_not_named(review_
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("= msg.data;", "= msg.data + 'x';", "code changed in 'Rover::onMode()' (callback of subscription 'mode')"),
+        ("= msg.data;", "= msg.data + 'x';",
+         "in 'Rover::onMode()' (callback of subscription 'mode'): `mode_ = msg.data` -> `mode_ = msg.data + 'x'`"),
         ("    count(item);\n  }", "  }\n  count(item);", "code changed in 'Rover::onTimer()' (callback of a timer)"),
         ("void Rover::onTimer", "void Rover::tick", "code renamed: 'Rover::onTimer()' -> 'Rover::tick()'"),
         ("void Rover::onTimer", "int half(int x) { return x / 2; }\nvoid Rover::onTimer", "code added: 'half()'"),
         ("DRIVER_MACRO(Rover)\n", "int size = half(3);\nDRIVER_MACRO(Rover)\n", "code changed outside of functions"),
     ],
-)
+)  # fmt: skip
 def test_functions_of_cpp_with_other_code_are_named(review_lines, old, new, expected):
     assert old in CPP
     assert review_lines("arm/src/rover.cpp", CPP, CPP.replace(old, new, 1)) == [expected]
@@ -171,7 +176,7 @@ def test_a_function_is_named_for_what_other_lines_do_not_tell(review_lines):
     new = new.replace("f(4)", 'super().__init__("driver")\n        self.reset()')
     assert review_lines("arm/scripts/driver.py", PYTHON, new) == [
         "rate or period: create_timer(0.1) -> create_timer(0.2)",
-        "code changed in 'Driver.__init__()'",
+        "in 'Driver.__init__()': `self.reset()` added",
     ]
 
 
@@ -205,7 +210,9 @@ def test_the_line_is_that_of_the_first_statement_that_differs(repository, compar
 
 def test_macro_without_a_semicolon_may_stand_before_a_namespace(review_lines):
     text = "PLUGIN_EXPORT(arm::Arm, Base)\n\nnamespace arm\n{\nvoid Arm::start()\n{\n  move(a);\n}\n}\n"
-    assert review_lines("arm.cpp", text, text.replace("move(a)", "turn(a)")) == ["code changed in 'Arm::start()'"]
+    assert review_lines("arm.cpp", text, text.replace("move(a)", "turn(a)")) == [
+        "in 'Arm::start()': `move(a)` -> `turn(a)`"
+    ]
 
 
 def test_a_class_in_cpp_may_have_a_macro_before_or_behind_its_name(review_lines):
@@ -266,7 +273,7 @@ def test_a_name_that_may_be_defined_is_not_breaking(repository, compare, old, ne
 def test_code_of_python_2_that_prints_a_list_is_read(review_lines):
     text = "def plan(run):\n    print 'plan'\n    print [item for item in run.line]\n    run.go(run.line)\n"
     assert review_lines("arm/scripts/plan.py", text, text.replace("go(run.line)", "go()")) == [
-        "code changed in 'plan()'"
+        "in 'plan()': `run.go(run.line)` -> `run.go()`"
     ]
 
 
@@ -281,14 +288,14 @@ def test_code_outside_of_functions_changes_beside_a_function(review_lines):
     old = "LIMIT = compute(1)\ndef drive():\n    go()\n"
     new = "LIMIT = measure(1)\ndef drive():\n    stop()\n"
     lines = review_lines("arm/src/a.py", old, new)
-    assert lines == ["code changed in 'drive()'; code changed outside of functions"]
+    assert lines == ["in 'drive()': `go()` -> `stop()`", "code changed outside of functions"]
 
 
 def test_objects_outside_of_functions_change_beside_a_function(review_lines):
     old = 'ValueArg frame("f", "frame", "map", cmd);\nvoid drive() { go(); }\n'
     new = 'ValueArg base("b", "base-link", "base", cmd);\nvoid drive() { stop(); }\n'
     lines = review_lines("arm/src/a.cpp", old, new)
-    assert lines == ["code changed in 'drive()'; code changed outside of functions"]
+    assert lines == ["in 'drive()': `go()` -> `stop()`", "code changed outside of functions"]
 
 
 def test_calls_and_declarations_of_a_changed_function_are_not_other_code(review_lines):
@@ -316,9 +323,9 @@ public:
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
-        ("stop();", "halt();", "code changed in 'Rover::get()'"),
-        ("a.front()", "a.back()", "code changed in 'Rover::other()'"),
-        ("int a) { return a;", "int a) { return n(a);", "code changed in 'Rover::count()'"),
+        ("stop();", "halt();", "in 'Rover::get()': `stop()` -> `halt()`"),
+        ("a.front()", "a.back()", "in 'Rover::other()': `return a.front()` -> `return a.back()`"),
+        ("int a) { return a;", "int a) { return n(a);", "in 'Rover::count()': `return a` -> `return n(a)`"),
     ],
 )
 def test_function_with_default_arguments_is_named(review_lines, old, new, line):

@@ -28,7 +28,7 @@ bool Node<std::vector<int>, 4>::operator==(const Node & other) const
     [
         ('"state"', '"status"', ["publisher 'state' (String) renamed to 'status' (String)"]),
         ("0.5", "0.7", ["values in Node::setup: limit(0.5 -> 0.7, ...)"]),
-        ("step(count)", "step(count - 1, N)", ["code changed in 'Node::setup()'"]),
+        ("step(count)", "step(count - 1, N)", ["in 'Node::setup()': `step(count)` -> `step(count - 1, N)`"]),
         ("same(other, 1)", "same(other, 2)", ["values in Node::operator==: same(other, 1 -> 2)"]),
     ],
 )

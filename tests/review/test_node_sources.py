@@ -104,7 +104,7 @@ def test_name_that_an_unchanged_source_also_has_is_not_reported(tmp_path, compar
     repository.commit({**FILES, "arm/arm/driver.py": changed, "arm/arm/state.py": other})
     repository.commit({"arm/arm/driver.py": changed.replace("self.state = self.create_publisher", "self.publish")})
     (found,) = compare(repository, "HEAD~1..HEAD").subjects
-    assert sentences(found) == ["code changed in 'Driver.__init__()'"]
+    assert sentences(found) == ["in 'Driver.__init__()': `self.publish(String, TOPIC, 10)` added"]
 
 
 def test_similar_names_are_not_searched_among_many(repository, compare):

@@ -118,7 +118,7 @@ def test_removed_nodes_of_behavior_trees_are_breaking_with_the_trees_that_use_th
 
 def test_unchanged_registrations_are_no_change(review_source):
     lines, _ = review_source(TREE, TREE.replace("return 1;", "return f(1);"), {"arm/trees/main.xml": TREE_FILE})
-    assert lines == ["code changed in 'Foo::run()'"]
+    assert lines == ["in 'Foo::run()': `return 1` -> `return f(1)`"]
 
 
 @pytest.mark.parametrize(

@@ -80,14 +80,16 @@ def test_code_of_a_class_with_another_name_is_not_changed(review_lines):
 
 def test_text_with_the_old_name_of_a_class_is_not_the_class(review_lines):
     assert review_lines("arm/src/spring.cpp", CPP, CPP.replace("Spring", "Coil")) == [
-        "code changed in 'Coil::configure()'; code renamed: 'Spring' -> 'Coil'"
+        'in \'Coil::configure()\': `topic_ = element.get("Spring")` -> `topic_ = element.get("Coil")`',
+        "code renamed: 'Spring' -> 'Coil'",
     ]
 
 
 def test_changed_method_of_a_class_with_another_name_is_named(review_lines):
     new = CPP.replace("Spring:", "Coil:").replace(":Spring(", ":Coil(").replace("data * 2", "data + offset_")
     assert review_lines("arm/src/spring.cpp", CPP, new.replace("(Spring)", "(Coil)")) == [
-        "code changed in 'Coil::onCommand()'; code renamed: 'Spring' -> 'Coil'"
+        "in 'Coil::onCommand()': `command_ = message.data * 2` -> `command_ = message.data + offset_`",
+        "code renamed: 'Spring' -> 'Coil'",
     ]
 
 
@@ -124,8 +126,8 @@ void Motor::stop() { halt(); }
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
-        ("x = 1;", "x = f();", "code changed in 'Camera::update()' (callback of subscription 'image')"),
-        ("y = 1;", "y = f();", "code changed in 'Marker::update()' (callback of subscription 'pose')"),
+        ("x = 1;", "x = f();", "in 'Camera::update()' (callback of subscription 'image'): `x = 1` -> `x = f()`"),
+        ("y = 1;", "y = f();", "in 'Marker::update()' (callback of subscription 'pose'): `y = 1` -> `y = f()`"),
     ],
 )
 def test_callback_in_cpp_is_that_of_its_class(review_lines, old, new, line):
@@ -135,15 +137,16 @@ def test_callback_in_cpp_is_that_of_its_class(review_lines, old, new, line):
 @pytest.mark.parametrize(
     ("name", "line"),
     [
-        ("x", "code changed in 'Camera.update()' (callback of subscription 'image')"),
-        ("y", "code changed in 'Marker.update()' (callback of subscription 'pose')"),  # the base class subscribes
-        ("z", "code changed in 'Marker.measure()'"),
-        ("w", "code changed in 'Store.update()'"),
+        ("x", "in 'Camera.update()' (callback of subscription 'image')"),
+        ("y", "in 'Marker.update()' (callback of subscription 'pose')"),  # the base class subscribes
+        ("z", "in 'Marker.measure()'"),
+        ("w", "in 'Store.update()'"),
     ],
 )
 def test_callback_in_python_is_that_of_its_class(review_lines, name, line):
     new = PYTHON_NODES.replace(f"self.{name} = m.pose", f"self.{name} = m.pose if m else None")
-    assert review_lines("arm/arm/nodes.py", PYTHON_NODES, new) == [line]
+    change = f"`self.{name} = m.pose` -> `self.{name} = m.pose if m else None`"
+    assert review_lines("arm/arm/nodes.py", PYTHON_NODES, new) == [f"{line}: {change}"]
 
 
 def test_renamed_class_of_an_installed_header_is_one_breaking_change(repository, compare):

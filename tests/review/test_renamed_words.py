@@ -45,10 +45,16 @@ def review_replaced(repository, compare, files, replaced):
         ({"result": "scaled"}, []),
         ({"factor": "share", "gain_": "scale_"}, []),
         ({"onMode": "on_mode"}, ["code renamed: 'Arm::onMode()' -> 'Arm::on_mode()'"]),
-        ({"double result = factor * gain_": "double scaled = factor * gain_"}, ["code changed in 'Arm::scale()'"]),
+        (
+            {"double result = factor * gain_": "double scaled = factor * gain_"},
+            ["in 'Arm::scale()': `double result = factor * gain_` -> `double scaled = factor * gain_`"],
+        ),
         ({"return result * offset_": "return result * limit_"}, ["code changed in 'Arm::scale()'"]),
-        ({"stop(2)": "halt(2)"}, ["code changed in 'Arm::start()'"]),
-        ({"double result": "float result"}, ["code changed in 'Arm::scale()'"]),
+        ({"stop(2)": "halt(2)"}, ["in 'Arm::start()': `stop(2)` -> `halt(2)`"]),
+        (
+            {"double result": "float result"},
+            ["in 'Arm::scale()': `double result = factor * gain_` -> `float result = factor * gain_`"],
+        ),
     ],
 )
 def test_names_in_cpp(repository, compare, replaced, expected):
@@ -65,7 +71,7 @@ def test_names_in_cpp(repository, compare, replaced, expected):
             {"other.height": "other.length"},
             [f"in 'Arm.limit()': `{RETURN.format('height')}` -> `{RETURN.format('length')}`"],
         ),
-        ({"use(total)": "use(size)"}, ["code changed in 'Arm.__init__()'"]),
+        ({"use(total)": "use(size)"}, ["in 'Arm.__init__()': `self.use(total)` -> `self.use(size)`"]),
     ],
 )
 def test_names_in_python(repository, compare, replaced, expected):

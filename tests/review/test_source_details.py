@@ -300,7 +300,7 @@ Rover::Rover() : Node("rover") {{
         (
             ("auto qos = make(10);", "qos"),
             ("auto qos = make_other(10);", "qos"),
-            ["code changed in 'Rover::Rover()'"],
+            ["in 'Rover::Rover()': `auto qos = make(10)` -> `auto qos = make_other(10)`"],
         ),
         (
             ("auto qos = rclcpp::QoS(10);", "qos"),

@@ -20,7 +20,7 @@ from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.python import parse_source
 from linkwright.review.sources.python_statements import get_blocks, list_called_names
 from linkwright.review.sources.statements import normalize_number
-from linkwright.review.sources.tokens import Token, TokenKind
+from linkwright.review.sources.tokens import Token, TokenKind, join_tokens
 
 _OUTPUT_FUNCTION = re.compile(
     r"p?print|log\w*|(?:local|ros)?_?(?:debug|info|warn|warning|err|error|critical|exception|fatal)|echo", re.IGNORECASE
@@ -40,11 +40,15 @@ class Part(NamedTuple):
         text: the normalized code.
         first_line: the number of its first line.
         last_line: the number of its last line.
+        start: the offset of its first character; 0 in Python, where statements are in the order of the source.
+        written: the code as the source has it, in one line; empty in Python, where it is the normalized code.
     """
 
     text: str
     first_line: int
     last_line: int
+    start: int = 0
+    written: str = ""
 
 
 @dataclass
@@ -215,8 +219,8 @@ def _make_cpp_part(tokens: Sequence[Token], starts: Sequence[int], conditions: C
                 condition = conditions.find(token.start)
                 texts.append(f"#if {condition}")
             texts.append(_normalize_token(token, has_message=has_message))
-    lines = [bisect.bisect_right(starts, token.start) + 1 for token in (tokens[0], tokens[-1])]
-    return Part(" ".join(texts), *lines)
+    first, last = (bisect.bisect_right(starts, token.start) + 1 for token in (tokens[0], tokens[-1]))
+    return Part(" ".join(texts), first, last, tokens[0].start, join_tokens(tokens))
 
 
 def _normalize_token(token: Token, *, has_message: bool) -> str:

@@ -63,7 +63,7 @@ def find_code_change(
 
     If nothing else is reported, the change names classes whose code outside of functions changes, or imports. Beside
     changed functions, it tells whether the code outside of functions changes in more than other lines report. So it
-    does if values in that code are reported.
+    does if values in that code, or statements of functions, are reported.
 
     Args:
         old: the code of the old version. Renamed classes have their new names.
@@ -105,6 +105,7 @@ def find_code_change(
     if reported:
         parts = old.outside.get("", ()), new.outside.get("", ())
         is_unreported = lines.has_module_values and lines.has_unreported_change(*parts, "")
+        is_unreported |= bool(lines.shown_functions and _format_other_code(old, new, lines))
         return _find_module_change(*parts) if is_unreported else None
     return _find_outside_change(old, new)
 
@@ -382,6 +383,10 @@ class ReportedLines:
     def reports(self, part: Part, *, is_old: bool) -> bool:
         """Return whether a line reports a statement that only one version has."""
         return self._reports(part if is_old else None, None if is_old else part, has_values=False)
+
+    def reports_pair(self, name: str, old: Part, new: Part) -> bool:
+        """Return whether a line reports the change in a statement of a function."""
+        return self._reports(old, new, has_values=name in self._functions)
 
     def _reports(self, old: Part | None, new: Part | None, *, has_values: bool) -> bool:
         """Return whether a line reports the change in a statement, which only one version may have."""

@@ -27,7 +27,7 @@ from linkwright.review.sources.renamed_words import rename_words
 from linkwright.review.sources.replaced_cpp_literals import find_replaced_cpp_literals
 from linkwright.review.sources.replaced_literals import find_replaced_literals
 from linkwright.review.sources.returned_codes import find_returned_codes
-from linkwright.review.sources.small_changes import find_small_changes
+from linkwright.review.sources.shown_statements import find_shown_statements
 from linkwright.review.sources.started_commands import find_command_changes
 
 
@@ -49,11 +49,10 @@ def compare_statements(
         changes += _find_assertions(old, new, file.old_path, file.new_path)
         changes += _find_returned_codes(old, new, file.old_path, file.new_path)
         changes += _compare_values(old, new, file, changes)
-        changes += _find_small_changes(old, new, file, changes)
         changes += _find_renamed_variables(old, new, file, changes)
         changes += _find_attributes(old, new, file, changes)
         changes += _compare_commands(old, new, file, changes)
-        changes += _compare_code(old, new, file.old_path, file.new_path, changes)
+        changes += _compare_code(old, new, file, changes)
         changes += _compare_keys(old, new, file, changes)
         changes += _find_deprecations(old, new, file)
     elif file.new_path is not None:
@@ -79,18 +78,6 @@ def _compare_values(
     for change in find_text_changes(*paths):
         path = file.old_path if change.is_old else file.new_path
         yield Change(change.sentence, location=Location(path, change.line, 1, change.is_old))
-
-
-def _find_small_changes(
-    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
-) -> Iterator[Change]:
-    """Yield the functions in Python in which few statements differ, with these statements."""
-    before, after = old.codes.get(file.old_path or ""), new.codes.get(file.new_path or "")
-    if before is None or after is None or file.path.endswith(CPP_SUFFIXES):
-        return
-    before = rename_words(before, after, new.find_renamed_words(old))
-    for change in find_small_changes(before, after, ReportedLines(reported), new.get_names(file.new_path)):
-        yield _make_code_change(change, file)
 
 
 def _find_attributes(
@@ -163,9 +150,10 @@ def _find_deprecations(old: ChangedSources, new: ChangedSources, file: ChangedFi
 
 
 def _compare_code(
-    old: ChangedSources, new: ChangedSources, old_path: str, new_path: str, reported: Sequence[Change]
+    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
 ) -> Iterator[Change]:
-    """Yield the functions whose code changes, unless other lines report it."""
+    """Yield the functions whose code changes, with the changed statements that tell most, unless other lines do."""
+    old_path, new_path = file.old_path or file.path, file.new_path or file.path
     before, after = old.codes.get(old_path), new.codes.get(new_path)
     if not before or not after:
         return
@@ -185,7 +173,11 @@ def _compare_code(
         reported = [*reported, moving]
         own = [moved.function] if moved.path == new_path else []
         before, after = without_statements(before), without_functions(without_statements(after), own)
-    change = find_code_change(before, after, reported, has_moved, new.get_names(new_path), renamed)
+    names = new.get_names(new_path)
+    found = find_shown_statements(before, after, ReportedLines(reported), names)
+    shown = [_make_code_change(change, file) for change in found]
+    yield from shown
+    change = find_code_change(before, after, [*reported, *shown], has_moved, names, renamed)
     if change is not None:
         location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
         yield Change(change.text, location=location, is_code=True)

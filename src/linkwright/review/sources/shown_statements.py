@@ -1,0 +1,384 @@
+"""Show the statements in which functions differ: conditions, results, formulas and calls."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from difflib import SequenceMatcher
+from typing import NamedTuple
+
+from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.review.excerpts import differing_excerpts, shorten
+from linkwright.review.sources.code import Code, Part
+from linkwright.review.sources.code_changes import CodeChange, ReportedLines, format_function
+from linkwright.review.sources.names import SourceNames
+
+_INDENT = re.compile(r"[\d ]*")
+"""The marks of the blocks before a statement in Python."""
+_CONDITION = re.compile(r"(?:if|elif|while|switch|case)\b(?! *constexpr)")
+_LOOP = re.compile(r"(?:async )?(?:for|with|try|except|catch|match)\b")
+_RESULT = re.compile(r"(?:return|raise|throw|yield|continue|break|co_return)\b")
+_CONSTANT_RESULT = re.compile(
+    r"return (?:None|[Tt]rue|[Ff]alse|nullptr|-?[\d.]+|'[^']*'|\"[^\"]*\"|(?:\w+(?:\.|::))*[A-Z][A-Z0-9_]+)"
+)
+_CALL = re.compile(r"(?:await )?(?P<function>[\w.:\[\]'\"]+(?:(?:->|\(\)[.]|\(\)->)[\w.:\[\]'\"]+)*)\(.*\)", re.DOTALL)
+_SENDING = re.compile(
+    r"(?:\.|->)"
+    r"(?:publish|sendTransform|send_transform|send_goal|send_goal_async|async_send_goal|call|call_async|"
+    r"async_send_request|wait_for_service|wait_for_server|wait_for_action_server)\("
+)
+"""A call that sends something, or waits for the one who gets it."""
+_NAMING = re.compile(
+    r"\b(?:create_\w+|declare_\w+|get_param\w*|getParam|param|advertise\w*|subscribe|serviceClient|Publisher|"
+    r"Subscriber|Service\w*|Action\w+|\w*[Tt]imer)(?:<[^()]*>)?\s*\("
+)
+"""A call that gives a name to a topic, service or parameter, or makes a timer. Other lines report it."""
+_TARGET = re.compile(r"[\w.\[\]'\":]+(?:(?:->|\(\)[.]|\(\)->)[\w.\[\]'\":]+)*\Z")
+"""The variable, member or field at the end of the left side of an assignment."""
+_OPERATORS = frozenset({"+", "-", "*", "/", "%", "&", "|", "^", "<", ">", "//", "**", "<<", ">>", ":"})
+"""The characters before the equals sign of an assignment that also computes."""
+_FORMULA = re.compile(r"[\w)\]] ?[-+*/%<>] ?[\w(]|[<>=!]=|&&|\|\||\?|\b(?:and|or|not|if)\b|-?\b\d")
+_CONSTANT = re.compile(r"(?<![\w'\"])(?:(?:\w+(?:\.|::))*[A-Z][A-Z0-9_]{2,}\b|-?\d)")
+_OWNER = re.compile(r"(?:self\.|this->)")
+_MEMBER = re.compile(r"(?:self\.|this->)\w|\w+_\Z|m_\w")
+_FIELD = re.compile(r"[.\[]|->")
+_WORD = re.compile(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|\w+|\S")
+_CONST = re.compile(r"\bconst\b ?")
+_MIN_SIMILARITY = 0.5
+"""The minimum similarity of a condition that took the place of another one."""
+_MAX_STATEMENTS = 3
+"""The maximum number of statements of a function that a line shows."""
+_MAX_FUNCTIONS = 8
+"""The maximum number of functions of a source whose statements are shown."""
+_MIN_SCORE = 2
+"""The minimum score of a shown statement among several."""
+_MAX_CHARACTERS = 100
+_MAX_HEAD_CHARACTERS = 40
+_MAX_COMPARED_PAIRS = 4_000_000
+
+
+class _Statement(NamedTuple):
+    """A statement of a function.
+
+    Attributes:
+        part: the statement.
+        text: its code in one line.
+        kind: what it does, such as ``condition``.
+        key: the assigned variable or the called function.
+        value: the assigned value, or the whole statement.
+    """
+
+    part: Part
+    text: str
+    kind: str
+    key: str
+    value: str
+
+
+class _Difference(NamedTuple):
+    """A statement that differs, or that only one version has.
+
+    Attributes:
+        old: the old statement.
+        new: the new statement.
+        body: the first statement of a condition that only one version has.
+    """
+
+    old: _Statement | None
+    new: _Statement | None
+    body: _Statement | None = None
+
+    @property
+    def statement(self) -> _Statement:
+        statement = self.new or self.old
+        assert statement is not None
+        return statement
+
+
+def find_shown_statements(old: Code, new: Code, lines: ReportedLines, names: SourceNames) -> Iterator[CodeChange]:
+    """Yield the functions in which conditions, results, formulas or calls differ, with these statements.
+
+    Statements that other lines report, that moved to another place of the source, or in which only variables have other
+    names, are left out.
+
+    Args:
+        old: the code of the old version.
+        new: the code of the new version.
+        lines: the other lines about the source.
+        names: the names in the new version.
+    """
+    sides = _Sides(old, new)
+    found = []
+    for name, parts in new.functions.items():
+        before = old.functions.get(name)
+        if before is None or not lines.has_unreported_change(before, parts, name):
+            continue
+        differences = list(
+            {str(_describe(item)): item for item in _compare(name, before, parts, lines, sides)}.values()
+        )
+        shown = _select(differences)
+        if shown:
+            found.append((max(map(_score, shown)), name, shown, len(differences) - len(shown)))
+    most = sorted(found, key=lambda item: -item[0])[:_MAX_FUNCTIONS]
+    for item in found:
+        if item in most:
+            _, name, shown, hidden = item
+            first = shown[0].statement
+            yield CodeChange(
+                phrase("in {function}: {changes}", function=format_function(name, names), changes=_join(shown, hidden)),
+                first.part.first_line,
+                shown[0].new is None,
+            )
+
+
+class _Sides:
+    """Two versions of a source whose functions are compared.
+
+    Args:
+        old: the code of the old version.
+        new: the code of the new version.
+    """
+
+    def __init__(self, old: Code, new: Code) -> None:
+        parts = [[part for items in code.functions.values() for part in items] for code in (old, new)]
+        counts = [Counter(_read_text(part) for part in items) for items in parts]
+        self._lost = counts[0] - counts[1], counts[1] - counts[0]
+        outside = ([part for items in code.outside.values() for part in items] for code in (old, new))
+        self._words = [
+            {word for part in (*own, *others) for word in _WORD.findall(part.text)}
+            for own, others in zip(parts, outside, strict=True)
+        ]
+
+    def _has_moved(self, part: Part, *, is_old: bool) -> bool:
+        """Return whether a statement of one version is at another place in the other version."""
+        return self._lost[0 if is_old else 1][_read_text(part)] < 1
+
+    def is_left_out(self, difference: _Difference, name: str, lines: ReportedLines) -> bool:
+        """Return whether a line reports a difference in a function, or only places or names differ."""
+        if difference.old is not None and difference.new is not None:
+            parts = difference.old.part, difference.new.part
+            is_named_otherwise = difference.new.kind != "head" and self._differ_in_names(difference.old, difference.new)
+            return is_named_otherwise or lines.reports_pair(name, *parts)
+        is_old = difference.new is None
+        return lines.reports(difference.statement.part, is_old=is_old) or self._has_moved(
+            difference.statement.part, is_old=is_old
+        )
+
+    def _differ_in_names(self, old: _Statement, new: _Statement) -> bool:
+        """Return whether two statements only differ in names of variables that the other version does not have."""
+        words = [_WORD.findall(_CONST.sub("", statement.text)) for statement in (old, new)]
+        if len(words[0]) != len(words[1]):
+            return False
+        return all(
+            before == after
+            or (
+                before.isidentifier()
+                and after.isidentifier()
+                and before not in self._words[1]
+                and after not in self._words[0]
+                and _is_variable(words[1], index)
+            )
+            for index, (before, after) in enumerate(zip(*words, strict=True))
+        )
+
+
+def _is_variable(words: Sequence[str], index: int) -> bool:
+    """Return whether a word of a statement names a variable or a member of the own object, and no function."""
+    before = "".join(words[max(index - 4, 0) : index])
+    is_own = before.endswith(("self.", "this->")) or not before.endswith((".", "->", "::"))
+    return is_own and words[index + 1 : index + 2] != ["("]
+
+
+def _read_text(part: Part) -> str:
+    """Return a statement without the marks of its blocks; of a compound statement in Python, its head."""
+    if part.written:
+        return part.text
+    text = _INDENT.sub("", part.text, count=1)
+    return text.removesuffix("\n    pass").removesuffix(":")
+
+
+def _compare(
+    name: str,
+    old: Sequence[Part],
+    new: Sequence[Part],
+    lines: ReportedLines,
+    sides: _Sides,
+) -> Iterator[_Difference]:
+    """Yield the statements in which two versions of a function differ.
+
+    Args:
+        name: the function.
+        old: its old statements.
+        new: its new statements.
+        lines: the other lines about the source.
+        sides: the versions of the source.
+    """
+    sorted_parts = [sorted(parts, key=lambda part: part.start) for parts in (old, new)]
+    texts = [[_read_text(part) for part in parts] for parts in sorted_parts]
+    if len(old) * len(new) > _MAX_COMPARED_PAIRS:
+        return
+    for tag, old_start, old_end, new_start, new_end in SequenceMatcher(
+        None, texts[0], texts[1], autojunk=False
+    ).get_opcodes():
+        if tag == "equal":
+            continue
+        before = [_parse(part, part is old[0]) for part in sorted_parts[0][old_start:old_end]]
+        after = [_parse(part, part is new[0]) for part in sorted_parts[1][new_start:new_end]]
+        for difference in _with_bodies([*_pair(before, after)]):
+            if difference.statement.kind == "nothing" or sides.is_left_out(difference, name, lines):
+                continue
+            yield difference
+
+
+def _pair(old: Sequence[_Statement], new: Sequence[_Statement]) -> Iterator[_Difference]:
+    """Yield differing statements in the order of the source: as pairs if one took the place of the other."""
+    if len(old) == len(new) == 1 and old[0].kind == new[0].kind:
+        yield _Difference(old[0], new[0])
+        return
+    start = 0
+    for statement in old:
+        index = next((index for index in range(start, len(new)) if _has_replaced(statement, new[index])), None)
+        if index is None:
+            yield _Difference(statement, None)
+            continue
+        yield from (_Difference(None, item) for item in new[start:index])
+        if statement.text != new[index].text:
+            yield _Difference(statement, new[index])
+        start = index + 1
+    yield from (_Difference(None, item) for item in new[start:])
+
+
+def _with_bodies(differences: Sequence[_Difference]) -> Iterator[_Difference]:
+    """Yield differences. A condition that only one version has contains the result after it."""
+    index = 0
+    while index < len(differences):
+        difference = differences[index]
+        index += 1
+        following = differences[index] if index < len(differences) else difference
+        is_condition = difference.statement.kind == "condition" and None in (difference.old, difference.new)
+        is_same_side = (difference.old is None, difference.new is None) == (
+            following.old is None,
+            following.new is None,
+        )
+        if is_condition and is_same_side and following.statement.kind == "result":
+            difference = difference._replace(body=following.statement)
+            index += 1
+        yield difference
+
+
+def _has_replaced(old: _Statement, new: _Statement) -> bool:
+    """Return whether a statement may be the new version of another one."""
+    if old.kind != new.kind or old.kind == "nothing" or old.key != new.key:
+        return False
+    if old.kind not in ("condition", "result", "loop", "other"):
+        return True
+    return SequenceMatcher(None, old.text, new.text, autojunk=False).ratio() >= _MIN_SIMILARITY
+
+
+def _parse(part: Part, is_head: bool) -> _Statement:
+    text = " ".join((part.written or _read_text(part)).split())
+    if is_head:
+        return _Statement(part, text, "head", "", text)
+    if text in ("else", "do", "try") or _NAMING.search(text):
+        return _Statement(part, text, "nothing", "", text)
+    for kind, pattern in (("condition", _CONDITION), ("loop", _LOOP), ("result", _RESULT)):
+        if pattern.match(text):
+            return _Statement(part, text, kind, "", text)
+    end = _find_equals_sign(text)
+    target = _TARGET.search(text[:end].rstrip("".join(_OPERATORS) + " ")) if end > 0 else None
+    if target is not None:
+        return _Statement(part, text, "assignment", target[0], text[end + 1 :].strip())
+    call = _CALL.fullmatch(text)
+    if call is not None:
+        return _Statement(part, text, "call", call["function"], text)
+    return _Statement(part, text, "other", "", text)
+
+
+def _read_arguments(head: str) -> str:
+    """Return the arguments of a function with parentheses."""
+    start = head.find("(", head.find(")") + 1 if "operator()" in head.replace(" ", "") else 0)
+    depth = 0
+    for index in range(max(start, 0), len(head)):
+        depth += (head[index] in "([{") - (head[index] in ")]}")
+        if depth == 0:
+            return head[start : index + 1]
+    return head
+
+
+def _find_equals_sign(text: str) -> int:
+    """Return the index of the equals sign of an assignment, or -1."""
+    depth = 0
+    for index, character in enumerate(text):
+        depth += (character in "([{") - (character in ")]}")
+        is_comparison = text[index + 1 : index + 2] == "=" or text[index - 1 : index] in ("=", "!")
+        if character == "=" and depth == 0 and index and not is_comparison:
+            return index
+    return -1
+
+
+def _select(differences: Sequence[_Difference]) -> list[_Difference]:
+    """Return the differences that a line shows: all if there are few, else those that tell most."""
+    scores = [_score(difference) for difference in differences]
+    if len(differences) <= _MAX_STATEMENTS and all(scores):
+        return list(differences)
+    best = sorted(range(len(scores)), key=lambda index: -scores[index])[:_MAX_STATEMENTS]
+    return [differences[index] for index in sorted(best) if scores[index] >= _MIN_SCORE]
+
+
+def _score(difference: _Difference) -> int:
+    """Return how much a difference tells about what the function does; 0 for nothing."""
+    statement = difference.statement
+    is_pair = difference.old is not None and difference.new is not None
+    values = [item.value for item in (difference.old, difference.new) if item is not None]
+    has_constant = any(_CONSTANT.search(value) for value in values)
+    if statement.kind == "head":
+        return 4 if is_pair else 0
+    if statement.kind == "condition":
+        return 4 if is_pair or has_constant else 3
+    if statement.kind == "result":
+        return 4 if is_pair else 3 if _CONSTANT_RESULT.fullmatch(statement.text) else 2 if " " in statement.text else 1
+    if statement.kind == "assignment":
+        return _score_assignment(statement.key, values, is_pair=is_pair, has_constant=has_constant)
+    if statement.kind == "call":
+        return 3 if _SENDING.search(statement.text) else 2 if has_constant else 1
+    if statement.kind == "loop":
+        return 2 if is_pair else 1
+    return 2 if is_pair and has_constant else 1 if is_pair else 0
+
+
+def _score_assignment(target: str, values: Sequence[str], *, is_pair: bool, has_constant: bool) -> int:
+    is_field = _FIELD.search(_OWNER.sub("", target)) is not None
+    is_member = _MEMBER.match(target) is not None
+    if is_pair:
+        return 4 if is_field or any(_FORMULA.search(value) for value in values) else 2
+    if is_field:
+        return 3
+    return 2 if has_constant else 1 if is_member else 0
+
+
+def _join(shown: Sequence[_Difference], hidden: int) -> Phrase:
+    texts = [_describe(difference) for difference in shown]
+    if hidden:
+        texts.append(phrase("and {count} more", count=hidden))
+    return joined(texts, "; ")
+
+
+def _describe(difference: _Difference) -> Phrase:
+    """Return the text of a difference."""
+    old, new = difference.old, difference.new
+    if old is not None and new is not None:
+        texts = old.text, new.text
+        if new.kind == "head":
+            arguments = [_read_arguments(text) for text in texts]
+            has_decorator = any(text.startswith("@") for text in texts)
+            if arguments[0] != arguments[1] and not has_decorator:
+                excerpts = differing_excerpts(arguments[0], arguments[1], _MAX_HEAD_CHARACTERS)
+                return phrase("arguments {old} -> {new}", old=excerpts[0], new=excerpts[1])
+        excerpts = differing_excerpts(*texts, _MAX_CHARACTERS)
+        return phrase("`{old}` -> `{new}`", old=excerpts[0], new=excerpts[1])
+    text = difference.statement.text
+    if difference.body is not None:
+        text = f"{text}: {difference.body.text}"
+    items = f"`{shorten(text, _MAX_CHARACTERS)}`"
+    return phrase("{items} removed", items=items) if new is None else phrase("{items} added", items=items)
