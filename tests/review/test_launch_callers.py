@@ -105,7 +105,7 @@ def test_removed_remappings_and_added_parameters_of_a_node_are_one_change_each(r
     assert review_changes_with_reasons(new, old=old) == {
         "node 'arm/hand': parameters added: x 1, y 2, z 3": None,
         "node 'arm/hand': remappings removed: a -> arm/a, b -> arm/b, c -> arm/c": (
-            "if the node publishes or serves 'arm/a, arm/b, arm/c', programs that use it do not find it"
+            "if the node publishes or serves 'arm/a', 'arm/b', 'arm/c', programs that use the names do not find them"
         ),
     }
 
