@@ -210,6 +210,10 @@ async def connect_editor(
     client.exit(None)
     await client.stop()
     if program is not None:
+        writer = client.protocol.writer
+        assert isinstance(writer, asyncio.StreamWriter)
+        writer.close()
+        await writer.wait_closed()
         assert program.wait(TIMEOUT_S) == 0
 
 
