@@ -8,8 +8,9 @@ from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
-from linkwright.diagnostics import Phrase, Span, joined, joined_first, phrase
+from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.review.excerpts import shorten_middle
+from linkwright.review.sources.added_texts import TextsChange
 from linkwright.review.sources.cpp_statements import read_cpp_statements
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.python_statements import read_python_statements
@@ -36,23 +37,9 @@ class _Command(NamedTuple):
     token: Token
 
 
-class CommandChange(NamedTuple):
-    """The commands that only one version starts.
-
-    Attributes:
-        sentence: the commands.
-        span: the location of the first one.
-        is_old: whether the location is in the old version.
-    """
-
-    sentence: Phrase
-    span: Span
-    is_old: bool
-
-
 def find_command_changes(
     paths: tuple[Path, Path], has_text: tuple[Callable[[str], bool], Callable[[str], bool]], reported: Sequence[str]
-) -> Iterator[CommandChange]:
+) -> Iterator[TextsChange]:
     """Yield the commands with a literal text that only one version of a source starts.
 
     Args:
@@ -75,7 +62,7 @@ def find_command_changes(
     source = try_read_source(paths[1] if added else paths[0]) if parts else None
     if source is not None:
         token = (added or removed)[0].token
-        yield CommandChange(joined(parts, "; "), source.span(token.start, token.end), is_old=not added)
+        yield TextsChange(joined(parts, "; "), source.span(token.start, token.end), is_old=not added)
 
 
 def _join(commands: Sequence[_Command]) -> Phrase:

@@ -218,8 +218,7 @@ def _compare_commands(
     paths = old.version.file(file.old_path or ""), new.version.file(file.new_path or "")
     sentences = [str(change.sentence) for change in reported]
     for change in find_command_changes(paths, (old.has_text, new.has_text), sentences):
-        path = (file.old_path if change.is_old else file.new_path) or file.path
-        yield Change(change.sentence, location=Location(path, change.span.line, change.span.column, change.is_old))
+        yield _make_change(change, file)
 
 
 def _compare_constants(
