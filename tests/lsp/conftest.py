@@ -197,7 +197,8 @@ async def connect_editor(
     program = None
     if options or not forked.IS_POSSIBLE:
         await client.start_io(sys.executable, *coverage_options(), "-m", "linkwright", "lsp", *options)
-        editor.server_id = client._server.pid  # type: ignore[union-attr]
+        assert client._server is not None
+        editor.server_id = client._server.pid
     else:
         program = await _start_forked(client)
         editor.server_id = program.pid

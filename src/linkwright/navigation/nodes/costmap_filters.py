@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import LATCHED_QOS, Node, Publisher
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.costmaps.filters import KeepoutFilter, SpeedFilter, SpeedScale
@@ -105,7 +104,7 @@ def make_filters(context: LayerContext, names: list[str]) -> None:
     factories = {"KeepoutFilter": _make_keepout_filter, "SpeedFilter": _make_speed_filter}
     node = context.node
     for name in names:
-        kind = _require(context, f"{name}.plugin")
+        kind = context.required_value(f"{name}.plugin")
         factory = factories.get(kind.removeprefix("nav2_costmap_2d::"))
         if factory is None:
             declare_unused(node, name)
@@ -114,20 +113,12 @@ def make_filters(context: LayerContext, names: list[str]) -> None:
         node.get_logger().info(f'Using costmap filter "{name}"')
         enabled = context.value(f"{name}.enabled", True)
         context.value(f"{name}.transform_tolerance", 0.1)
-        _require(context, f"{name}.filter_info_topic")
+        context.required_value(f"{name}.filter_info_topic")
         layer, topics = factory(context, name)
         declare_unused(node, name)
         layer.enabled, topics.layer = enabled, layer
         context.topics.append(topics)
         context.filters[name] = layer
-
-
-def _require(context: LayerContext, parameter: str) -> str:
-    value = str(context.value(parameter, ""))
-    if not value:
-        message = phrase("parameter '{name}' of '{node}' is not set", name=parameter, node=context.node.get_name())
-        raise LinkwrightError(Diagnostic("NODE431", message))
-    return value
 
 
 def _make_keepout_filter(context: LayerContext, name: str) -> tuple[Layer, FilterTopics]:

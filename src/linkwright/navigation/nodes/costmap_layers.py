@@ -81,6 +81,18 @@ class LayerContext:
         """Return the value of a parameter, declaring it first if necessary."""
         return get_or_declare(self.node, name, default)
 
+    def required_value(self, name: str, default: str = "") -> str:
+        """Return the text of a parameter that must not be empty, declaring it first if necessary.
+
+        Raises:
+            LinkwrightError: NODE431, the parameter is not set.
+        """
+        value = str(self.value(name, default))
+        if not value:
+            message = phrase("parameter '{name}' of '{node}' is not set", name=name, node=self.node.get_name())
+            raise LinkwrightError(Diagnostic("NODE431", message))
+        return value
+
 
 def make_layers(context: LayerContext, names: list[str]) -> None:
     """Create the layers named by the parameter ``plugins``, and add them to `context`.
@@ -100,10 +112,7 @@ def make_layers(context: LayerContext, names: list[str]) -> None:
     }
     node = context.node
     for name in names:
-        kind = context.value(f"{name}.plugin", DEFAULT_LAYERS.get(name, ""))
-        if not kind:
-            message = phrase("parameter '{name}' of '{node}' is not set", name=f"{name}.plugin", node=node.get_name())
-            raise LinkwrightError(Diagnostic("NODE431", message))
+        kind = context.required_value(f"{name}.plugin", DEFAULT_LAYERS.get(name, ""))
         factory = factories.get(kind.removeprefix("nav2_costmap_2d::"))
         if factory is None:
             declare_unused(node, name)
