@@ -17,33 +17,29 @@ _PYTHON_COMMENT = re.compile(r"#[^\n]*")
 _TOPICS = frozenset({"tf", "tf_static"})
 
 
-def find_lost_sender(old: ChangedSources, new: ChangedSources, file: ChangedFile) -> Span | None:
-    """Return the place where the old source publishes a transform, or None if the new one still may publish it.
+def find_one_sided_sender(
+    own: ChangedSources, other: ChangedSources, file: ChangedFile, *, is_old: bool
+) -> Span | None:
+    """Return the place where one version of a source publishes a transform, or None if the other version may do so too.
 
-    A source that newly publishes transforms may have got the code, and so may one that publishes the topic itself.
+    A different source that publishes transforms only in the other version may have the code there, and so may one that
+    publishes the topic itself.
+
+    Args:
+        own: the changed sources of the version.
+        other: the changed sources of the other version.
+        file: the source.
+        is_old: whether the version is the old one.
     """
     if file.old_path is None or file.new_path is None:
         return None
-    span = _find_sender(old.version, file.old_path)
-    if span is None or _sends(new, file.new_path):
+    path, other_path = (file.old_path, file.new_path) if is_old else (file.new_path, file.old_path)
+    span = _find_sender(own.version, path)
+    if span is None or _sends(other, other_path):
         return None
-    others = (path for path in new.paths if path != file.new_path and _sends(new, path))
-    has_moved = any(_find_sender(old.version, path) is None for path in others)
+    senders = (sender for sender in other.paths if sender != other_path and _sends(other, sender))
+    has_moved = any(_find_sender(own.version, sender) is None for sender in senders)
     return None if has_moved else span
-
-
-def find_new_sender(old: ChangedSources, new: ChangedSources, file: ChangedFile) -> Span | None:
-    """Return the place where the new source publishes a transform, or None if the old one may have done so.
-
-    A source that no longer publishes transforms may have had the code.
-    """
-    if file.old_path is None or file.new_path is None:
-        return None
-    span = _find_sender(new.version, file.new_path)
-    if span is None or _sends(old, file.old_path):
-        return None
-    others = (path for path in old.paths if path != file.old_path and _sends(old, path))
-    return None if any(_find_sender(new.version, path) is None for path in others) else span
 
 
 def _sends(side: ChangedSources, path: str) -> bool:

@@ -28,7 +28,7 @@ from linkwright.review.sources.swapped_arguments import (
     find_swapped_definitions,
     is_declared_without_order,
 )
-from linkwright.review.sources.transform_senders import find_lost_sender, find_new_sender
+from linkwright.review.sources.transform_senders import find_one_sided_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.undefined_uses import find_undefined_uses
 from linkwright.review.sources.unused_parameters import find_unused_parameters
@@ -178,11 +178,11 @@ class WholeSourcePair:
         """Yield a line if the source no longer publishes transforms or newly does, unless a line names the frames."""
         frames = (NameKind.FRAME.title, NameKind.FRAME.plural)
         if not any(change.core.arguments.get("kind") in frames for change in reported):
-            span = find_lost_sender(self.old, self.new, self.file)
+            span = find_one_sided_sender(self.old, self.new, self.file, is_old=True)
             if span is not None:
                 reason = phrase("programs that need these transforms do not find them")
                 yield self.make_change(phrase("no longer publishes transforms"), span, self.old, reason)
-            span = find_new_sender(self.old, self.new, self.file)
+            span = find_one_sided_sender(self.new, self.old, self.file, is_old=False)
             if span is not None:
                 yield self.make_change(phrase("publishes transforms now"), span, self.new, None)
 
