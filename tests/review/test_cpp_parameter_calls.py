@@ -159,8 +159,8 @@ RANGE = """Arm::Arm() : Node("arm") {{
     ("old", "new", "expected"),
     [
         ("", "range.set__from_value(-0.5).set__to_value(2.0).set__step(0.1); slider.floating_point_range = {range};",
-         {"parameter 'gain': minimum - -> -0.5": "values below -0.5 are rejected",
-          "parameter 'gain': maximum - -> 2.0": "values above 2.0 are rejected"}),
+         {"parameter 'gain': minimum none -> -0.5": "values below -0.5 are rejected",
+          "parameter 'gain': maximum none -> 2.0": "values above 2.0 are rejected"}),
         ("range.to_value = 2.0; slider.floating_point_range.push_back(range);",
          "range.to_value = 3.0; slider.floating_point_range.push_back(range);",
          {"parameter 'gain': maximum 2.0 -> 3.0": None}),

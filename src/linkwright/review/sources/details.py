@@ -115,6 +115,9 @@ def compare_details(
         if detail is Detail.RETURNED and after != NOTHING:
             continue  # another value of any type, which callers may expect or not
         missing = NO if detail in (Detail.LATCH, Detail.REQUIRED, Detail.CONSTANT) else "-"
+        missing = (
+            phrase("none") if detail in (Detail.MINIMUM, Detail.MAXIMUM) else missing
+        )  # not the sign of a negative limit
         text = phrase(
             "{kind} '{name}': {property} {old} -> {new}",
             kind=new.kind.title,
