@@ -12,41 +12,30 @@ from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.review.excerpts import differing_excerpts, shorten
 from linkwright.review.sources.code import Code, Part
 from linkwright.review.sources.code_changes import CodeChange, ReportedLines, format_function
+from linkwright.review.sources.function_statements import (
+    FunctionStatement,
+    StatementKind,
+    list_words,
+    parse_part,
+    read_text,
+)
 from linkwright.review.sources.names import SourceNames
 
-_INDENT = re.compile(r"[\d ]*")
-"""The marks of the blocks before a statement in Python."""
-_CONDITION = re.compile(r"(?:if|elif|while|switch|case)\b(?! *constexpr)")
-_LOOP = re.compile(r"(?:async )?(?:for|with|try|except|catch|match)\b")
-_RESULT = re.compile(r"(?:return|raise|throw|yield|continue|break|co_return)\b")
 _CONSTANT_RESULT = re.compile(
     r"return (?:None|[Tt]rue|[Ff]alse|nullptr|-?[\d.]+|'[^']*'|\"[^\"]*\"|(?:\w+(?:\.|::))*[A-Z][A-Z0-9_]+)"
 )
-_CALL = re.compile(r"(?:await )?(?P<function>[\w.:\[\]'\"]+(?:(?:->|\(\)[.]|\(\)->)[\w.:\[\]'\"]+)*)\(.*\)", re.DOTALL)
 _SENDING = re.compile(
     r"(?:\.|->)"
     r"(?:publish|sendTransform|send_transform|send_goal|send_goal_async|async_send_goal|call|call_async|"
     r"async_send_request|wait_for_service|wait_for_server|wait_for_action_server)\("
 )
 """A call that sends something, or waits for the one who gets it."""
-_NAMING = re.compile(
-    r"\b(?:create_\w+|declare_\w+|get_param\w*|getParam|param|advertise\w*|subscribe|serviceClient|Publisher|"
-    r"Subscriber|Service\w*|Action\w+|\w*[Tt]imer)(?:<[^()]*>)?\s*\("
-)
-"""A call that gives a name to a topic, service or parameter, or makes a timer. Other lines report it."""
-_TARGET = re.compile(r"[\w.\[\]'\":]+(?:(?:->|\(\)[.]|\(\)->)[\w.\[\]'\":]+)*\Z")
-"""The variable, member or field at the end of the left side of an assignment."""
-_OPERATORS = frozenset({"+", "-", "*", "/", "%", "&", "|", "^", "<", ">", "//", "**", "<<", ">>", ":"})
-"""The characters before the equals sign of an assignment that also computes."""
 _FORMULA = re.compile(r"[\w)\]] ?[-+*/%<>] ?[\w(]|[<>=!]=|&&|\|\||\?|\b(?:and|or|not|if)\b|-?\b\d")
 _CONSTANT = re.compile(r"(?<![\w'\"])(?:(?:\w+(?:\.|::))*[A-Z][A-Z0-9_]{2,}\b|-?\d)")
 _OWNER = re.compile(r"(?:self\.|this->)")
 _MEMBER = re.compile(r"(?:self\.|this->)\w|\w+_\Z|m_\w")
 _FIELD = re.compile(r"[.\[]|->")
-_WORD = re.compile(r"\"(?:\\.|[^\"\\])*\"|'(?:\\.|[^'\\])*'|\w+|\S")
 _CONST = re.compile(r"\bconst\b ?")
-_MIN_SIMILARITY = 0.5
-"""The minimum similarity of a condition that took the place of another one."""
 _MAX_STATEMENTS = 3
 """The maximum number of statements of a function that a line shows."""
 _MAX_FUNCTIONS = 8
@@ -58,24 +47,6 @@ _MAX_HEAD_CHARACTERS = 40
 _MAX_COMPARED_PAIRS = 4_000_000
 
 
-class _Statement(NamedTuple):
-    """A statement of a function.
-
-    Attributes:
-        part: the statement.
-        text: its code in one line.
-        kind: what it does, such as ``condition``.
-        key: the assigned variable or the called function.
-        value: the assigned value, or the whole statement.
-    """
-
-    part: Part
-    text: str
-    kind: str
-    key: str
-    value: str
-
-
 class _Difference(NamedTuple):
     """A statement that differs, or that only one version has.
 
@@ -85,12 +56,18 @@ class _Difference(NamedTuple):
         body: the first statement of a condition that only one version has.
     """
 
-    old: _Statement | None
-    new: _Statement | None
-    body: _Statement | None = None
+    old: FunctionStatement | None
+    new: FunctionStatement | None
+    body: FunctionStatement | None = None
 
     @property
-    def statement(self) -> _Statement:
+    def texts(self) -> tuple[str | None, ...]:
+        """The codes of the statements."""
+        return tuple(None if item is None else item.text for item in (self.old, self.new, self.body))
+
+    @property
+    def statement(self) -> FunctionStatement:
+        """The new statement, or the old one that is gone."""
         statement = self.new or self.old
         assert statement is not None
         return statement
@@ -114,9 +91,7 @@ def find_shown_statements(old: Code, new: Code, lines: ReportedLines, names: Sou
         before = old.functions.get(name)
         if before is None or not lines.has_unreported_change(before, parts, name):
             continue
-        differences = list(
-            {str(_describe(item)): item for item in _compare(name, before, parts, lines, sides)}.values()
-        )
+        differences = list({item.texts: item for item in _compare(name, before, parts, lines, sides)}.values())
         shown = _select(differences)
         if shown:
             found.append((max(map(_score, shown)), name, shown, len(differences) - len(shown)))
@@ -142,32 +117,34 @@ class _Sides:
 
     def __init__(self, old: Code, new: Code) -> None:
         parts = [[part for items in code.functions.values() for part in items] for code in (old, new)]
-        counts = [Counter(_read_text(part) for part in items) for items in parts]
+        counts = [Counter(read_text(part) for part in items) for items in parts]
         self._lost = counts[0] - counts[1], counts[1] - counts[0]
         outside = ([part for items in code.outside.values() for part in items] for code in (old, new))
         self._words = [
-            {word for part in (*own, *others) for word in _WORD.findall(part.text)}
+            {word for part in (*own, *others) for word in list_words(part.text)}
             for own, others in zip(parts, outside, strict=True)
         ]
 
     def _has_moved(self, part: Part, *, is_old: bool) -> bool:
         """Return whether a statement of one version is at another place in the other version."""
-        return self._lost[0 if is_old else 1][_read_text(part)] < 1
+        return self._lost[0 if is_old else 1][read_text(part)] < 1
 
     def is_left_out(self, difference: _Difference, name: str, lines: ReportedLines) -> bool:
         """Return whether a line reports a difference in a function, or only places or names differ."""
         if difference.old is not None and difference.new is not None:
             parts = difference.old.part, difference.new.part
-            is_named_otherwise = difference.new.kind != "head" and self._differ_in_names(difference.old, difference.new)
+            is_named_otherwise = difference.new.kind is not StatementKind.HEAD and self._differ_in_names(
+                difference.old, difference.new
+            )
             return is_named_otherwise or lines.reports_pair(name, *parts)
         is_old = difference.new is None
         return lines.reports(difference.statement.part, is_old=is_old) or self._has_moved(
             difference.statement.part, is_old=is_old
         )
 
-    def _differ_in_names(self, old: _Statement, new: _Statement) -> bool:
+    def _differ_in_names(self, old: FunctionStatement, new: FunctionStatement) -> bool:
         """Return whether two statements only differ in names of variables that the other version does not have."""
-        words = [_WORD.findall(_CONST.sub("", statement.text)) for statement in (old, new)]
+        words = [list_words(_CONST.sub("", statement.text)) for statement in (old, new)]
         if len(words[0]) != len(words[1]):
             return False
         return all(
@@ -190,14 +167,6 @@ def _is_variable(words: Sequence[str], index: int) -> bool:
     return is_own and words[index + 1 : index + 2] != ["("]
 
 
-def _read_text(part: Part) -> str:
-    """Return a statement without the marks of its blocks; of a compound statement in Python, its head."""
-    if part.written:
-        return part.text
-    text = _INDENT.sub("", part.text, count=1)
-    return text.removesuffix("\n    pass").removesuffix(":")
-
-
 def _compare(
     name: str,
     old: Sequence[Part],
@@ -215,7 +184,7 @@ def _compare(
         sides: the versions of the source.
     """
     sorted_parts = [sorted(parts, key=lambda part: part.start) for parts in (old, new)]
-    texts = [[_read_text(part) for part in parts] for parts in sorted_parts]
+    texts = [[read_text(part) for part in parts] for parts in sorted_parts]
     if len(old) * len(new) > _MAX_COMPARED_PAIRS:
         return
     for tag, old_start, old_end, new_start, new_end in SequenceMatcher(
@@ -223,22 +192,22 @@ def _compare(
     ).get_opcodes():
         if tag == "equal":
             continue
-        before = [_parse(part, part is old[0]) for part in sorted_parts[0][old_start:old_end]]
-        after = [_parse(part, part is new[0]) for part in sorted_parts[1][new_start:new_end]]
+        before = [parse_part(part, is_head=part is old[0]) for part in sorted_parts[0][old_start:old_end]]
+        after = [parse_part(part, is_head=part is new[0]) for part in sorted_parts[1][new_start:new_end]]
         for difference in _with_bodies([*_pair(before, after)]):
-            if difference.statement.kind == "nothing" or sides.is_left_out(difference, name, lines):
+            if difference.statement.kind is StatementKind.REPORTED or sides.is_left_out(difference, name, lines):
                 continue
             yield difference
 
 
-def _pair(old: Sequence[_Statement], new: Sequence[_Statement]) -> Iterator[_Difference]:
+def _pair(old: Sequence[FunctionStatement], new: Sequence[FunctionStatement]) -> Iterator[_Difference]:
     """Yield differing statements in the order of the source: as pairs if one took the place of the other."""
     if len(old) == len(new) == 1 and old[0].kind == new[0].kind:
         yield _Difference(old[0], new[0])
         return
     start = 0
     for statement in old:
-        index = next((index for index in range(start, len(new)) if _has_replaced(statement, new[index])), None)
+        index = next((index for index in range(start, len(new)) if new[index].replaces(statement)), None)
         if index is None:
             yield _Difference(statement, None)
             continue
@@ -256,43 +225,15 @@ def _with_bodies(differences: Sequence[_Difference]) -> Iterator[_Difference]:
         difference = differences[index]
         index += 1
         following = differences[index] if index < len(differences) else difference
-        is_condition = difference.statement.kind == "condition" and None in (difference.old, difference.new)
+        is_condition = difference.statement.kind is StatementKind.CONDITION and None in (difference.old, difference.new)
         is_same_side = (difference.old is None, difference.new is None) == (
             following.old is None,
             following.new is None,
         )
-        if is_condition and is_same_side and following.statement.kind == "result":
+        if is_condition and is_same_side and following.statement.kind is StatementKind.RESULT:
             difference = difference._replace(body=following.statement)
             index += 1
         yield difference
-
-
-def _has_replaced(old: _Statement, new: _Statement) -> bool:
-    """Return whether a statement may be the new version of another one."""
-    if old.kind != new.kind or old.kind == "nothing" or old.key != new.key:
-        return False
-    if old.kind not in ("condition", "result", "loop", "other"):
-        return True
-    return SequenceMatcher(None, old.text, new.text, autojunk=False).ratio() >= _MIN_SIMILARITY
-
-
-def _parse(part: Part, is_head: bool) -> _Statement:
-    text = " ".join((part.written or _read_text(part)).split())
-    if is_head:
-        return _Statement(part, text, "head", "", text)
-    if text in ("else", "do", "try") or _NAMING.search(text):
-        return _Statement(part, text, "nothing", "", text)
-    for kind, pattern in (("condition", _CONDITION), ("loop", _LOOP), ("result", _RESULT)):
-        if pattern.match(text):
-            return _Statement(part, text, kind, "", text)
-    end = _find_equals_sign(text)
-    target = _TARGET.search(text[:end].rstrip("".join(_OPERATORS) + " ")) if end > 0 else None
-    if target is not None:
-        return _Statement(part, text, "assignment", target[0], text[end + 1 :].strip())
-    call = _CALL.fullmatch(text)
-    if call is not None:
-        return _Statement(part, text, "call", call["function"], text)
-    return _Statement(part, text, "other", "", text)
 
 
 def _read_arguments(head: str) -> str:
@@ -304,17 +245,6 @@ def _read_arguments(head: str) -> str:
         if depth == 0:
             return head[start : index + 1]
     return head
-
-
-def _find_equals_sign(text: str) -> int:
-    """Return the index of the equals sign of an assignment, or -1."""
-    depth = 0
-    for index, character in enumerate(text):
-        depth += (character in "([{") - (character in ")]}")
-        is_comparison = text[index + 1 : index + 2] == "=" or text[index - 1 : index] in ("=", "!")
-        if character == "=" and depth == 0 and index and not is_comparison:
-            return index
-    return -1
 
 
 def _select(differences: Sequence[_Difference]) -> list[_Difference]:
@@ -332,17 +262,17 @@ def _score(difference: _Difference) -> int:
     is_pair = difference.old is not None and difference.new is not None
     values = [item.value for item in (difference.old, difference.new) if item is not None]
     has_constant = any(_CONSTANT.search(value) for value in values)
-    if statement.kind == "head":
+    if statement.kind is StatementKind.HEAD:
         return 4 if is_pair else 0
-    if statement.kind == "condition":
+    if statement.kind is StatementKind.CONDITION:
         return 4 if is_pair or has_constant else 3
-    if statement.kind == "result":
+    if statement.kind is StatementKind.RESULT:
         return 4 if is_pair else 3 if _CONSTANT_RESULT.fullmatch(statement.text) else 2 if " " in statement.text else 1
-    if statement.kind == "assignment":
+    if statement.kind is StatementKind.ASSIGNMENT:
         return _score_assignment(statement.key, values, is_pair=is_pair, has_constant=has_constant)
-    if statement.kind == "call":
+    if statement.kind is StatementKind.CALL:
         return 3 if _SENDING.search(statement.text) else 2 if has_constant else 1
-    if statement.kind == "loop":
+    if statement.kind is StatementKind.LOOP:
         return 2 if is_pair else 1
     return 2 if is_pair and has_constant else 1 if is_pair else 0
 
@@ -369,7 +299,7 @@ def _describe(difference: _Difference) -> Phrase:
     old, new = difference.old, difference.new
     if old is not None and new is not None:
         texts = old.text, new.text
-        if new.kind == "head":
+        if new.kind is StatementKind.HEAD:
             arguments = [_read_arguments(text) for text in texts]
             has_decorator = any(text.startswith("@") for text in texts)
             if arguments[0] != arguments[1] and not has_decorator:
