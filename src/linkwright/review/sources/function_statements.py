@@ -31,7 +31,7 @@ _MIN_SIMILARITY = 0.5
 
 
 class StatementKind(Enum):
-    """What a statement does."""
+    """The kind of a statement, by its purpose."""
 
     HEAD = auto()
     """The name and the parameters of the function."""
@@ -62,7 +62,7 @@ class FunctionStatement(NamedTuple):
     Attributes:
         part: the statement.
         text: its code in one line.
-        kind: what it does.
+        kind: its kind.
         key: the assigned variable, the called function, or the first word of a condition, loop or result.
         value: the assigned value, or the whole statement.
         words: its names and literals, with their counts.
