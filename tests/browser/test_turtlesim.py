@@ -72,7 +72,7 @@ def test_turtle_that_the_page_drives_draws_a_line_that_stays(
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_each_node_has_its_world(start: Start, open_page: Callable[..., Page], theme: str) -> None:
     page = open_page(start("launch", "turtlesim", "multisim.launch.py"), wait=False, theme=theme)
-    until(page, "lw.panels.turtlesim.every(({ turtles }) => turtles?.length === 1)")
+    until(page, "lw.panels.turtlesim.filter(({ turtles }) => turtles?.length === 1).length === 2")
     names = [world["name"] for world in state(page, "panels.turtlesim")]
     assert names == ["/turtlesim1/turtlesim", "/turtlesim2/turtlesim"]
     boxes = [world.bounding_box() for world in page.locator(".turtle-sea").all()]
