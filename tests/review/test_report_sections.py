@@ -86,6 +86,53 @@ def test_sentences_that_differ_in_a_name_are_one_line():
     )
 
 
+def make_removed(kind, names, reason):
+    sentence = phrase("{kind} removed: {names}", kind=kind, names=names)
+    return Change(sentence, Effect.BREAKING, reason, Location("src/a.cpp", 3, 1, is_old=True))
+
+
+@pytest.mark.parametrize(
+    ("new_path", "expected"),
+    [
+        (
+            None,
+            [
+                "! publishers removed: '/map'; nodes removed: 'mapper'; parameters removed: 'rate'",
+                (
+                    "  breaking: programs that use the name '/map' do not find it; "
+                    "a value that is set for 'rate' has no effect; likewise for the others"
+                ),
+            ],
+        ),
+        (
+            "src/a.cpp",
+            [
+                "! publishers removed: '/map'",
+                "  breaking: programs that use the name '/map' do not find it",
+                "! nodes removed: 'mapper'",
+                "  breaking: programs that use the name 'mapper' do not find it",
+                "! parameters removed: 'rate'",
+                "  breaking: a value that is set for 'rate' has no effect",
+            ],
+        ),
+    ],
+)
+def test_what_a_removed_source_offered_is_one_breaking_change(new_path, expected):
+    changes = [
+        make_removed("publishers", "'/map'", phrase("programs that use the name '{name}' do not find it", name="/map")),
+        make_removed("nodes", "'mapper'", phrase("programs that use the name '{name}' do not find it", name="mapper")),
+        make_removed("parameters", "'rate'", phrase("a value that is set for '{name}' has no effect", name="rate")),
+        Change(phrase("timers removed")),
+    ]
+    subject = Subject(SubjectKind.SOURCE, "src/a.cpp", "src/a.cpp", new_path, changes)
+    review = Review("main", "topic", [subject])
+    lines = [line[2:] for line in as_text(review).splitlines() if line.startswith(("  ! ", "    breaking"))]
+    assert lines == expected
+    assert as_text(review).count("\n  - timers removed") == 1
+    summary = "1 breaking change, 2 changes," if new_path is None else "3 breaking changes, 4 changes,"
+    assert summary in as_text(review)
+
+
 def test_two_sentences_that_differ_in_a_name_stay_apart():
     changes = [Change(phrase("argument '{name}' added", name=name)) for name in ("a", "b")]
     text = as_text(Review("main", "topic", [make_subject("a.launch.py", changes)]))

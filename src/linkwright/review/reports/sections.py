@@ -7,7 +7,7 @@ from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from linkwright.diagnostics import Phrase, counted, phrase
+from linkwright.diagnostics import Phrase, counted, joined, phrase
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.merging import merge_reasons
 from linkwright.review.reports.sentences import format_change
@@ -126,7 +126,7 @@ def _make_sections(review: Review) -> Iterator[Section]:
                 repeated[first] += 1
                 continue
             changes.append(change)
-        changes = _merge_names(_merge_locations(changes))
+        changes = _merge_alike(subject, changes)
         changes.sort(key=lambda change: (change.effect is not Effect.BREAKING, change.is_code))
         yield Section(subject, changes, [Repeat(path, count, True) for path, count in repeated.items()])
 
@@ -175,6 +175,31 @@ def _fold_repeats(sections: Iterable[Section]) -> list[Section]:
         else:
             first.alike.append(subject.path)
     return folded
+
+
+def _merge_alike(subject: Subject, changes: Sequence[Change]) -> list[Change]:
+    """Return the changes to a subject, with those that have the same cause in one line."""
+    merged = _merge_names(_merge_locations(changes))
+    is_removed_source = subject.kind is SubjectKind.SOURCE and subject.new_path is None
+    return _merge_removed_names(merged) if is_removed_source else merged
+
+
+def _merge_removed_names(changes: Sequence[Change]) -> list[Change]:
+    """Return the changes to a removed source, with the names of all kinds that it offered in one breaking line."""
+    removed = [change for change in changes if change.effect is Effect.BREAKING and _lists_removed_names(change)]
+    if len(removed) < _MIN_REPEATED:
+        return list(changes)
+    reasons = list(dict.fromkeys(change.reason for change in removed if change.reason is not None))
+    shown = list({reason.template: reason for reason in reversed(reasons)}.values())[::-1]
+    reason = joined(shown, "; ")
+    if len(shown) < len(reasons):
+        reason = phrase("{reason}; likewise for the others", reason=reason)
+    sentence = joined([change.sentence for change in removed], "; ")
+    return [replace(removed[0], sentence=sentence, reason=reason), *(it for it in changes if it not in removed)]
+
+
+def _lists_removed_names(change: Change) -> bool:
+    return change.sentence.template == "{kind} removed: {names}"
 
 
 def _merge_locations(changes: Sequence[Change]) -> list[Change]:
@@ -228,7 +253,7 @@ def merge_breaking_changes(review: Review) -> list[tuple[list[str], Change]]:
     groups: dict[Hashable, tuple[dict[str, None], list[Change]]] = {}
     for subject in sorted(review.subjects, key=lambda subject: _ORDER[subject.kind]):
         breaking = [change for change in subject.changes if change.effect is Effect.BREAKING]
-        for change in _merge_names(_merge_locations(breaking)):
+        for change in _merge_alike(subject, breaking):
             paths, changes = groups.setdefault(_make_breaking_key(change), ({}, []))
             paths[subject.path] = None
             changes.append(change)
