@@ -66,6 +66,25 @@ def test_changed_image_is_a_change_of_the_map(repository, compare, suffix):
     assert result.other_files == []
 
 
+def test_image_in_another_format_has_the_same_cells(repository, compare):
+    pixels = np.tile(np.arange(256, dtype=np.uint8), (20, 1))
+    files = {
+        suffix: encode_pgm(pixels) if suffix == "pgm" else encode_with_pillow(pixels, suffix)
+        for suffix in ("pgm", "png")
+    }
+    repository.commit({"maps/house.yaml": MAP.format(suffix="pgm"), "maps/house.pgm": files["pgm"]})
+    repository.write({"maps/house.yaml": MAP.format(suffix="png"), "maps/house.png": files["png"]})
+    assert sentences(subject(compare(repository), "maps/house.yaml")) == ["image house.pgm -> house.png"]
+
+
+def test_image_that_no_map_names_is_no_map(repository, compare):
+    repository.commit({**map_files("png"), "maps/house.pgm": map_image("pgm")})
+    repository.write({"maps/house.pgm": None})
+    (found,) = compare(repository).subjects
+    assert (found.path, sentences(found)) == ("maps/house.pgm", ["image of a map removed"])
+    assert not breaking(compare(repository))
+
+
 def test_size_of_a_map_is_reported_in_cells_and_meters(repository, compare):
     repository.commit(map_files("pgm"))
     repository.write({"maps/house.pgm": map_image("pgm", rows=60)})

@@ -199,11 +199,10 @@ _RULES = (
     ),
     KindRule(
         SubjectKind.MAP,
-        compare_maps,
+        compare_maps,  # images that no YAML file names
         (".pgm",),
-        phrase("map added"),
-        phrase("map removed"),
-        phrase("launch files and users that name the file do not find it"),
+        phrase("image of a map added"),
+        phrase("image of a map removed"),
     ),
     PARAMETERS,
     KindRule(

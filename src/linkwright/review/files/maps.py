@@ -128,7 +128,7 @@ def compare_maps(pair: FilePair) -> None:
         pair.add(phrase("contents changed, with the same cells"), None)
 
 
-def _compare_cells(pair: FilePair, old: NDArray[np.float64], new: NDArray[np.float64]) -> bool:
+def _compare_cells(pair: FilePair, old: NDArray[np.uint8], new: NDArray[np.uint8]) -> bool:
     """Report how many cells differ and where, and return whether there are any."""
     rows, columns = np.nonzero(old != new)
     if not len(rows):
@@ -145,7 +145,7 @@ def _compare_cells(pair: FilePair, old: NDArray[np.float64], new: NDArray[np.flo
     return True
 
 
-def _try_read_cells(file: Path) -> NDArray[np.float64] | None:
+def _try_read_cells(file: Path) -> NDArray[np.uint8] | None:
     """Return the brightness of the cells; None for an unreadable image.
 
     An example is a Git LFS pointer.
@@ -156,6 +156,6 @@ def _try_read_cells(file: Path) -> NDArray[np.float64] | None:
         return None
 
 
-def _read_cells(file: Path) -> NDArray[np.float64]:
-    """Return the brightness of the cells, shape (rows, columns)."""
-    return read_image(file).shade
+def _read_cells(file: Path) -> NDArray[np.uint8]:
+    """Return the brightness of the cells, 0 to 255, shape (rows, columns), which is the same in all image formats."""
+    return np.rint(255.0 * read_image(file).shade).astype(np.uint8)
