@@ -327,6 +327,18 @@ def test_failure_with_empty_default_requires_argument(check):
     )
 
 
+def test_error_of_a_link_whose_name_has_the_argument_needs_no_value(check):
+    robot = f"""<robot {XACRO} name="r">
+  <xacro:arg name="prefix" default=""/>
+  <link name="$(arg prefix)base_link"><inertial><mass value="{{}}"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+</robot>"""
+    findings = check({"arm/urdf/arm.urdf.xacro": robot.format("1 kg")})
+    assert finding_codes(findings) == [("error", "URDF121")]
+    findings = check({"arm/urdf/arm.urdf.xacro": robot.format("$(arg prefix)")})
+    assert finding_codes(findings) == [("info", "LINT303")]
+
+
 def test_missing_key_in_file_of_runtime_value_is_not_an_error(check):
     launch = LAUNCH.format(kinds="'a'").replace("'name': 'a', 'type': kind", "'limits': kind + ask()")
     files = {

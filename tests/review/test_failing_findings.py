@@ -52,3 +52,22 @@ def test_installed_folder_that_does_not_exist_is_breaking(package, compare, is_a
     text = "installed folders that the repository does not have added: 'meshs'"
     assert list_reasons(result, BUILD) == {text: "the build fails, because 'meshs' does not exist"}
     assert "LW824" not in finding_codes(result.new_findings)
+
+
+@pytest.mark.parametrize("was_refused", [False, True])
+def test_description_that_urdfdom_refuses_is_one_breaking_change(package, compare, was_refused):
+    part = '<link name="lamp"><inertial><mass value="{}"/><inertia ixx="{}" iyy="1" izz="1"/></inertial></link></robot>'
+    joint = '<joint name="lamp_joint" type="fixed"><parent link="base_link"/><child link="lamp"/></joint>'
+    old, new = part.format("1", "1 m" if was_refused else "1"), part.format("1 kg", "1.0-6")
+    package.commit({ROBOT: ARM.replace("</robot>", joint + old)})
+    package.write({ROBOT: ARM.replace("</robot>", joint + new)})
+    result = compare(package)
+    if was_refused:
+        assert not result.subjects
+        return
+    assert list_reasons(result, ROBOT) == {
+        "'value' in <mass> of link 'lamp' is not a number: '1 kg'": (
+            "robot_state_publisher does not start with the description"
+        )
+    }
+    assert finding_codes(result.new_findings) == ["URDF121"]

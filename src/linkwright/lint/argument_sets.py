@@ -37,6 +37,8 @@ _MAX_TRIED_VALUES = 12
 """The maximum number of values to try, among those that a description compares its arguments with."""
 _ANY_VALUE = "value"
 """A substitute for an unknown value, to see which errors depend on it."""
+_OWNER = "owner"
+"""The argument of a message that names the link or joint which has the error."""
 _MAX_SHOWN_ARGUMENTS = 4
 """The maximum number of arguments that a message names."""
 _NO_VALUES = ArgumentSet({})
@@ -63,7 +65,9 @@ class _Run:
     @property
     def error_messages(self) -> frozenset[tuple[Key, str]]:
         """The key and the message of each error."""
-        keyed_messages = ((_finding_key(diagnostic), str(diagnostic.message)) for diagnostic in self.result.diagnostics)
+        keyed_messages = (
+            (_finding_key(diagnostic), _strip_owner(diagnostic)) for diagnostic in self.result.diagnostics
+        )
         return frozenset(pair for pair in keyed_messages if pair[0] in self.errors)
 
     def is_fine(self, common: frozenset[Key]) -> bool:
@@ -340,6 +344,12 @@ def _uses_arguments(result: Checked) -> bool:
 
 def _finding_key(diagnostic: Diagnostic) -> Key:
     return diagnostic.code, diagnostic.span, "" if diagnostic.span else diagnostic.message
+
+
+def _strip_owner(diagnostic: Diagnostic) -> str:
+    """Return the message of a finding without the link or joint that has it, whose name may have a prefix."""
+    message = as_phrase(diagnostic.message)
+    return str(message.with_arguments(**{_OWNER: ""}) if _OWNER in message.arguments else message)
 
 
 def _number_keys(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnostic]]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Diagnostic, Phrase, phrase
+from linkwright.diagnostics import Diagnostic, Phrase, Severity, phrase
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.kinds import find_rule
 from linkwright.review.versions import Versions
@@ -15,23 +15,37 @@ _UNREADABLE_CODE = "XML101"
 """The finding about a description that includes a file which does not exist."""
 _UNBUILDABLE_CODES = frozenset({"LW824", "LW825"})
 """The findings about build files that install a file which does not exist."""
+_READER_PREFIX = "URDF"
+"""The start of the codes of findings of the URDF reader, whose errors urdfdom refuses as well."""
 
 
 def mark_failures(
-    versions: Versions, subjects: Sequence[Subject], findings: Sequence[Diagnostic], fixed: Sequence[Diagnostic]
+    versions: Versions,
+    subjects: Sequence[Subject],
+    findings: Sequence[Diagnostic],
+    fixed: Sequence[Diagnostic],
+    old_findings: Sequence[Diagnostic],
 ) -> tuple[list[Subject], list[Diagnostic]]:
     """Return the subjects with breaking changes for findings that break a file, and the other findings.
 
     A line that already names the missing file becomes breaking. A finding of a file whose old version had one of the
-    same kind is left out.
+    same kind is left out, and so are errors of descriptions if the package had any. Only the first error of a
+    description becomes breaking.
 
     Args:
         versions: both versions.
         subjects: the compared files.
         findings: the new findings.
         fixed: the findings that only the old version has.
+        old_findings: all findings of the old version.
     """
     broken_before = {(finding.code, finding.span.file) for finding in fixed if finding.span is not None}
+    refused_before = {
+        versions.old.package_of(finding.span.file)
+        for finding in old_findings
+        if finding.span is not None and _is_refused(finding)
+    }
+    refused: set[str] = set()
     old_paths = {file.new_path: file.old_path for file in versions.changed_files if file.new_path}
     result = {subject.path: subject for subject in subjects}
     others = []
@@ -39,6 +53,9 @@ def mark_failures(
         path = "" if finding.span is None else finding.span.file
         reason, old_path = _find_reason(finding), old_paths.get(path, path)
         is_first = not {(finding.code, path), (finding.code, old_path)} & broken_before
+        if _is_refused(finding):
+            is_first = is_first and path not in refused and versions.old.package_of(path) not in refused_before
+            refused.add(path)
         if (
             finding.span is None
             or reason is None
@@ -58,10 +75,17 @@ def mark_failures(
     return list(result.values()), others
 
 
+def _is_refused(finding: Diagnostic) -> bool:
+    """Return whether a finding is an error for which urdfdom refuses a description."""
+    return finding.code.startswith(_READER_PREFIX) and finding.severity is Severity.ERROR
+
+
 def _find_reason(finding: Diagnostic) -> Phrase | None:
     """Return the reason why a new finding is breaking, or None if it is not."""
     if finding.code == _UNREADABLE_CODE:
         return phrase("the description can no longer be read")
+    if _is_refused(finding):
+        return phrase("robot_state_publisher does not start with the description")
     if finding.code not in _UNBUILDABLE_CODES:
         return None
     name = next(iter(finding.message.arguments.values()), "")

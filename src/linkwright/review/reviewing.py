@@ -199,7 +199,7 @@ class _Reviewer:
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
         added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)
         readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
-        readable, added = mark_failures(self._versions, readable, added, fixed)
+        readable, added = mark_failures(self._versions, readable, added, fixed, old_findings.diagnostics)
         return Review(
             self._versions.old.name,
             self._versions.new.name,
