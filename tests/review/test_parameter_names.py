@@ -228,6 +228,22 @@ def test_another_writing_of_a_parameter_is_not_reported(repository, compare, old
     assert compare(repository).subjects == []
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "is_same"),
+    [
+        ("0.3", "0.30000001192092896", True),
+        ("0.009999999776482582", "0.01", True),
+        ("0.3", "0.30000002", False),
+        ("48.13713580", "48.13713590", False),
+    ],
+)
+def test_number_of_32_bits_written_in_full_is_the_same(repository, compare, old, new, is_same):
+    texts = [NODES.replace("scale: 1.0", f"scale: {value}") for value in (old, new)]
+    repository.commit({"a/package.xml": PACKAGE_XML, PATH: texts[0]})
+    repository.write({PATH: texts[1]})
+    assert (compare(repository).subjects == []) is is_same
+
+
 def test_equal_changes_of_a_parameter_are_one_line(repository, compare):
     repository.commit({"a/package.xml": PACKAGE_XML, PATH: NODES})
     repository.write({PATH: NODES.replace("size: 3", "size: 5")})

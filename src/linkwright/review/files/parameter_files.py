@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
 from dataclasses import replace
 
+import numpy as np
 import yaml
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
@@ -315,7 +317,16 @@ def _are_equal(name: str, old: YamlValue, new: YamlValue, has_types: bool) -> bo
         )
     except ValueError:
         return False
-    tolerance = 0 if old.type is new.type is YamlType.INTEGER else _ROUNDING
-    return len(old_numbers) == len(new_numbers) and all(
-        math.isclose(*pair, rel_tol=tolerance, abs_tol=0) for pair in zip(old_numbers, new_numbers, strict=True)
+    if len(old_numbers) != len(new_numbers):
+        return False
+    if old.type is new.type is YamlType.INTEGER:
+        return old_numbers == new_numbers
+    return all(itertools.starmap(_differ_by_rounding, zip(old_numbers, new_numbers, strict=True)))
+
+
+def _differ_by_rounding(old: float, new: float) -> bool:
+    """Return whether two numbers are equal, or differ only because one was written in 64 or in 32 bits."""
+    rounded = [float(np.float32(value)) for value in (old, new)]
+    return math.isclose(old, new, rel_tol=_ROUNDING, abs_tol=0) or (
+        rounded[0] == rounded[1] and not {old, new}.isdisjoint(rounded)
     )
