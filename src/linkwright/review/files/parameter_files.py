@@ -17,6 +17,7 @@ from linkwright.review.files.generated_parameters import compare_generated_param
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.lost_groups import find_group_reason
 from linkwright.review.files.migrated_parameters import describe_migration, find_migrated_nodes, rename_migrated
+from linkwright.review.files.moved_nodes import find_node_move
 from linkwright.review.files.moveit_names import MoveItRules
 from linkwright.review.files.parameter_names import (
     NameRules,
@@ -195,6 +196,10 @@ def _find_changes(
         reason = next((reason for reason in reasons if reason is not None), None)
         reason = reason or readers.find_key_reason(_find_lost_keys(next(iter(values_below)), new_keys))
         reason = reason or find_group_reason(pair, name, values_below)
+        node_move = None if reason is None else find_node_move(pair, name, values_below)
+        if node_move is not None:
+            pair.changes.append(Change(node_move, location=location))
+            continue
         yield ValueChange(name, "removed", _list_values(name, values_below), location, reason)
 
 
