@@ -69,3 +69,35 @@ def test_the_name_of_a_plugin_stays_breaking(repository, compare):
     new = layer.replace("ObstacleLayer", "VoxelLayer").replace("/scan", "/points")
     result = review_text(repository, compare, layer, new)
     assert breaking(result) == ["local_costmap.ros__parameters.layer.scan.topic /scan -> /points"]
+
+
+BEHAVIORS = """behavior_server:
+  ros__parameters:
+    behavior_plugins: [spin, wait]
+    spin: {plugin: nav2/Spin, speed: 1.0}
+    wait: {plugin: nav2/Wait, time: 2.0}
+    backup: {plugin: nav2/BackUp, speed: 0.1}
+"""
+WAIT = "    wait: {plugin: nav2/Wait, time: 2.0}\n"
+LISTED = "behavior_server.ros__parameters.behavior_plugins [spin, wait] -> [spin]"
+UNLISTED = "behavior_server.ros__parameters.wait removed: plugin nav2/Wait, time 2.0"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "lines"),
+    [
+        ("    backup: {plugin: nav2/BackUp, speed: 0.1}\n", "", []),  # no list names it
+        (WAIT, "", [UNLISTED]),
+        ("[spin, wait]", "[spin]", [LISTED]),
+    ],
+)
+def test_only_a_plugin_that_its_node_loads_is_missed(repository, compare, old, new, lines):
+    assert old in BEHAVIORS
+    assert breaking(review_text(repository, compare, BEHAVIORS, BEHAVIORS.replace(old, new))) == lines
+
+
+def test_a_plugin_that_leaves_its_list_is_one_breaking_line(repository, compare):
+    new = BEHAVIORS.replace("[spin, wait]", "[spin]").replace(WAIT, "")
+    result = review_text(repository, compare, BEHAVIORS, new)
+    assert breaking(result) == [LISTED]
+    assert UNLISTED in sentences(subject(result, PATH))

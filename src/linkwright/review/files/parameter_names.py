@@ -14,6 +14,7 @@ from linkwright.review.breaking import names_reason
 from linkwright.review.files.costmap_topics import CostmapTopics
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.replaced_classes import find_replaced_classes, is_below_any
+from linkwright.review.files.unread_plugins import is_unread_plugin
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
 
@@ -199,9 +200,9 @@ class NameRules:
         The node uses its default for a single removed value.
         """
         group = list_part_paths(parameter)[-2]
-        is_lost = (
-            root in self._new_parts and group not in self._new_parts and not is_below_any(parameter, self._replaced)
-        )
+        is_lost = root in self._new_parts and group not in self._new_parts
+        if is_below_any(parameter, self._replaced) or is_unread_plugin(parameter, root, self._old, self._new):
+            return False
         return is_lost and not self._readers.have_stopped_reading(group.rpartition(".")[2])
 
     def _is_lost_filter_frame(self, parameter: str, frame: str) -> bool:
