@@ -56,6 +56,19 @@ def test_an_argument_that_is_no_longer_declared(repository, compare, replacement
     assert breaking(result) == told_as_breaking
 
 
+@pytest.mark.parametrize(("replaced", "is_breaking"), [({}, False), ({'("bag")': '("bag", default="day")'}, True)])
+def test_an_argument_that_callers_had_to_pass_before_its_declaration(repository, compare, replaced, is_breaking):
+    """The old version read it without a default, so it failed without a value, too."""
+    undeclared = FILE.replace(BAG, "")
+    for old, new in replaced.items():
+        undeclared = undeclared.replace(old, new)
+    repository.commit({PATH: undeclared})
+    repository.write({PATH: FILE.replace(', default_value="day"', "")})
+    result = compare(repository)
+    assert "argument 'bag' added" in sentences(subject(result, PATH))
+    assert ("argument 'bag' added" in breaking(result)) is is_breaking
+
+
 def test_an_argument_with_another_inline_default_is_told(repository, compare):
     repository.commit({PATH: FILE})
     repository.write({PATH: FILE.replace(BAG, "").replace('("bag")', '("bag", default="night")')})

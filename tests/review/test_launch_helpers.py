@@ -252,3 +252,29 @@ def test_code_outside_of_functions_is_not_told_as_code_of_the_function_that_chan
     new = "import os\nprint(2)\nprint(3)\n" + SPAWNERS.removeprefix("import os\n").replace("def gen", helper.format(2))
     changes, _ = review_changes("arm.launch.py", old, old, new)
     assert [change for change in changes if "other code" in change] == ["other code changed, such as print(2)"]
+
+
+DECLARING = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+
+
+def declare(name, default, description=None):
+    if description:
+        return DeclareLaunchArgument(name, default_value=default, description=description)
+    return DeclareLaunchArgument(name, default_value=default)
+
+
+def generate_launch_description():
+    return LaunchDescription([declare("rate", "10", "The rate."), declare("mode", "slow")])
+"""
+
+
+@pytest.mark.parametrize("test", ["description", "description is not None", "not description"])
+def test_a_condition_on_a_constant_that_a_function_gets_is_decided(repository, compare, test):
+    path, text = "arm/launch/arm.launch.py", DECLARING.replace("if description:", f"if {test}:")
+    repository.commit({path: text})
+    repository.write({path: text.replace('"10"', '"20"').replace('"slow"', '"fast"')})
+    assert sentences(subject(compare(repository), path)) == [
+        "argument 'rate': default 10 -> 20",
+        "argument 'mode': default slow -> fast",
+    ]

@@ -124,6 +124,27 @@ def test_include_of_another_package_or_with_other_arguments_does_not_replace_the
     assert STOPS in _find_driver_changes(repository, compare, text).values()
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "is_replaced"),
+    [
+        ("ros_ign_gazebo)/launch/ign_gazebo", "ros_gz_sim)/launch/gz_sim", True),
+        ("arm_worlds)/launch/empty", "gazebo_ros)/launch/empty_world", True),
+        ("arm_worlds)/launch/empty", "gazebo_ros)/launch/spawn_arm", False),
+        ("slam)/launch/mapping", "amcl)/launch/localization", False),
+    ],
+)
+def test_include_of_another_simulator_with_the_same_arguments_replaces_the_old_one(
+    repository, compare, old, new, is_replaced
+):
+    arguments = '<arg name="world" value="yard.sdf"/><arg name="paused" value="false"/>'
+    text = f'<launch><include file="$(find {old}.launch">{arguments}</include></launch>'
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/launch/arm.launch": text})
+    repository.write({"arm/launch/arm.launch": text.replace(old, new)})
+    lines = [str(change.sentence) for change in subject(compare(repository), "arm/launch/arm.launch").changes]
+    replaced = f"include of '$(find {old}.launch' replaced by include of '$(find {new}.launch'"
+    assert (replaced in lines) is is_replaced
+
+
 @pytest.mark.parametrize("use", ["<!-- $(arg target) -->", "$(eval arg('target') == 'b')"])
 def test_argument_in_an_expression_is_used_and_one_in_a_comment_is_not(repository, compare, use):
     text = use if "<" in use else f'    <arg name="x" value="{use}"/>'

@@ -89,3 +89,16 @@ def test_frame_that_is_a_link_of_a_robot_started_together_is_not_missing(
     (removed,) = subject(compare(repository), "arm/launch/map.launch").changes
     assert (removed.reason is not None) is is_breaking
     assert str(removed.sentence).endswith("; the robot has the frame as a link") is not is_breaking
+
+
+@pytest.mark.parametrize(("link", "is_breaking"), [("base_link", False), ("trunk", True)])
+def test_a_frame_that_a_parameter_no_longer_names_is_there_as_a_link(repository, compare, link, is_breaking):
+    driver = '<node pkg="arm" type="driver" name="driver"><param name="laser_frame_id" value="base_link"/></node>'
+    state = '<node pkg="robot_state_publisher" type="robot_state_publisher" name="state"/>'
+    robot = f'<robot name="a"><link name="{link}"/><link name="other"/></robot>'
+    path = "arm/launch/arm.launch"
+    files = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/urdf/arm.urdf": robot}
+    repository.commit({**files, path: f"<launch>{state}{driver}</launch>"})
+    repository.write({path: f"<launch>{state}{driver}</launch>".replace('"base_link"', '"other"')})
+    (change,) = subject(compare(repository), path).changes
+    assert (change.reason is not None) is is_breaking

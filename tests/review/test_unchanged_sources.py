@@ -60,6 +60,25 @@ def test_a_renamed_name_is_breaking_if_the_other_end_keeps_it(repository, compar
     assert breaking_reasons(result) == [reason]
 
 
+def test_a_topic_that_another_source_newly_reads_has_another_publisher(repository, compare):
+    """The listener read another topic before, so a program of another package publishes the topic now."""
+    other = LISTENER.replace("chatter", "unfiltered")
+    repository.commit({**FILES, "arm/src/listener.cpp": other})
+    silent = TALKER.replace('  auto p = nh.advertise<std_msgs::Float64>("chatter", 1);\n', "")
+    repository.write({"arm/src/talker.cpp": silent, "arm/src/listener.cpp": LISTENER})
+    result = compare(repository)
+    (line,) = sentences(subject(result, "arm/src/talker.cpp"))
+    assert line == "publishers removed: 'chatter' (Float64); 'listener.cpp' newly subscribes to it"
+    assert line not in breaking(result)
+
+
+def test_a_removed_topic_that_a_source_still_reads_is_breaking(repository, compare):
+    repository.commit(FILES)
+    silent = TALKER.replace('  auto p = nh.advertise<std_msgs::Float64>("chatter", 1);\n', "")
+    repository.write({"arm/src/talker.cpp": silent})
+    assert breaking_reasons(compare(repository)) == ["'listener.cpp' still subscribes to 'chatter'"]
+
+
 def test_a_topic_that_another_node_publishes_is_not_lost(repository, compare):
     files = {**FILES, "arm/src/other.cpp": TALKER, "arm/CMakeLists.txt": f"{CMAKE}add_executable(o src/other.cpp)\n"}
     repository.commit(files)

@@ -10,6 +10,7 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.lost_plan_groups import is_of_lost_group
 from linkwright.review.files.parameter_names import is_parameter
+from linkwright.review.versions import Version
 
 _MIN_GROUP_SIZE = 2
 _TOP_KEY = re.compile(r"^['\"]?([\w./~-]+)['\"]?\s*:", re.MULTILINE)
@@ -31,12 +32,13 @@ def find_group_reason(pair: FilePair, name: str, values: Collection[str]) -> Phr
     if is_of_lost_group(pair.versions, pair.new_path, name):
         return None
     keys = {value.removeprefix(f"{name}.").partition(".")[0] for value in values}
-    if any(path != pair.new_path and _has_group(pair, path, name, keys) for path in _list_changed_files(pair)):
+    if any(path != pair.new_path and _has_group(pair, path, name, keys) for path in list_changed_files(pair)):
         return None
     return phrase("programs that read '{name}' from the file do not find it", name=name)
 
 
-def _list_changed_files(pair: FilePair) -> list[str]:
+def list_changed_files(pair: FilePair) -> list[str]:
+    """Return the paths of the changed YAML files of the new version."""
     paths = (file.new_path for file in pair.versions.changed_files)
     return [path for path in paths if path and path.endswith((".yaml", ".yml"))]
 
@@ -48,5 +50,10 @@ def _has_group(pair: FilePair, path: str, name: str, keys: Collection[str]) -> b
     has_keys = len(keys) >= _MIN_GROUP_SIZE and 2 * len(found & set(keys)) > len(keys)
     if name not in found and not has_keys:
         return False
+    return is_named_by_launch_file(version, path)
+
+
+def is_named_by_launch_file(version: Version, path: str) -> bool:
+    """Return whether a launch file of a version contains the name of a file."""
     file_name = PurePosixPath(path).name
     return any(file_name in version.text(launch) for launch in version.paths(_LAUNCH_SUFFIXES))

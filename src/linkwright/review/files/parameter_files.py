@@ -19,6 +19,7 @@ from linkwright.review.files.generated_parameters import compare_generated_param
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.lost_groups import find_group_reason
 from linkwright.review.files.migrated_parameters import describe_migration, find_migrated_nodes, rename_migrated
+from linkwright.review.files.moved_nodes import find_node_move
 from linkwright.review.files.moveit_names import MoveItRules
 from linkwright.review.files.parameter_names import (
     NameRules,
@@ -31,6 +32,7 @@ from linkwright.review.files.parameter_names import (
 from linkwright.review.files.parameters_between_nodes import find_parameter_moves
 from linkwright.review.files.plugin_packages import PluginPackages
 from linkwright.review.files.renamed_parts import find_edit, find_renamed_parts, get_parent, rename_parts
+from linkwright.review.files.replaced_classes import join_replaced_classes
 from linkwright.review.files.value_changes import ValueChange, merge_values
 from linkwright.review.files.yaml_includes import resolve_includes
 from linkwright.review.files.yaml_lists import find_item_labels
@@ -74,7 +76,7 @@ def compare_parameter_files(pair: FilePair, read_names: Callable[[Mapping[str, Y
             compare_generated_parameters(pair, old, new)
             return
         old, new = resolve_includes(pair, old, new)
-    pair.changes += merge_values(_find_changes(pair, old, new, read_names))
+    pair.changes += merge_values(join_replaced_classes(_find_changes(pair, old, new, read_names)))
 
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
@@ -196,6 +198,10 @@ def _find_changes(
         reason = next((reason for reason in reasons if reason is not None), None)
         reason = reason or readers.find_key_reason(_find_lost_keys(next(iter(values_below)), new_keys))
         reason = reason or find_group_reason(pair, name, values_below)
+        node_move = None if reason is None else find_node_move(pair, name, values_below)
+        if node_move is not None:
+            pair.changes.append(Change(node_move, location=location))
+            continue
         yield ValueChange(name, "removed", _list_values(name, values_below), location, reason)
 
 

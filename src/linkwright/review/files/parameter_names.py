@@ -13,6 +13,8 @@ from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.breaking import names_reason
 from linkwright.review.files.costmap_topics import CostmapTopics
 from linkwright.review.files.key_readers import KeyReaders
+from linkwright.review.files.replaced_classes import find_replaced_classes, is_below_any
+from linkwright.review.files.unread_plugins import is_unread_plugin
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.list_changes import EMPTY, list_items
 
@@ -101,6 +103,7 @@ class NameRules:
         self._new_controllers = set(find_controllers(new))
         self._new_parts = {part for name in new for part in list_part_paths(name)}
         self._topics = CostmapTopics(old, new)
+        self._replaced = find_replaced_classes(old, new)
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
 
     def find_change_reason(self, parameter: str, old_value: YamlValue, new_value: YamlValue) -> Phrase | None:
@@ -140,6 +143,8 @@ class NameRules:
         reason = self._topics.find_reason(parameter)
         if reason is not None or not is_parameter(parameter) or self._readers.is_replaced(new):
             return reason
+        if is_below_any(parameter, self._replaced):
+            return None  # a parameter of another plugin
         if not self._has_types or (new_value.is_list and _PLUGIN_LISTS.search(parameter)):
             return None  # ROS 1 has no types, and the lists of Nav2 accept nothing else
         return find_type_reason(old_value, new_value)
@@ -196,6 +201,8 @@ class NameRules:
         """
         group = list_part_paths(parameter)[-2]
         is_lost = root in self._new_parts and group not in self._new_parts
+        if is_below_any(parameter, self._replaced) or is_unread_plugin(parameter, root, self._old, self._new):
+            return False
         return is_lost and not self._readers.have_stopped_reading(group.rpartition(".")[2])
 
     def _is_lost_filter_frame(self, parameter: str, frame: str) -> bool:

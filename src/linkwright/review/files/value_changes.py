@@ -36,6 +36,7 @@ class ValueChange:
         values: both values of a change; the value of an addition or removal; or the values of a part, with their names.
         location: the location of the value.
         reason: why the change is breaking; None if it is not.
+        note: the consequences of a changed value; None if there are none.
     """
 
     name: str
@@ -43,12 +44,14 @@ class ValueChange:
     values: tuple[str, ...]
     location: Location
     reason: Phrase | None = None
+    note: Phrase | None = None
 
     @property
     def sentence(self) -> Phrase:
         """The change in one line."""
         if self.kind == "changed":
-            return change_text(self.name, *self.values)
+            text = change_text(self.name, *self.values)
+            return text if self.note is None else phrase("{change}; {note}", change=text, note=self.note)
         if len(self.values) == 1:
             part = phrase("{parameter} {value}", parameter=self.name, value=self.values[0])
             return phrase("{part} added", part=part) if self.kind == "added" else phrase("{part} removed", part=part)
@@ -67,7 +70,7 @@ class ValueChange:
         if edit is not None:
             return self.kind, edit, None if self.reason is None else self.reason.template
         leaf = self.name.rpartition(".")[2]
-        return leaf, self.kind, self.values, None if self.reason is None else str(self.reason)
+        return leaf, self.kind, self.values, str(self.note), None if self.reason is None else str(self.reason)
 
     @property
     def sibling_key(self) -> Hashable | None:
@@ -147,7 +150,7 @@ def _merge_group(group: Sequence[ValueChange]) -> Change:
     first = group[0]
     effect = Effect.CHANGED if first.reason is None else Effect.BREAKING
     reason = merge_reasons(change.reason for change in group)
-    is_equal = all(change.values == first.values for change in group)
+    is_equal = all((change.values, str(change.note)) == (first.values, str(first.note)) for change in group)
     names = tuple(change.name if is_equal else str(change.sentence) for change in group[1:])
     locations = tuple(change.location for change in group[1:])
     return Change(first.sentence, effect, reason, first.location, (), names, locations)

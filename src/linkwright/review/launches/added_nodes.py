@@ -28,11 +28,22 @@ def explain_addition(
         old: the actions of the old version.
         new: the actions of the new version.
     """
-    reason = find_addition_reason(entry) or _find_missing_package_reason(pair, entry, new)
+    if entry.kind == "argument" and _is_read_without_declaration(entry.name, old):
+        return None  # callers had to pass it before, too
+    reason = find_addition_reason(entry) or find_missing_package_reason(pair, entry, new)
     return reason or _find_remapping_reason(entry, removed, old, new)
 
 
-def _find_missing_package_reason(pair: FilePair, entry: Entry, outline: LaunchOutline) -> Phrase | None:
+def _is_read_without_declaration(name: str, outline: LaunchOutline) -> bool:
+    """Return whether a launch file reads an argument without a default, which it does not declare."""
+    if any(entry.name == name for entry in outline.entries if entry.has_value):
+        return False
+    substitutions = (f"$(var {name})", f"$(arg {name})")
+    texts = (text for entry in outline.entries for text in (entry.name, *entry.settings.values()))
+    return any(substitution in text for text in texts for substitution in substitutions)
+
+
+def find_missing_package_reason(pair: FilePair, entry: Entry, outline: LaunchOutline) -> Phrase | None:
     """Return the reason why the package of an action is missing, or None if it is not certainly missing.
 
     The action must start if callers pass no values.

@@ -18,7 +18,7 @@ from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
-from linkwright.review.launches.added_nodes import explain_addition
+from linkwright.review.launches.added_nodes import explain_addition, find_missing_package_reason
 from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.effects import find_removal_reason
@@ -181,7 +181,8 @@ def _report_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outline
         text = phrase("{old} replaced by {new}", old=format_title(old_entry), new=format_title(new_entry))
         is_lost = lacks_included_file(pair.versions.new, new_entry)
         is_lost = is_lost and not lacks_included_file(pair.versions.old, old_entry)
-        pair.add(text, location, phrase("the launch file does not find the file") if is_lost else None)
+        reason = phrase("the launch file does not find the file") if is_lost else None
+        pair.add(text, location, reason or find_missing_package_reason(pair, new_entry, outlines[1]))
         return
     old, new = outlines
     text = phrase("{entry} renamed to '{name}'", entry=format_title(old_entry), name=new_entry.name)

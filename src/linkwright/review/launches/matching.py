@@ -29,6 +29,8 @@ _CONTEXT_SETTINGS = frozenset({CONDITION, NAMESPACE_OF_INCLUDED})
 _MIN_COMMON_ARGUMENTS = 2
 _MIN_SHARE_OF_COMMON_ARGUMENTS = 0.5
 """The number and the share of passed arguments that an include keeps if another file replaces the included one."""
+_SIMULATOR_FILE = re.compile(r"(?:^|[/_])(?:gazebo|gzserver|gz_sim|ign_gazebo|\w*world|empty)\.launch")
+"""The launch files that, judging by their name, start a simulator."""
 _LOADED_NODELET = re.compile(r"(?:load|standalone) (\S+)")
 Match = tuple["Entry | None", "Entry | None"]
 """The old and the new action; None for a version that lacks the action."""
@@ -114,8 +116,10 @@ def _compute_replacement_score(
         name_similarity = SequenceMatcher(
             None, get_launch_file_stem(old.name), get_launch_file_stem(new.name), autojunk=False
         ).ratio()
+        if _start_simulator(old, new):
+            return 1.0 + similarity
         if name_similarity < _MIN_SIMILARITY_OF_FILES and not is_same_file:
-            return similarity * _are_files_of_same_package(old, new)
+            return similarity * _have_common_arguments(old, new, is_same_package=True)
         has_equal_settings = bool(old.settings) and old.settings == new.settings
         is_in_same_folder = old.kind == "include" and PurePosixPath(old.name).parent == PurePosixPath(new.name).parent
         return 1.0 + similarity if is_same_file else name_similarity * (has_equal_settings or is_in_same_folder)
@@ -151,26 +155,34 @@ def _have_same_namespace(old: Entry, new: Entry, outlines: tuple[LaunchOutline, 
     return old_namespace == new_namespace or resolved[0].strip("/") == resolved[1].strip("/")
 
 
-def _are_files_of_same_package(old: Entry, new: Entry) -> bool:
-    """Return whether two includes replace each other in a package.
+def _start_simulator(old: Entry, new: Entry) -> bool:
+    """Return whether two includes start a simulator in the same way, such as by the launch files of Gazebo.
 
-    They pass mostly equal arguments to different files of the same package.
+    One of the files may belong to the repository.
+    """
+    names = [_SIMULATOR_FILE.search(entry.name) for entry in (old, new)]
+    return old.kind == "include" and all(names) and _have_common_arguments(old, new, is_same_package=False)
+
+
+def _have_common_arguments(old: Entry, new: Entry, *, is_same_package: bool) -> bool:
+    """Return whether two includes replace each other: they pass mostly equal arguments in the same context.
+
+    Args:
+        old: the include of the old version.
+        new: the include of the new version.
+        is_same_package: whether different files of one package are meant. Otherwise, all arguments may be equal, too.
     """
     packages = {match[0] if (match := _PACKAGE_FOLDER.match(entry.name)) else "" for entry in (old, new)}
     common_arguments = old.settings.items() & new.settings.items()
     common_arguments = {(name, value) for name, value in common_arguments if name not in _CONTEXT_SETTINGS}
     argument_count = len(old.settings.keys() - _CONTEXT_SETTINGS)
     has_same_context = all(old.settings.get(name) == new.settings.get(name) for name in _CONTEXT_SETTINGS)
-    has_common_arguments = len(common_arguments) >= max(
+    has_equal_arguments = not is_same_package and 0 < argument_count == len(common_arguments)
+    has_common_arguments = has_equal_arguments or len(common_arguments) >= max(
         _MIN_COMMON_ARGUMENTS, argument_count * _MIN_SHARE_OF_COMMON_ARGUMENTS
     )
-    return (
-        old.kind == "include"
-        and len(packages) == 1
-        and "" not in packages
-        and has_same_context
-        and has_common_arguments
-    )
+    is_in_package = "" not in packages and (len(packages) == 1 or not is_same_package)
+    return old.kind == "include" and is_in_package and has_same_context and has_common_arguments
 
 
 def _compute_parameter_score(old: Entry, new: Entry) -> float:

@@ -253,6 +253,12 @@ class _Reader:
 
     def _visit_branches(self, node: ast.If, scope: Scope) -> None:
         """Find the actions of both branches, with the condition of the statement."""
+        holds = self.texts.evaluate_parameter(node.test)
+        if holds is not None:
+            for statement in node.body if holds else node.orelse:
+                scope = scope.with_namespace(self._find_pushed_namespace(_find_added_action(statement)))
+                self.visit(statement, scope)
+            return
         conditions = format_branches(node.test)
         for condition, body in zip(conditions, (node.body, node.orelse), strict=True):
             inner = scope.with_condition(condition)
@@ -267,6 +273,11 @@ class _Reader:
             scope = scope.with_namespace(self._find_pushed_namespace(_find_added_action(statement)))
             self.visit(statement, scope)
             if isinstance(statement, ast.If) and isinstance(statement.body[-1], ast.Return) and not statement.orelse:
+                holds = self.texts.evaluate_parameter(statement.test)
+                if holds:
+                    return
+                if holds is not None:
+                    continue
                 scope = scope.with_condition(format_branches(statement.test)[1])  # the rest runs otherwise
 
     def visit_function(self, function: ast.FunctionDef) -> None:
@@ -389,7 +400,8 @@ class _Reader:
             else:
                 bindings[keyword.arg] = self.texts.text(value)
                 passed[keyword.arg] = value
-        values = {name: self.texts.resolve(value) for name, value in passed.items()}
+        values = {name: default_texts.resolve(value) for name, value in defaults.items()}
+        values |= {name: self.texts.resolve(value) for name, value in passed.items()}
         return bindings, values, extra
 
     # --- actions -----------------------------------------------------------------------------------------------------

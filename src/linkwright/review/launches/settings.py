@@ -11,6 +11,7 @@ from linkwright.review.breaking import name_reason, names_reason, possible_name_
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.excerpts import LONG_VALUE, differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.parameter_names import offers_frame
 from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings, keeps_meaning
 from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
@@ -33,6 +34,7 @@ from linkwright.review.launches.outlines import (
 from linkwright.review.launches.renames import rename_in_text
 from linkwright.review.launches.static_transforms import SAME_TRANSFORM, compare_transforms
 from linkwright.review.launches.titles import format_distinct_title, format_title, join_phrases, join_titles
+from linkwright.review.launches.transforms import starts_robot_with_link
 from linkwright.review.list_changes import change_text
 from linkwright.review.merging import name_edit
 
@@ -234,6 +236,10 @@ class SettingChanges:
         reason = find_setting_reason(entry, setting, old, new, self._old, self._new)
         if setting.startswith(REMAPPING) and self._included.offers_bridged_topic(self._old.resolve(old or "")):
             return None
+        if reason is not None and setting.startswith(PARAMETER) and offers_frame(setting.removeprefix(PARAMETER)):
+            # programs still find the transform of the old frame
+            has_frame = starts_robot_with_link(self._old.resolve(old or ""), self._included, self._pair.versions.new)
+            return None if has_frame else reason
         if entry.kind == "include":
             if setting == CONDITION:
                 return reason if self._included.count_started_programs(entry) else None

@@ -143,6 +143,23 @@ class ExpressionTexts:
         value = returned.value if isinstance(returned, ast.Return) else None
         return BoundExpression(texts, value) if value is not None and texts.is_known(value) else None
 
+    def evaluate_parameter(self, test: ast.expr) -> bool | None:
+        """Return whether a test holds that depends only on a constant which a parameter has; None for other tests."""
+        if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+            holds = self.evaluate_parameter(test.operand)
+            return None if holds is None else not holds
+        is_none = isinstance(test, ast.Compare) and len(test.ops) == 1 and isinstance(test.ops[0], (ast.Is, ast.IsNot))
+        name = test.left if isinstance(test, ast.Compare) and is_none else test
+        bound = self._values.get(name.id) if isinstance(name, ast.Name) else None
+        if bound is None or not isinstance(bound.node, ast.Constant):
+            return None
+        if not isinstance(test, ast.Compare):
+            return bool(bound.node.value)
+        other = test.comparators[0]
+        if not isinstance(other, ast.Constant) or other.value is not None:
+            return None
+        return (bound.node.value is None) == isinstance(test.ops[0], ast.Is)
+
     def is_known(self, node: ast.expr) -> bool:
         """Return whether an expression is not a call of an unknown function, or a name of unknown value."""
         node = self._python.resolved(node)

@@ -76,7 +76,18 @@ def has_robot_with_frame(transform: Entry, old: LaunchOutline, new: IncludedActi
         version: the new version, with the files that include the launch file.
     """
     frames = _find_parent_and_child(transform, old) if transform.name.startswith(TRANSFORM_PUBLISHERS) else []
-    if len(frames) != 2 or frames[1].strip("/") not in _list_links(version):
+    return len(frames) == 2 and starts_robot_with_link(frames[1], new, version)
+
+
+def starts_robot_with_link(frame: str, new: IncludedActions, version: Version) -> bool:
+    """Return whether a robot of the repository that is started together with a launch file has a frame as a link.
+
+    Args:
+        frame: the frame.
+        new: the actions of the file with those of its included files.
+        version: the version, with the files that include the launch file.
+    """
+    if frame.strip("/") not in _list_links(version):
         return False
     including = (actions for actions, _ in find_including_files(version, new.path))
     return any(actions.find_node(_ROBOT_PROGRAM) is not None for actions in (new, *including))

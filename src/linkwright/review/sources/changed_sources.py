@@ -260,18 +260,39 @@ class ChangedSources:
         package = self.find_package(path) if item.kind in COMMUNICATION_KINDS else None
         return package is not None and self._get_unchanged(package).has_name(item)
 
-    def find_user(self, item: SourceName, path: str) -> str | None:
+    def find_user(self, item: SourceName, path: str, old: ChangedSources | None = None) -> str | None:
         """Return a source of the package that uses the other end of a name, or None.
 
         Only topics, services and actions have another end.
+
+        Args:
+            item: the name.
+            path: a file of the package.
+            old: the changed sources of the old version; if given, the source must have used the name there, too.
         """
         package, kind = self.find_package(path), get_counterpart(item.kind)
         if package is None or kind is None:
             return None
-        for other, names in self._names.items():
-            if self.find_package(other) == package and any(is_same_topic(item, user) for user in names.of_kind(kind)):
-                return other
-        return self._get_unchanged(package).find_user(item)
+        users = self.list_changed_users(item, path)
+        if old is not None:
+            users = [user for user in users if not old.lacks_use(item, user)]
+        return users[0] if users else self._get_unchanged(package).find_user(item)
+
+    def lacks_use(self, item: SourceName, path: str) -> bool:
+        """Return whether a source of the version does not use the other end of a topic, service or action."""
+        kind = get_counterpart(item.kind)
+        known = self.get_names(path).of_kind(kind) if kind is not None else ()
+        return self.version.file(path).is_file() and not any(is_same_topic(item, user) for user in known)
+
+    def list_changed_users(self, item: SourceName, path: str) -> list[str]:
+        """Return the changed sources of the package that use the other end of a topic, service or action."""
+        package, kind = self.find_package(path), get_counterpart(item.kind)
+        users = {other: names.of_kind(kind) for other, names in self._names.items()} if package and kind else {}
+        return [
+            other
+            for other, known in users.items()
+            if self.find_package(other) == package and any(is_same_topic(item, user) for user in known)
+        ]
 
     def has_counterpart(self, item: SourceName) -> bool:
         """Return whether a changed source of any package has the other end of a topic, service or action."""

@@ -43,6 +43,7 @@ from linkwright.review.sources.names import (
     SourceName,
     SourceNames,
 )
+from linkwright.review.sources.new_users import describe_new_user
 from linkwright.review.sources.other_nodes import (
     find_other_node_reason,
     has_only_in_other_nodes,
@@ -375,7 +376,9 @@ class _SourcePair(WholeSourcePair):
         lost = [item for item in removed if item.name not in non_public]
         if lost:
             text = phrase("{kind} removed: {names}", kind=kind.plural, names=format_names(lost))
-            yield self.make_change(text, lost[0].span, self.old, self._find_removal_reason(lost, old_names))
+            used = describe_new_user(text, lost, self.old, self.new, self.file.old_path or self.file.path)
+            reason = None if used is not None else self._find_removal_reason(lost, old_names)
+            yield self.make_change(used or text, lost[0].span, self.old, reason)
         newly_hidden = [item for item in removed if item.name in non_public]
         if newly_hidden:
             text = phrase("{kind} no longer public: {names}", kind=kind.plural, names=format_names(newly_hidden))
@@ -398,7 +401,7 @@ class _SourcePair(WholeSourcePair):
         if not lost:
             return find_other_node_reason(items) if items else None
         reason = find_removal_reason(lost, names, self.new.get_names(self.file.new_path), path)
-        users = ((item, self.new.find_user(item, path)) for item in (lost if reason is not None else ()))
+        users = ((item, self.new.find_user(item, path, self.old)) for item in (lost if reason is not None else ()))
         return next((make_user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
 
     def _find_rename_reason(self, old_item: SourceName, new_item: SourceName, names: SourceNames) -> Phrase | None:

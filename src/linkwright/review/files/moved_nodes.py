@@ -1,0 +1,57 @@
+"""Find nodes whose parameters move to another parameter file, which a launch file loads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.changes import MAX_NAMES
+from linkwright.review.file_pair import FilePair, UnreadableFileError
+from linkwright.review.files.lost_groups import is_named_by_launch_file, list_changed_files
+from linkwright.review.files.parameter_names import find_node_name
+from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
+from linkwright.review.list_changes import change_text
+from linkwright.review.versions import Version
+
+_MIN_SHARE = 0.5
+"""The minimum share of the values that stay equal."""
+
+
+def find_node_move(pair: FilePair, name: str, values: Mapping[str, YamlValue]) -> Phrase | None:
+    """Return the line about a removed node whose parameters another file newly has; None for other parts.
+
+    Args:
+        pair: both versions of the file that loses the parameters.
+        name: the path of the removed part.
+        values: the removed values by path.
+    """
+    nodes = {find_node_name(path) for path in values}
+    if len(nodes) != 1 or None in nodes or not (name in nodes or f"{name}.".startswith(f"{next(iter(nodes))}.ros__")):
+        return None
+    versions = pair.versions
+    for path in list_changed_files(pair):
+        if path == pair.new_path or not is_named_by_launch_file(versions.new, path):
+            continue
+        found = _read_values(versions.new, path)
+        old_path = next((file.old_path for file in versions.changed_files if file.new_path == path), None)
+        known = _read_values(versions.old, old_path) if old_path is not None else {}
+        if not values.keys() <= found.keys() or not values.keys().isdisjoint(known):
+            continue
+        changed = [item for item, value in values.items() if value.text != found[item].text]
+        if len(changed) > (1 - _MIN_SHARE) * len(values):
+            continue
+        text = phrase("{old} moved to {name}", old=name, name=path)
+        if not changed:
+            return text
+        names = {item: item.removeprefix(name).lstrip(".").removeprefix("ros__parameters.") for item in changed}
+        items = [str(change_text(names[item], values[item].shown, found[item].shown)) for item in changed]
+        return phrase("{change}, with {items}", change=text, items=joined_first(items, MAX_NAMES))
+    return None
+
+
+def _read_values(version: Version, path: str) -> dict[str, YamlValue]:
+    """Return the values of a file by path; none if it cannot be read."""
+    try:
+        return read_yaml_values(version.text(path))
+    except UnreadableFileError:
+        return {}

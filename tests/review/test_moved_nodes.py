@@ -1,0 +1,42 @@
+"""Nodes whose parameters move to another parameter file, in a review."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.repositories import PACKAGE_XML
+from tests.review.conftest import breaking, sentences, subject
+
+PLANNER = "planner:\n  ros__parameters:\n    rate: 20\n    frame: map\n"
+NAVIGATOR = "navigator:\n  ros__parameters:\n    rate: 10\n    frame: map\n    topic: /odom\n"
+PATH, NEW_PATH = "arm/config/all.yaml", "arm/config/navigator.yaml"
+LAUNCH = "arm/launch/navigator.launch.py"
+
+
+def make_launch_file(name: str) -> str:
+    return f"""from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([Node(package="nav", executable="navigator", parameters=["config/{name}"])])
+"""
+
+
+@pytest.mark.parametrize(
+    ("loaded", "text", "line", "is_breaking"),
+    [
+        ("navigator.yaml", NAVIGATOR, f"navigator moved to {NEW_PATH}", False),
+        ("navigator.yaml", NAVIGATOR.replace("10", "30"), f"navigator moved to {NEW_PATH}, with rate 10 -> 30", False),
+        ("all.yaml", NAVIGATOR, "navigator removed: rate 10, frame map, topic /odom", True),
+        ("navigator.yaml", NAVIGATOR.replace("rate: 10", "speed: 1"),
+         "navigator removed: rate 10, frame map, topic /odom", True),
+    ],
+)  # fmt: skip
+def test_a_node_moves_to_a_file_that_a_launch_file_loads(repository, compare, loaded, text, line, is_breaking):
+    files = {"arm/package.xml": PACKAGE_XML, PATH: PLANNER + NAVIGATOR, LAUNCH: make_launch_file("all.yaml")}
+    repository.commit(files)
+    repository.write({PATH: PLANNER, NEW_PATH: text, LAUNCH: make_launch_file(loaded)})
+    result = compare(repository)
+    assert sentences(subject(result, PATH)) == [line]
+    assert (line in breaking(result)) is is_breaking
