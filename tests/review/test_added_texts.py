@@ -59,6 +59,7 @@ def review_lines(repository, compare):
         (".py", 'use(rate if "extra" in config else 0)', '"extra" in config'),
         (".py", 'use(rate if "extra" not in config else 0)', '"extra" not in config'),
         (".py", 'use(name in ("left", "right"))', 'name in ("left", "right")'),
+        (".py", 'use(name.lower() in ("left", "right"))', 'name.lower() in ("left", "right")'),
         (".py", 'use(name != "right")', 'name != "right"'),
     ],
 )

@@ -347,7 +347,8 @@ def find_dependency_changes(repository, compare, *replacements):
         ("", "build_export_depend", True),
         ("install(DIRECTORY include/ DESTINATION include)", "depend", True),
         ("ament_export_dependencies(gears)", "depend", True),
-        ("add_library(core src/core.cpp)", "depend", True),
+        ("add_library(core SHARED src/core.cpp)\ninstall(TARGETS core LIBRARY DESTINATION lib)", "depend", False),
+        ("pluginlib_export_plugin_description_file(nav2_core plugins.xml)", "depend", False),
         ("ament_auto_package()", "depend", True),
         ("ament_package(CONFIG_EXTRAS cmake/core.cmake)", "depend", True),
     ],
@@ -471,3 +472,26 @@ def test_a_changed_file_that_the_build_file_includes_is_compared_as_a_part_of_it
         "calls of find_package removed: 'rclcpp'",
     ]
     assert list(result.other_files) == ["a/cmake/old.cmake"]
+
+
+@pytest.mark.parametrize(
+    ("command", "path", "name"),
+    [
+        ("rosidl_generate_interfaces(${{PROJECT_NAME}} srv/Stop.srv {})", "srv/Move.srv", "built interfaces"),
+        ("install(PROGRAMS scripts/stop.py {} DESTINATION lib/${{PROJECT_NAME}})", "scripts/move.py",
+         "installed executables"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("exists", [True, False])
+def test_removed_entry_of_a_file_that_the_old_version_lacks_breaks_nobody(
+    repository, compare, command, path, name, exists
+):
+    files = {"a/srv/Stop.srv": "---\n", "a/scripts/stop.py": "#!/usr/bin/env python3\n", "a/package.xml": EXPORTS}
+    text = f"project(arm)\nfind_package(ament_cmake REQUIRED)\n{command}\n"
+    repository.commit({**files, "a/CMakeLists.txt": text.format(path), **({f"a/{path}": "---\n"} if exists else {})})
+    repository.write({"a/CMakeLists.txt": text.format("")})
+    shown = path if "srv" in path else "move.py"
+    expected = f"{name} removed: '{shown}'" + "; the old version does not have the files" * (not exists)
+    result = compare(repository)
+    assert expected in sentences(subject(result, "a/CMakeLists.txt"))
+    assert any(name in line for line in breaking(result)) is exists

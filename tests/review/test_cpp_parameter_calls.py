@@ -166,6 +166,8 @@ RANGE = """Arm::Arm() : Node("arm") {{
          {"parameter 'gain': maximum 2.0 -> 3.0": None}),
         ("slider.integer_range[0].from_value = 2;", "slider.integer_range[0].from_value = 3;",
          {"parameter 'gain': minimum 2 -> 3": "values below 3 are rejected"}),
+        ("slider.integer_range[0].from_value = 2;", "slider.integer_range[0].from_value = kLow;",
+         {"parameter 'gain': minimum 2 -> kLow": None}),
         ("", "range.to_value = 2.0; other.floating_point_range.push_back(range);", {}),
     ],
 )  # fmt: skip

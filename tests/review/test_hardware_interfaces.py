@@ -28,6 +28,7 @@ InterfaceConfiguration Hold::command_interface_configuration() const {
   return config;
 }
 """
+UNCLAIMED = "on robots whose hardware does not have '{}', the controller does not start"
 NOT_STARTED = "controllers that claim '{}' do not start"
 
 
@@ -42,7 +43,8 @@ NOT_STARTED = "controllers that claim '{}' do not start"
          NOT_STARTED.format("load/ready")),
         (HARDWARE, "  return all;", '  all.emplace_back("x", 1);\n  all.push_back(CommandInterface("load", "x", &x_));',
          "command interfaces added: 'load/x'", None),
-        (CONTROLLER, "load/mass", "load/weight", "claimed interface 'load/mass' renamed to 'load/weight'", None),
+        (CONTROLLER, "load/mass", "load/weight", "claimed interface 'load/mass' renamed to 'load/weight'",
+         UNCLAIMED.format("load/weight")),
         (CONTROLLER, '  config.names.emplace_back("load/mass");\n', "",
          "claimed interfaces removed: 'load/mass'", None),
     ],
@@ -102,3 +104,58 @@ def test_a_parameter_of_hardware_has_the_value_of_its_variable_by_default(reposi
     repository.commit({**MANIFEST, PATH: KEPT.format("0.5")})
     repository.write({PATH: KEPT.format("0.1")})
     assert sentences(subject(compare(repository), PATH))[0] == "parameter of the hardware 'limit': default 0.5 -> 0.1"
+
+
+JOINTS = """#include <arm.hpp>
+constexpr auto kForce = "force";
+std::vector<StateInterface> Arm::export_state_interfaces() {
+  std::vector<StateInterface> state_interfaces;
+  for (const auto & joint : info_.joints) {
+    state_interfaces.emplace_back(joint.name, hardware_interface::HW_IF_POSITION, &x_);
+    state_interfaces.emplace_back(hardware_interface::StateInterface(joint.name, kForce, &f_));
+  }
+  for (auto & gpio : info_.gpios) {
+    for (auto & item : gpio.state_interfaces) {
+      state_interfaces.push_back(StateInterface(gpio.name + "_io", item.name + "_" + std::to_string(i), &io_[i]));
+    }
+  }
+  return state_interfaces;
+}
+"""
+FORCE = "    state_interfaces.emplace_back(hardware_interface::StateInterface(joint.name, kForce, &f_));\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        (FORCE, "", "state interfaces removed: '<name>/force'"),
+        ('"force"', '"torque"', "state interface '<name>/force' renamed to '<name>/torque'"),
+        (' + "_" + std::to_string(i)', "", "state interfaces removed: '<name>_io/<name>_<number>'"),
+        ("HW_IF_POSITION", "item.name", ""),  # the description may name it
+        ("const auto & joint :", "const auto & item :", ""),
+        ("joint.name, kForce", "info_.joints[i].name, kForce", ""),
+        (JOINTS[JOINTS.index("  std::vector<"):JOINTS.index("  return")], "", ""),  # ros2_control offers them
+    ],
+)  # fmt: skip
+def test_interfaces_with_computed_names_that_hardware_no_longer_offers(repository, compare, old, new, expected):
+    assert old in JOINTS
+    repository.commit({**MANIFEST, PATH: JOINTS})
+    repository.write({PATH: JOINTS.replace(old, new)})
+    assert breaking(compare(repository)) == ([expected] if expected else [])
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("config.names.push_back(joint_ + kForce);", ["claimed interfaces added: '<name>/force'"]),
+        ('config.names.push_back(joint_ + "/position");', []),
+        ("config.names.push_back(joint_ + kForce + suffix_);", ["claimed interfaces added: '<name>/force<name>'"]),
+        ("if (uses_force_) { config.names.push_back(joint_ + kForce); }", []),
+        ("config.names.push_back(interface_);", []),
+    ],
+)
+def test_interfaces_that_a_controller_newly_claims(repository, compare, line, expected):
+    text = CONTROLLER.replace("#include <hold.hpp>", '#include <hold.hpp>\nconst std::string kForce = "/force";')
+    repository.commit({**MANIFEST, PATH: text})
+    repository.write({PATH: text.replace("  return", f"  {line}\n  return")})
+    assert breaking(compare(repository)) == expected

@@ -61,6 +61,43 @@ def test_command_that_runs_a_removed_executable_is_breaking(repository, compare,
 
 
 @pytest.mark.parametrize(
+    ("caller", "line", "expected"),
+    [
+        ("arm.service", "ExecStart=/usr/sbin/check", ["names '/usr/sbin/check', which is no longer installed"]),
+        ("Dockerfile", "CMD /opt/ws/install/arm/lib/arm/check", [
+            "names '/opt/ws/install/arm/lib/arm/check', which is no longer installed"]),
+        ("arm.service", "ExecStart=/usr/sbin/checker", []),
+        ("arm.service", "ExecStart=$HOME/bin/check", []),
+        ("arm.service", "#ExecStart=/usr/sbin/check", []),
+    ],
+)  # fmt: skip
+def test_command_that_starts_a_program_which_is_no_longer_installed_is_breaking(
+    repository, compare, caller, line, expected
+):
+    build = "cmake_minimum_required(VERSION 3.8)\nproject(arm)\n"
+    install = "install(PROGRAMS scripts/check DESTINATION /usr/sbin)\n"
+    files = {caller: f"a=b\n{line}\n", "arm/CMakeLists.txt": build + install, "arm/scripts/check": SCRIPT}
+    found = find_breaking(repository, compare, files, {"arm/CMakeLists.txt": build})
+    assert sorted(found) == sorted(["installed executables removed: 'check'", *expected])
+
+
+@pytest.mark.parametrize("caller", ["docker/docker-compose.yml", "compose.dev.yaml", "start.sh"])
+@pytest.mark.parametrize(
+    ("command", "new", "is_lost"),
+    [
+        ("ros2 launch arm move.launch.py", {"arm/launch/move.launch.py": None}, True),
+        ("ros2 launch other move.launch.py", {"arm/launch/move.launch.py": None}, False),
+        ("ros2 launch arm move.launch.py", {
+            "arm/launch/move.launch.py": None, "arm/launch/b/move.launch.py": "x = 1\n"}, False),
+    ],
+)  # fmt: skip
+def test_command_that_starts_a_removed_launch_file_is_breaking(repository, compare, caller, command, new, is_lost):
+    files = {caller: f"a:\n  command: bash -c '{command}'\n", "arm/launch/move.launch.py": "x = 1\n"}
+    found = find_breaking(repository, compare, files, new)
+    assert ("starts 'move.launch.py' of 'arm', which no longer exists" in found) is is_lost
+
+
+@pytest.mark.parametrize(
     ("is_executable", "new", "expected"),
     [
         (True, {PATH: None, "arm/scripts/test.py": SCRIPT}, ["program 'check.py' renamed to 'test.py'"]),

@@ -29,8 +29,8 @@ FILES = {
 def review_removal(repository, compare):
     """Remove a file, write others and return the breaking changes about files that no longer exist."""
 
-    def run(path, files=()):
-        repository.commit(FILES)
+    def run(path, files=(), before=()):
+        repository.commit({**FILES, **dict(before)})
         repository.git("rm", "-q", path)
         repository.write(dict(files))
         repository.git("add", "-A")
@@ -42,6 +42,30 @@ def review_removal(repository, compare):
 @pytest.mark.parametrize("name", ["src/joint.cpp", "src/arm.yaml"])
 def test_removed_source_that_the_build_file_names_is_breaking(review_removal, name):
     assert review_removal(f"arm/{name}") == [f"names '{name}', which no longer exists"]
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [
+        ("protobuf_generate_python(PROTO_PY {})", "proto/state.proto"),
+        ("protobuf_generate_cpp(SOURCES HEADERS ${{CMAKE_CURRENT_SOURCE_DIR}}/{})", "proto/state.proto"),
+        ("generate_dynamic_reconfigure_options({})", "cfg/Arm.cfg"),
+        ("pluginlib_export_plugin_description_file(nav2_core {})", "plugins.xml"),
+        ("add_rostest({})", "test/arm.test"),
+    ],
+)
+def test_removed_file_from_which_a_command_generates_code_is_breaking(review_removal, command, name):
+    build = {"arm/CMakeLists.txt": f"project(arm)\n{command.format(name)}\n"}
+    files = {f"arm/{name}": "syntax = 'proto3';\n", **build}
+    assert f"names '{name}', which no longer exists" in review_removal(f"arm/{name}", before=files)
+
+
+def test_removed_message_that_catkin_names_without_its_folder_is_breaking(review_removal):
+    files = {
+        "arm/CMakeLists.txt": "project(arm)\nadd_message_files(FILES State.msg)\n",
+        "arm/msg/State.msg": "int8 x\n",
+    }
+    assert "names 'State.msg', which no longer exists" in review_removal("arm/msg/State.msg", before=files)
 
 
 def test_removed_source_that_only_a_comment_names_is_not_lost(review_removal):

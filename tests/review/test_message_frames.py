@@ -148,3 +148,31 @@ def test_another_literal_frame_that_the_source_also_had_is_told(repository, comp
     expected = ['frame_id of \'m\': "odom" -> "map"']
     assert [line for subject in result.subjects for line in sentences(subject)] == expected
     assert breaking(result) == (expected if is_breaking else [])
+
+
+ODOMETRY = """class Drive(Node):
+    def step(self):
+        odom = Odometry()
+        odom.header.frame_id = "wheel_odom"
+        odom.child_frame_id = self.base
+        odom.pose.pose.position.x = self.x
+        self.pub.{}(odom)
+"""
+
+
+@pytest.mark.parametrize(("method", "is_breaking"), [("publish", True), ("keep", False)])
+@pytest.mark.parametrize("is_known", [True, False])
+def test_another_literal_frame_of_a_published_message_is_one_line(repository, compare, method, is_breaking, is_known):
+    other = {"arm/arm/map.py": 'def fill(m):\n    m.header.frame_id = "odom"\n'} if is_known else {}
+    text = (
+        f"{ODOMETRY.format(method)}\n    def open(self):\n        self.pub = self.create_publisher(Odometry, 'o', 9)\n"
+    )
+    repository.commit({**MANIFEST, **other, "arm/arm/drive.py": text})
+    repository.write({"arm/arm/drive.py": text.replace("wheel_odom", "odom")})
+    result = compare(repository)
+    (line,) = [line for subject in result.subjects for line in sentences(subject)]
+    if is_known:
+        assert line == "frame_id of 'odom': 'wheel_odom' -> 'odom'"
+        assert breaking(result) == [line] * is_breaking
+    else:
+        assert line == "frame of messages 'wheel_odom' renamed to 'odom'"

@@ -23,6 +23,20 @@ LINE = "no target builds the source"
 
 
 @pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("arm/tools/Makefile", "all:\n\tg++ *.cpp\n"),
+        ("arm/tools/platformio.ini", "[env:teensy]\n"),
+        ("arm/Makefile", "SRC := tools/list.cpp\n"),
+    ],
+)
+def test_a_source_may_be_built_by_another_tool_in_its_folder(repository, compare, name, text):
+    repository.commit({**FILES, "arm/CMakeLists.txt": BUILD, "arm/tools/notes.txt": "x\n"})
+    repository.write({"arm/tools/list.cpp": "int main() { return 0; }\n", name: text})
+    assert LINE not in [line for subject in compare(repository).subjects for line in sentences(subject)]
+
+
+@pytest.mark.parametrize(
     ("build", "path", "name", "is_told", "is_breaking"),
     [
         (BUILD, "arm/src/stop.cpp", "Arm", True, True),

@@ -50,6 +50,11 @@ class ScratchFolder(TemporaryDirectory[str]):
             self._unlock()
 
 
+def is_scratch_folder(folder: Path) -> bool:
+    """Return whether a folder has the name of a scratch folder."""
+    return folder.name.startswith(_PREFIX)
+
+
 def remove_abandoned(parent: Path) -> None:
     """Remove the scratch folders of ended processes in a parent folder.
 

@@ -20,7 +20,7 @@ UNIT_SUFFIX = ".service"
 _SUFFIXES = _SHELL_SUFFIXES | {".rules", UNIT_SUFFIX, ".dockerfile"}
 _HEAD_BYTES = 100
 _FILE_NAME = re.compile(
-    r"(.*\.)?(docker|container)file(\..*)?|\w*(packages?|apt|requirements?|dependencies)\w*\.txt|\.env"
+    r"(.*\.)?(docker|container)file(\..*)?|(.*[.-])?compose([.-].*)?\.ya?ml|\w*(packages?|apt|requirements?|dependencies)\w*\.txt|\.env"
 )
 _PACKAGE = re.compile(r"[A-Za-z0-9][\w.+:~<>=!-]*")
 """A line of a list of packages."""

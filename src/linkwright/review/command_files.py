@@ -11,7 +11,7 @@ from linkwright.review.versions import Version
 
 _NAMES = re.compile(
     r"(?:.*\.)?(?:gnu)?makefile(?:\..*)?|.*\.mk|\.?justfile|jenkinsfile|(?:.*\.)?(?:docker|container)file(?:\..*)?"
-    r"|\.gitlab-ci\.ya?ml|\.travis\.ya?ml|azure-pipelines\.ya?ml",
+    r"|(?:.*[.-])?compose(?:[.-].*)?\.ya?ml|\.gitlab-ci\.ya?ml|\.travis\.ya?ml|azure-pipelines\.ya?ml",
     re.IGNORECASE,
 )
 _HIDDEN_FOLDERS = (".github", ".circleci", ".gitlab", ".ci")

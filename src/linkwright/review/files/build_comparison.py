@@ -26,6 +26,7 @@ from linkwright.review.files.build_facts import (
 )
 from linkwright.review.files.cmake_branches import is_test_condition
 from linkwright.review.files.installed_files import compare_installed_files
+from linkwright.review.files.missing_sources import names_missing_file
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
@@ -88,6 +89,9 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
             _report_other_versions(pair, removed, added)
         if kind is FactKind.STOP:
             _report_reworded_errors(pair, removed, added)
+        missing = [fact for fact in removed if names_missing_file(pair.versions.old, pair.old_path, fact)]
+        removed = [fact for fact in removed if fact not in missing]
+        _report_missing(pair, missing)
         unused = [fact for fact in removed if fact.name in private]
         _report_unpaired(pair, kind, unused, [], is_replaced=True)
         used = [fact for fact in removed if fact not in unused]
@@ -188,6 +192,16 @@ def _report_unpaired(
             is_harmless |= BUILD_TOOLS.issuperset(fact.name for fact in removed)
         reason = None if is_harmless else kind.reason
         pair.add(_format_facts(kind, removed, is_added=False), location, reason)
+
+
+def _report_missing(pair: FilePair, facts: Sequence[Fact]) -> None:
+    """Report removed facts about files that the old version does not have."""
+    if facts:
+        text = phrase(
+            "{change}; the old version does not have the files",
+            change=_format_facts(facts[0].kind, facts, is_added=False),
+        )
+        pair.add(text, pair.location(facts[0].span, is_old=True))
 
 
 def _report_repeated_exports(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:

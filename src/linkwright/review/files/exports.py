@@ -11,12 +11,14 @@ from linkwright.review.versions import Version
 
 _EXPORTED_KINDS = frozenset(
     {
-        *(FactKind.LIBRARY, FactKind.BUILT_LIBRARY, FactKind.EXPORTED_TARGET, FactKind.EXPORTED_FOLDER),
-        *(FactKind.COMPONENT, FactKind.PLUGIN_DESCRIPTION, FactKind.INTERFACE, FactKind.DYNAMIC, FactKind.MODULE),
-        FactKind.EXPORTED_DEPENDENCY,
+        *(FactKind.EXPORTED_TARGET, FactKind.EXPORTED_FOLDER, FactKind.EXPORTED_DEPENDENCY),
+        *(FactKind.INTERFACE, FactKind.DYNAMIC, FactKind.MODULE),
     }
 )
-"""The kinds of facts with which other packages may be built, or that dependents get with the package."""
+"""The kinds of facts with which other packages may be built, or that dependents get with the package.
+
+A library without headers, such as a plugin, is only loaded.
+"""
 _EXPORTS = re.compile(
     r"^[^#\n]*(?:\b(?:ament_export_|ament_auto_package|rosidl_|generate_messages|install_python|CONFIG_EXTRAS|CFG_EXTRAS)"
     r"|\.cmake\b)|^[ \t]*install\s*\([^)]*\binclude\b",
@@ -26,7 +28,9 @@ _EXPORTS = re.compile(
 
 
 def exports_nothing(version: Version, manifest: str) -> bool:
-    """Return whether a package only builds programs, and installs nothing with which other packages are built.
+    """Return whether a package installs nothing with which other packages are built.
+
+    It only builds programs, plugins, and libraries without headers.
 
     Args:
         version: the version of the repository.
@@ -36,5 +40,6 @@ def exports_nothing(version: Version, manifest: str) -> bool:
     if not version.file(path).is_file() or _EXPORTS.search(version.text(path)):
         return False
     facts = read_cmake_facts(version, path)
-    is_known = not facts.unknown and not facts.has_library
-    return is_known and not facts.header_paths and all(fact.kind not in _EXPORTED_KINDS for fact in facts.facts)
+    return (
+        not facts.unknown and not facts.header_paths and all(fact.kind not in _EXPORTED_KINDS for fact in facts.facts)
+    )

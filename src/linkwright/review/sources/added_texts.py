@@ -131,7 +131,7 @@ def _make_change(
 
 
 def _join(items: Sequence[OneSidedText]) -> Phrase:
-    return joined_first([item.shown for item in items], _MAX_TEXTS)
+    return joined_first(list(dict.fromkeys(item.shown for item in items)), _MAX_TEXTS)
 
 
 def _pair_equal_values(

@@ -76,6 +76,11 @@ class ChangedSources:
         sources = {path: try_read_source(self.version.file(path)) for path in self._names}
         return {path: read_code(source) for path, source in sources.items() if source is not None}
 
+    def rename_type(self, full_type: str) -> str:
+        """Return the type of messages with the new name of its package if that is renamed after this version."""
+        package, separator, name = full_type.partition("/")
+        return f"{self._new_packages.get(package, package)}{separator}{name}"
+
     def rename_imports(self, code: Code, new: Code) -> Code:
         """Return code of this version with the new names of renamed packages in imports that the new code lacks."""
         kept = {part.text for part in new.imports}

@@ -24,6 +24,7 @@ from linkwright.review.sources.details import (
     format_names,
     format_rename,
 )
+from linkwright.review.sources.frame_changes import drop_told_frames
 from linkwright.review.sources.function_changes import (
     NameChange,
     find_field_reason,
@@ -31,6 +32,7 @@ from linkwright.review.sources.function_changes import (
     merge_function_changes,
 )
 from linkwright.review.sources.given_frames import find_given_frame, format_given
+from linkwright.review.sources.interface_patterns import INTERFACE_KINDS, find_claim_reason, select_interfaces
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
 from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
@@ -75,6 +77,7 @@ from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.type_variants import TypeVariants
 from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.unmet_conditions import find_unmet_parameter
+from linkwright.review.sources.unreachable_modules import is_unreachable
 from linkwright.review.sources.whole_sources import WholeSourcePair
 from linkwright.review.versions import Versions
 
@@ -128,7 +131,7 @@ class _SourcePair(WholeSourcePair):
         changes += self.compare_definitions()
         changes += self.compare_packages(are_headers_told=not changes)
         changes += compare_statements(self.old, self.new, self.file, changes)
-        yield from merge_renames(changes)
+        yield from merge_renames(drop_told_frames(changes))
 
     def _compare_kind(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
         """Yield the changes to the names of a kind."""
@@ -142,7 +145,7 @@ class _SourcePair(WholeSourcePair):
             for name, item in after.items()
             if name in before and not has_same_types(before[name], item, old_names, new_names)
             for detail in compare_details(
-                variants.align(replace(before[name], type=shown.get(name, before[name].type)), item),
+                variants.align(self._rename_type(replace(before[name], type=shown.get(name, before[name].type))), item),
                 item,
                 has_other_class=has_other_class(before[name], item, old_names, new_names),
             )
@@ -200,6 +203,9 @@ class _SourcePair(WholeSourcePair):
         removed, added = [*removed, *variants.removed], [*added, *variants.added]
         yield from self._report_unpaired(kind, removed, added, old_names)
 
+    def _rename_type(self, item: SourceName) -> SourceName:
+        return replace(item, full_type=self.old.rename_type(item.full_type)) if item.full_type else item
+
     def _compare_moved(self, items: Sequence[SourceName]) -> Iterator[NameChange]:
         """Yield the changes to parameters that another changed source of the package declares now."""
         for item in items:
@@ -232,6 +238,8 @@ class _SourcePair(WholeSourcePair):
                 drop_defined_imports(removed, old_names, new_names, self.new.version.file(self.file.new_path or "")),
                 drop_defined_imports(added, new_names, old_names, self.old.version.file(self.file.old_path or "")),
             )
+        if kind in INTERFACE_KINDS:
+            return select_interfaces(removed, new_names), select_interfaces(added, old_names)
         is_python = self.file.path.endswith(PYTHON_SUFFIX)
         if kind not in (NameKind.FUNCTION, NameKind.MEMBER):
             return removed, added
@@ -370,6 +378,7 @@ class _SourcePair(WholeSourcePair):
         if added:
             text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
             reason = find_required_reason(added) if self.file.old_path is not None else None
+            reason = reason or find_claim_reason(added, self._read_texts()[0], self.new.get_names(self.file.new_path))
             yield self.make_change(text, added[0].span, self.new, reason)
         new_names = self.new.get_names(self.file.new_path)
         non_public = new_names.non_public | new_names.hidden_classes
@@ -395,6 +404,9 @@ class _SourcePair(WholeSourcePair):
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self.is_interface(path):
             return None
+        is_used = items[0].kind in (*_DECLARED_KINDS, NameKind.IMPORT)
+        if not is_used and is_unreachable(self.old.version, self.old.find_package(path), path):
+            return None
         if items[0].kind in _DECLARED_KINDS:
             items = [item for item in items if self.can_be_linked(item.name, item.kind)]
         lost = [item for item in items if not self._is_left_to_others(item)]
@@ -411,6 +423,8 @@ class _SourcePair(WholeSourcePair):
         """
         if old_item.kind is NameKind.MESSAGE_FRAME:
             return find_message_frame_reason(old_item, names)
+        if old_item.kind is NameKind.CLAIMED_INTERFACE:
+            return find_claim_reason([new_item], self._read_texts()[0], self.new.get_names(self.file.new_path))
         reason = self._find_removal_reason([old_item], names)
         is_scoped = old_item.name.startswith("/") != new_item.name.startswith("/")
         if reason is not None and is_scoped and old_item.name.strip("/") == new_item.name.strip("/"):
@@ -544,7 +558,7 @@ class _SourcePair(WholeSourcePair):
             matching = [[expression for expression in items if expression.name == item.name] for items in (old, new)]
             if len(matching[0]) == len(matching[1]) == 1 and matching[0][0].type and item.type:
                 defaults = [names.defaults.get(item.name, "") for names in sources]
-                for text, reason, _ in compare_computed(matching[0][0], item, defaults):
+                for text, reason, _ in compare_computed(self._rename_type(matching[0][0]), item, defaults):
                     yield self.make_change(text, item.span, self.new, reason)
 
     def _compare_patterns(self, old: SourceName, new: SourceName) -> Iterator[Change]:

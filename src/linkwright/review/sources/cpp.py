@@ -157,7 +157,7 @@ class _Reader:
         for element in elements:
             end = element.start + len(element.name)
             self._add(NameKind.ELEMENT, element.name, element.start, end, element.default)
-        for interface in find_hardware_interfaces(text):
+        for interface in find_hardware_interfaces(text, self._texts.evaluate):
             details = ((Detail.REQUIRED, YES),) if interface.is_required else ()
             default = interface.variable and self._initial_values.find_default(interface.variable, interface.start)
             self._add(interface.kind, interface.name, interface.start, interface.end, default or "", details)
@@ -511,7 +511,7 @@ class _Reader:
 
     @cached_property
     def _texts(self) -> ConstantTexts:
-        return ConstantTexts(self._text, self._headers, self._initial_values)
+        return ConstantTexts(Path(self._source.name), self._text, self._headers, self._initial_values)
 
     @cached_property
     def _initial_values(self) -> InitialValues:

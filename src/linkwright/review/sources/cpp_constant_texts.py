@@ -5,12 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from pathlib import Path
 
 from linkwright.review.sources.cpp_text_functions import TextFunctions
 from linkwright.review.sources.cpp_values import TEXT, VARIABLE, InitialValues, find_assigned_text, find_constants
+from linkwright.review.sources.interface_types import find_cpp_type
+from linkwright.review.sources.message_constants import read_message_constants
 from linkwright.review.sources.parameter_defaults import split_sum
 from linkwright.review.sources.shared_constants import read_header_constants
 
+_MESSAGE_CONSTANT = re.compile(r"\s*(?P<type>(?:::)?(?:\w+::)*[A-Z]\w*)::(?P<name>[A-Z][A-Z0-9_]*)\s*")
+"""A constant of a message, such as ``arm_msgs::msg::Topics::STATE``."""
 _PART = re.compile(r'"[^"\\]*"|[A-Za-z_]\w*')
 
 
@@ -18,12 +23,14 @@ class ConstantTexts:
     """The texts, constants, and variables with a certain text in a C++ source.
 
     Args:
-        text: the source without comments.
+        path: the path of the source.
+        text: its text without comments.
         headers: the texts of the included headers of the repository.
         initial_values: the initial values of members and variables.
     """
 
-    def __init__(self, text: str, headers: Sequence[str], initial_values: InitialValues) -> None:
+    def __init__(self, path: Path, text: str, headers: Sequence[str], initial_values: InitialValues) -> None:
+        self._path = path
         self._text = text
         self._headers = headers
         self._initial_values = initial_values
@@ -42,10 +49,21 @@ class ConstantTexts:
         parts = split_sum(expression)
         if len(parts) > 1 and all(map(_PART.fullmatch, parts)):
             return self._join(parts, begin)
+        message = self._find_in_message(expression)
+        if message is not None:
+            return message
         variable = VARIABLE.fullmatch(expression)
         if variable is None:
             return self._functions.evaluate(expression)
         return self._find(variable["name"], begin)
+
+    def _find_in_message(self, expression: str) -> str | None:
+        """Return the text of a constant of a message of the repository, or None for other expressions."""
+        match = _MESSAGE_CONSTANT.fullmatch(expression)
+        full_type = "" if match is None else find_cpp_type(match["type"], [self._text, *self._headers])
+        if match is None or not full_type:
+            return None
+        return read_message_constants(self._path, *full_type.split("/")).get(match["name"])
 
     def _join(self, parts: Sequence[str], position: int) -> str | None:
         """Return the sum of literals and constants, or None if one of them is unknown."""

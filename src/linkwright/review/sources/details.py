@@ -286,11 +286,22 @@ def _find_limit_reason(detail: Detail, before: str | None, after: str | None) ->
     """
     if after is None:
         return None
-    if detail is Detail.MINIMUM and (before is None or float(after) > float(before)):
+    limits = _read_number(before or ""), _read_number(after)
+    if before is not None and None in limits:
+        return None  # a constant whose value is not known here
+    old, new = limits[0] or 0.0, limits[1] or 0.0
+    if detail is Detail.MINIMUM and (before is None or new > old):
         return phrase("values below {limit} are rejected", limit=after)
-    if detail is Detail.MAXIMUM and (before is None or float(after) < float(before)):
+    if detail is Detail.MAXIMUM and (before is None or new < old):
         return phrase("values above {limit} are rejected", limit=after)
     return None
+
+
+def _read_number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
 
 
 def make_required_reason(kind: NameKind, names: Phrase | str) -> Phrase:

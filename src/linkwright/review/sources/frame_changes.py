@@ -8,7 +8,9 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.breaking import message_frame_reason
+from linkwright.review.changes import Change
 from linkwright.review.sources.code import Code, Part
+from linkwright.review.sources.names import NameKind
 
 _JOINER = re.compile(r"\s*(\.|->|::)\s*|\s+(?=[(\[\])])|(?<=[(\[])\s+")
 _OBJECT = r"[A-Za-z_][\w.]*(?:->[\w.]+)*"
@@ -22,6 +24,10 @@ _BRANCH = re.compile(r"\A[\s\d]+")
 """The mark of the branch of a statement in Python."""
 _HEADER = re.compile(r"(?:(?:\.|->)|\b)header(?:\.|->)frame_id\Z")
 _SEPARATOR = " | "
+_TEMPLATE = "frame_id of {names}: {old} -> {new}"
+"""The template of the line about another frame."""
+_SENDING = r"\b(?:publish\w*|send(?!_?goal|Goal|_?request|Request)\w*)\("
+_QUOTED = re.compile(r"'([^']+)'")
 
 
 class FrameChange(NamedTuple):
@@ -43,14 +49,18 @@ class _Assigned(NamedTuple):
     line: int
 
 
-def find_frame_changes(old: Code, new: Code) -> Iterator[FrameChange]:
+def find_frame_changes(old: Code, new: Code, reported: Sequence[str] = ()) -> Iterator[FrameChange]:
     """Yield the messages of each function that get another frame now.
 
-    Two literal frames count only if both versions have both, because others are compared as names. Of two variables,
+    Two literal frames count unless another line tells that one is renamed to the other. Of two variables,
     one is the frame of a message that the function has in both versions, so that neither is only another name of the
     other.
+
+    Args:
+        old: the old source.
+        new: the new source.
+        reported: the other lines about the source.
     """
-    literals = [_list_literals(code) for code in (old, new)]
     for name, parts in new.functions.items():
         if name not in old.functions:
             continue
@@ -60,7 +70,7 @@ def find_frame_changes(old: Code, new: Code) -> Iterator[FrameChange]:
         for target in before.keys() & after.keys():
             pair = before[target].expressions, after[target].expressions
             is_other = _is_left(pair[0], texts[1]) or _is_left(pair[1], texts[0]) or _is_computed(*pair)
-            is_other = is_other or _is_known_literal(*pair, *literals)
+            is_other = is_other or _is_other_literal(*pair, reported)
             if pair[0] != pair[1] and is_other:
                 groups.setdefault(pair, []).append(target)
         for (old_values, new_values), targets in sorted(groups.items()):
@@ -71,38 +81,58 @@ def find_frame_changes(old: Code, new: Code) -> Iterator[FrameChange]:
                 new=_SEPARATOR.join(new_values),
             )
             text = _TEXT.fullmatch(old_values[0]) if len(old_values) == 1 else None
-            is_transform = any(
-                f"{target}{joiner}child_frame_id" in texts[1] for target in targets for joiner in (".", "->")
-            )
-            reason = None if text is None or is_transform else message_frame_reason(text["text"])
+            is_transform = any(_is_transform(target, texts[1]) for target in targets)
+            is_harmless = is_transform or (_TEXT.fullmatch(new_values[0]) and not _are_sent(targets, new))
+            reason = None if text is None or is_harmless else message_frame_reason(text["text"])
             yield FrameChange(sentence, min(after[target].line for target in targets), reason)
 
 
-def _list_literals(code: Code) -> set[str]:
-    """Return the literal frames that a source assigns to messages."""
-    expressions = (
-        expression
-        for parts in code.functions.values()
-        for assigned in _read_assignments(parts).values()
-        for expression in assigned.expressions
-    )
-    return {match["text"] for expression in expressions if (match := _TEXT.fullmatch(expression)) is not None}
+def _is_transform(target: str, text: str) -> bool:
+    """Return whether a message with a child frame is a transform. That of odometry has a pose and a twist."""
+    fields = {
+        field
+        for field in ("child_frame_id", "pose", "twist")
+        for joiner in (".", "->")
+        if f"{target}{joiner}{field}" in text
+    }
+    return fields == {"child_frame_id"}
 
 
-def _is_known_literal(old: Sequence[str], new: Sequence[str], before: set[str], after: set[str]) -> bool:
-    """Return whether a literal frame replaces another one, and both versions have both.
+def _are_sent(targets: Sequence[str], code: Code) -> bool:
+    """Return whether a source publishes one of some messages."""
+    words = "|".join(re.escape(re.split(r"\.|->", target)[-1]) for target in targets)
+    sent = re.compile(rf"{_SENDING}[^;]*\b(?:{words})\b")
+    return any(sent.search(join_operators(part.text)) for parts in code.functions.values() for part in parts)
+
+
+def _is_other_literal(old: Sequence[str], new: Sequence[str], reported: Sequence[str]) -> bool:
+    """Return whether a literal frame replaces another one, and no other line names both.
 
     Args:
         old: the old expressions.
         new: the new expressions.
-        before: the literal frames in the old source.
-        after: the literal frames in the new source.
+        reported: the other lines about the source.
     """
     matches = [_TEXT.fullmatch(values[0]) if len(values) == 1 else None for values in (old, new)]
     if matches[0] is None or matches[1] is None:
         return False
-    names = matches[0]["text"].strip("/"), matches[1]["text"].strip("/")
-    return names[0] != names[1] and matches[0]["text"] in after and matches[1]["text"] in before
+    names = [match["text"].strip("/") for match in matches if match is not None]
+    return names[0] != names[1] and not any(all(f"'{name}'" in line for name in names) for line in reported)
+
+
+def drop_told_frames(changes: Sequence[Change]) -> list[Change]:
+    """Return the lines about a source without those about frames that the lines about their messages tell."""
+    told: set[str] = set()
+    for change in changes:
+        if change.core.template == _TEMPLATE:
+            texts = (_TEXT.fullmatch(str(change.core.arguments[side])) for side in ("old", "new"))
+            told |= {match["text"] for match in texts if match is not None}
+
+    def is_told(change: Change) -> bool:
+        names = set(_QUOTED.findall(str(change.core)))
+        return change.core.arguments.get("kind") == NameKind.MESSAGE_FRAME.plural and bool(names) and names <= told
+
+    return [change for change in changes if not is_told(change)]
 
 
 def join_operators(text: str) -> str:

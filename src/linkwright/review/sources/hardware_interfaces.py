@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
+from linkwright.review.sources.cpp_text import find_arguments
 from linkwright.review.sources.names import FoundName, NameKind
+from linkwright.review.sources.parameter_defaults import split_sum
 
-_WORD = r"(?:\"(?P<{0}>[^\"\\]*)\"|(?:hardware_interface\s*::\s*)?HW_IF_(?P<{0}_constant>[A-Z_]+))"
+NAME_PART, NUMBER_PART, UNKNOWN_PART = "<name>", "<number>", "<...>"
+"""The marks for a name of the description, a number and another unknown text in the name of an interface."""
 _OFFERED = re.compile(
-    rf"\b(?P<kind>Command|State)Interface\s*>?\s*[({{]\s*{_WORD.format('part')}\s*,\s*{_WORD.format('name')}"
+    r"\b(?P<kind>Command|State)Interface\s*>?\s*[({]|"
+    r"\b\w*(?P<list>command|state)_interfaces?_?\s*\.\s*emplace_back\s*\((?!\s*[\w:]*\b(?:Command|State)Interface\b)"
 )
-"""The construction of an interface with a literal name, such as ``CommandInterface("gripper", "position", &value)``."""
-_CLAIMED = re.compile(r"\bnames\s*\.\s*(?:push|emplace)_back\s*\(\s*\"(?P<name>[\w.-]+/[\w./-]+)\"\s*\)")
+"""The construction of an interface, such as ``CommandInterface("gripper", "position", &value)``."""
+_CLAIMED = re.compile(r"\bnames\s*\.\s*(?:push|emplace)_back\s*\(")
+_CONSTANT = re.compile(r"\s*(?:::)?(?:\w+\s*::\s*)*HW_IF_(?P<name>[A-Z_]+)\s*")
+_LITERAL = re.compile(r'\s*(?:std::string\s*[({]\s*)?"(?P<text>[^"\\]*)"\s*[)}]?\s*')
+_NUMBER = re.compile(r"\s*(?:std::)?to_string\s*\(.*\)\s*", re.DOTALL)
+_VARIABLE = re.compile(r"\s*[A-Za-z_][\w.:]*(?:(?:\[[^\[\]]*\]|->|\.|\.at\([^()]*\))[\w.:]*)*\s*")
+_TYPED = re.compile(r"\s*(?:const\b|(?:std::)?string\b\s*&)")
+"""The beginning of a parameter in the declaration of a constructor."""
 _PARAMETER = re.compile(
     r"\b(?:hardware_parameters|parameters)\s*(?:\[\s*|\.\s*(?P<call>at|find|count|contains)\s*\(\s*)"
     r"\"(?P<name>[\w.-]+)\"\s*[\])]"
@@ -21,17 +31,33 @@ _PARAMETER = re.compile(
 _HARDWARE = re.compile(r"\bhardware_interface\b|\bHardwareInfo\b")
 _CHECKS = frozenset({"find", "count", "contains"})
 _MAX_BRANCH_CHARACTERS = 250
+_MIN_ARGUMENTS = 3
+"""The minimum number of arguments of an interface that a list constructs: two names and a variable."""
 _CONTROLLER = re.compile(r"\bInterfaceConfiguration\b")
 
 
-def find_hardware_interfaces(text: str) -> Iterator[FoundName]:
-    """Yield the interfaces with literal names and the parameters of hardware in a C++ source without comments."""
+def find_hardware_interfaces(text: str, evaluate: Callable[[int, int], str | None]) -> Iterator[FoundName]:
+    """Yield the interfaces and the parameters of hardware in a C++ source without comments.
+
+    Unknown parts of the names of interfaces are marked: ``<name>/position``.
+
+    Args:
+        text: the source without comments.
+        evaluate: a function that returns the text of the expression between two offsets, or None if it is not certain.
+    """
     for match in _OFFERED.finditer(text):
-        kind = NameKind.COMMAND_INTERFACE if match["kind"] == "Command" else NameKind.STATE_INTERFACE
-        name = f"{_get_word(match, 'part')}/{_get_word(match, 'name')}"
-        yield FoundName(kind, name, match.start("kind"), match.end())
+        arguments = list(find_arguments(text, match.end() - 1))
+        if len(arguments) < _MIN_ARGUMENTS - (match["kind"] is not None) or _TYPED.match(text, arguments[0][0]):
+            continue
+        is_command = (match["kind"] or match["list"]).lower() == "command"
+        kind = NameKind.COMMAND_INTERFACE if is_command else NameKind.STATE_INTERFACE
+        name = "/".join(_read_name(text, *argument, evaluate) for argument in arguments[:2])
+        yield FoundName(kind, name, match.start("kind") if match["kind"] else match.start(), arguments[1][1])
     for match in _CLAIMED.finditer(text) if _CONTROLLER.search(text) else ():
-        yield FoundName(NameKind.CLAIMED_INTERFACE, match["name"], match.start("name"), match.end("name"))
+        for begin, end in list(find_arguments(text, match.end() - 1))[:1]:
+            name = _read_name(text, begin, end, evaluate)
+            if "/" in name:
+                yield FoundName(NameKind.CLAIMED_INTERFACE, name, begin, end)
     reads = list(_PARAMETER.finditer(text)) if _HARDWARE.search(text) else []
     optional = {match["name"] for match in reads if match["call"] != "at"}
     is_caught = re.search(r"\bcatch\b", text) is not None
@@ -50,7 +76,30 @@ def _find_variable(text: str, position: int, name: str) -> str:
     return "" if match is None else match[1]
 
 
-def _get_word(match: re.Match[str], group: str) -> str:
-    """Return a literal, or the value of a constant such as ``HW_IF_POSITION``."""
-    constant = match[f"{group}_constant"]
-    return match[group] if constant is None else constant.lower()
+def _read_name(text: str, begin: int, end: int, evaluate: Callable[[int, int], str | None]) -> str:
+    """Return the text of an expression, with marks for the operands of a sum that are unknown."""
+    known = _read_text(text[begin:end]) or evaluate(begin, end)
+    if known is not None:
+        return known
+    parts, position = [], begin
+    for part in split_sum(text[begin:end]):
+        start = text.find(part, position, end)
+        position = start + len(part)
+        value = _read_text(part)
+        value = evaluate(start, position) if value is None and start >= 0 else value
+        parts.append(_mark_unknown(part) if value is None else value)
+    return "".join(parts)
+
+
+def _read_text(expression: str) -> str | None:
+    """Return a literal, or the value of a constant such as ``HW_IF_POSITION``; None for other expressions."""
+    literal, constant = _LITERAL.fullmatch(expression), _CONSTANT.fullmatch(expression)
+    if literal is not None:
+        return literal["text"]
+    return None if constant is None else constant["name"].lower()
+
+
+def _mark_unknown(expression: str) -> str:
+    if _NUMBER.fullmatch(expression):
+        return NUMBER_PART
+    return NAME_PART if _VARIABLE.fullmatch(expression) else UNKNOWN_PART

@@ -10,13 +10,14 @@ from linkwright.review.sources.names import Detail
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 _RANGE = r"(?:floating_point|integer)_range"
 _ELEMENT = rf"{_RANGE}\s*(?:\[\s*0\s*\]|\.\s*(?:at\s*\(\s*0\s*\)|front\s*\(\s*\)|back\s*\(\s*\)))"
-_NUMBER = r"(-?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)f?"
+_VALUE = r"([^;{}()]+)"
+_FLOAT = re.compile(r"(-?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)f")
 _SETTERS = r"(?:\s*(?:\.|->)\s*set__\w+\s*\([^()]*\))*"
 _LIMITS = ((Detail.MINIMUM, "from_value"), (Detail.MAXIMUM, "to_value"))
 
 
 def find_range(text: str, position: int, arguments: Sequence[str]) -> Iterator[tuple[Detail, str]]:
-    """Yield the literal limits of a parameter whose declaration gets a description.
+    """Yield the limits of a parameter whose declaration gets a description, as they are written.
 
     Args:
         text: the source without comments.
@@ -33,8 +34,8 @@ def find_range(text: str, position: int, arguments: Sequence[str]) -> Iterator[t
     ranges = [match["range"] for match in given.finditer(code)][-1:]
     owner = "|".join([rf"\b{descriptor}\s*\.\s*{_ELEMENT}", *(rf"\b{name}" for name in ranges)])
     for detail, field in _LIMITS:
-        setter = rf"{field}\s*=\s*{_NUMBER}\s*;|set__{field}\s*\(\s*{_NUMBER}\s*\)"
+        setter = rf"{field}\s*=\s*{_VALUE}\s*;|set__{field}\s*\(\s*{_VALUE}\s*\)"
         limit = re.compile(rf"(?:{owner}){_SETTERS}\s*(?:\.|->)\s*(?:{setter})")
-        found = [match[1] or match[2] for match in limit.finditer(code)]
+        found = [(match[1] or match[2]).strip() for match in limit.finditer(code)]
         if found:
-            yield detail, found[-1]
+            yield detail, _FLOAT.sub(r"\1", found[-1])

@@ -26,6 +26,7 @@ from linkwright.review.sources.python_attributes import find_attributes
 from linkwright.review.sources.python_bases import find_inherited_names, list_known_names
 from linkwright.review.sources.python_callbacks import CallbackFunctions
 from linkwright.review.sources.python_methods import find_defined_attributes, find_undefined_methods
+from linkwright.review.sources.python_parameter_ranges import PythonRanges
 from linkwright.review.sources.python_source import PythonSource
 from linkwright.review.sources.python_wrappers import CREATING_METHODS, WrapperClasses, get_argument
 from linkwright.review.sources.required_parameters import is_required_parameter
@@ -197,6 +198,7 @@ class _Reader:
         self._types = PythonTypes(python.tree)
         self._functions = CallbackFunctions(python.tree)
         self._wrappers = WrapperClasses(Path(python.source.name), python.tree)
+        self._ranges = PythonRanges(python)
         self._frame_arguments = find_frame_arguments(python.tree, _FRAME_FIELDS)
 
     def read(self) -> None:
@@ -484,6 +486,8 @@ class _Reader:
             type_name = find_declared_type(self._python, value, get_argument(call, 2, "descriptor"))
             details = ((Detail.DEFAULT, NO),) if value is None or type_name is not None else ()
             details += () if type_name is None else ((Detail.VALUE_TYPE, type_name),)
+        if function == "declare_parameter":
+            details += tuple(self._ranges.find(get_argument(call, 2, "descriptor"), call.lineno))
         self._add(NameKind.PARAMETER, node, value, details)
 
     def _read_parameters(self, namespace: ast.expr | None, parameters: ast.expr | None) -> None:
@@ -497,7 +501,8 @@ class _Reader:
             pair = self._python.resolved(item)
             if isinstance(pair, (ast.Tuple, ast.List)) and pair.elts:
                 value = pair.elts[1] if len(pair.elts) > 1 else None
-                details = ((Detail.DEFAULT, NO),) if value is None else ()
+                details: tuple[tuple[Detail, str], ...] = ((Detail.DEFAULT, NO),) if value is None else ()
+                details += tuple(self._ranges.find(pair.elts[2] if len(pair.elts) > 2 else None, pair.lineno))
                 self._add(NameKind.PARAMETER, pair.elts[0], value, details, f"{prefix}." if prefix else "")
             else:
                 self._add_expression(NameKind.PARAMETER, item, "")

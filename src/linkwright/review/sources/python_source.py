@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.packages.readers.python_values import UNKNOWN, PythonFile, Value
+from linkwright.review.sources.message_constants import read_imported_message_constants
 from linkwright.review.sources.shared_constants import read_imported_constants
 
 _MAX_DEPTH = 10
@@ -32,7 +33,8 @@ class PythonSource(PythonFile):
 
     @cached_property
     def _imported_constants(self) -> dict[str, ast.expr]:
-        return read_imported_constants(Path(self.source.name), self.tree)
+        path = Path(self.source.name)
+        return read_imported_message_constants(path, self.tree) | read_imported_constants(path, self.tree)
 
     def assigned_expression(self, name: str) -> ast.expr | None:
         """Return the expression assigned to a name or imported as it, or None if it is not certain."""
@@ -51,7 +53,8 @@ class PythonSource(PythonFile):
             value = self._attributes.get(node.attr)
             if node.attr not in self._attributes:
                 value = self.assigned_expression(node.attr)  # a constant of the class
-            return node if value is None or isinstance(value, ast.Attribute) else self.resolved(value)
+            is_known = not isinstance(value, ast.Attribute) or ast.unparse(value) in self._imported_constants
+            return self.resolved(value) if value is not None and is_known else node
         return super().resolved(node)
 
     def value(self, node: ast.expr | None, depth: int = 0) -> Value:

@@ -44,7 +44,7 @@ def compare_statements(
     """
     changes = [*reported, *_compare_constants(old, new, file, reported)]
     if file.old_path is not None and file.new_path is not None:
-        changes += _compare_frames(old, new, file.old_path, file.new_path)
+        changes += _compare_frames(old, new, file, reported)
         changes += _find_failures(old, new, file.old_path, file.new_path)
         changes += _find_assertions(old, new, file.old_path, file.new_path)
         changes += _find_returned_codes(old, new, file.old_path, file.new_path)
@@ -111,14 +111,17 @@ def _find_returned_codes(old: ChangedSources, new: ChangedSources, old_path: str
         yield Change(item.sentence, location=Location(new_path, item.line, 1))
 
 
-def _compare_frames(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+def _compare_frames(
+    old: ChangedSources, new: ChangedSources, file: ChangedFile, reported: Sequence[Change]
+) -> Iterator[Change]:
     """Yield the messages whose frames come from another message or variable, or are no longer set."""
-    before, after = old.codes.get(old_path), new.codes.get(new_path)
+    before, after = old.codes.get(file.old_path or ""), new.codes.get(file.new_path or "")
     if before is None or after is None:
         return
-    for change in (*find_frame_changes(before, after), *find_lost_message_frames(before, after)):
+    sentences = [str(change.sentence) for change in reported]
+    for change in (*find_frame_changes(before, after, sentences), *find_lost_message_frames(before, after)):
         effect = Effect.CHANGED if change.reason is None else Effect.BREAKING
-        yield Change(change.sentence, effect, change.reason, Location(new_path, change.line, 1))
+        yield Change(change.sentence, effect, change.reason, Location(file.new_path or "", change.line, 1))
 
 
 def _find_failures(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:

@@ -390,11 +390,12 @@ def format_literal(statement: Statement, literal: Literal) -> str:
     before, after = start - 1, end + 1
     if before > 0 and tokens[before].text == "in":
         before -= tokens[before - 1].text == "not"
-        start, _ = find_expression(tokens, Literal("", before - 1, before - 1), brackets)
+        first = brackets.get(before - 1, before - 1)
+        start, _ = find_expression(tokens, Literal("", first, before - 1), brackets)
         return statement.get_text(start, end)
     after += after < len(tokens) and tokens[after].text == "not"
     if after + 1 < len(tokens) and tokens[after].text == "in":
-        _, end = find_expression(tokens, Literal("", after + 1, after + 1), brackets)
+        _, end = find_expression(tokens, Literal("", after + 1, brackets.get(after + 1, after + 1)), brackets)
         return statement.get_text(start, end)
     return add_context(statement, start, end, statement.get_text(start, end), brackets)
 

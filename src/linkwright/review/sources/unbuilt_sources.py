@@ -13,6 +13,18 @@ from linkwright.review.sources.reading import read_source_names
 from linkwright.review.versions import TEST_FOLDERS, Version
 
 _METHOD = re.compile(r"\b(\w+)\s*::\s*~?\w+\s*\([^;{}]*\)[^;{}()]*\{")
+_OTHER_TOOLS = (
+    "Makefile",
+    "makefile",
+    "GNUmakefile",
+    "meson.build",
+    "BUILD",
+    "BUILD.bazel",
+    "platformio.ini",
+    ".ino",
+    ".pro",
+)
+"""The names, and the ends of names, of files with which other tools than CMake build the sources beside and below."""
 
 
 def is_unbuilt(version: Version, package: str, path: str) -> bool:
@@ -35,8 +47,19 @@ def is_unbuilt(version: Version, package: str, path: str) -> bool:
     if not sources or any(own.is_relative_to(source) for source in sources):
         return False
     word = re.compile(rf"(?<![\w.-]){re.escape(pure_path.name)}(?![\w.-])")
-    others = version.paths((CMAKE_FILE, ".cmake", *CPP_SUFFIXES), package)
-    return not any(word.search(version.text(other)) for other in others if other != path)
+    others = version.paths((CMAKE_FILE, ".cmake", *_OTHER_TOOLS, *CPP_SUFFIXES), package)
+    return not any(
+        word.search(version.text(other)) or _builds_below(other, package, pure_path)
+        for other in others
+        if other != path
+    )
+
+
+def _builds_below(tool_file: str, package: str, path: PurePosixPath) -> bool:
+    """Return whether another tool than CMake builds the folder of a source, below that of the package."""
+    folder = PurePosixPath(tool_file).parent
+    is_own = tool_file.endswith(_OTHER_TOOLS) and folder != PurePosixPath(package)
+    return is_own and path.is_relative_to(folder)
 
 
 def find_exported_class(version: Version, package: str, path: str) -> str | None:

@@ -7,39 +7,85 @@ import posixpath
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
+from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import package_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.command_files import list_command_files
+from linkwright.review.files.build_facts import FactKind
+from linkwright.review.files.cmake_files import CMAKE_FILE
+from linkwright.review.files.setup_files import SETUP_FILE
+from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.launches.missing_programs import RepositoryPackage, find_packages
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SUFFIXES = ("", ".py", ".sh", ".bash", ".pl", ".rb")
 _PATH = re.compile(r"(?<![\w./$}~*-])(?P<path>(?:\.{1,2}/)*(?:[\w.-]+/)*[\w-][\w.-]*)(?![\w/*])")
 _RUN = re.compile(r"\b(?:ros2\s+run|rosrun)\s+(?P<package>[\w-]+)\s+(?P<program>[\w.-]+)")
+_LAUNCH = re.compile(r"\b(?:ros2\s+launch|roslaunch)\s+(?P<package>[\w-]+)\s+(?P<file>[\w.-]+)")
+_BIN_FOLDERS = r"/(?:[\w.-]+/)*(?:s?bin|lib/[\w-]+)/"
+"""The beginning of the absolute path of an installed program."""
 _LIST_ITEM = re.compile(r"\s*-\s*[\"']?[\w./*-]+[\"']?\s*")
 """A line of YAML that lists a path, such as one whose changes start a job."""
 _NO_USE = re.compile(r"\s*@?(?:#|echo\b|printf\b)|.*(?:\brm\b|\s-[efrsx]\s|\|\|)")
 """A line that is a comment or a message, removes or tests a file, or continues without it."""
 _YAML_SUFFIXES = (".yml", ".yaml")
+_PROGRAM = FactKind.EXECUTABLE
+
+
+class _Lost(NamedTuple):
+    """The programs and launch files that the new version lacks.
+
+    Attributes:
+        programs: the removed and renamed programs, by their old paths.
+        launch_files: the names of removed and renamed launch files.
+        installed: the names of programs that a package no longer installs.
+    """
+
+    programs: dict[str, ChangedFile]
+    launch_files: frozenset[str]
+    installed: frozenset[str]
+
+    @property
+    def words(self) -> frozenset[str]:
+        """The names, of which a file that uses one of them has at least one."""
+        return self.launch_files | self.installed | {PurePosixPath(path).name for path in self.programs}
 
 
 def find_lost_scripts(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the commands that name a program which no longer exists, and lost programs of ROS 1, each with a change."""
-    lost = {file.old_path: file for file in changed_files if file.old_path and _is_lost_program(versions, file)}
-    if not lost:
-        return
-    for file in lost.values():
+    """Yield the commands that start what no longer exists, and lost programs of ROS 1, each with a change."""
+    programs = {file.old_path: file for file in changed_files if file.old_path and _is_lost_program(versions, file)}
+    launch_files = (PurePosixPath(file.old_path or "").name for file in changed_files if _is_lost_launch_file(file))
+    lost = _Lost(programs, frozenset(launch_files), frozenset(_list_uninstalled(versions, changed_files)))
+    for file in programs.values():
         change = _find_lost_name(versions, file)
         if change is not None:
             yield file.path, change
-    names = {PurePosixPath(path).name for path in lost}
-    for path in list_command_files(versions.new):
+    for path in list_command_files(versions.new) if lost.words else ():
         text = versions.new.text(path)
-        if any(name in text for name in names):
+        if any(word in text for word in lost.words):
             yield from ((path, change) for change in _find_commands(versions, path, text, lost))
+
+
+def _is_lost_launch_file(file: ChangedFile) -> bool:
+    return file.old_path is not None and file.old_path != file.new_path and is_launch_file_name(file.old_path)
+
+
+def _list_uninstalled(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[str]:
+    """Yield the names of the programs that packages no longer install."""
+    names = (CMAKE_FILE, SETUP_FILE)
+    paths = (file.old_path or "" for file in changed_files)
+    folders = {versions.old.package_of(path) for path in paths if path.endswith(names)}
+    for folder in folders:
+        old, new = (
+            None if folder is None else read_package_facts(version, folder) for version in (versions.old, versions.new)
+        )
+        if old is not None and new is not None and new.unknown <= old.unknown:
+            before, after = ({fact.name for fact in facts.facts if fact.kind is _PROGRAM} for facts in (old, new))
+            yield from before - after
 
 
 def _is_lost_program(versions: Versions, file: ChangedFile) -> bool:
@@ -49,21 +95,30 @@ def _is_lost_program(versions: Versions, file: ChangedFile) -> bool:
     return versions.old.text(file.old_path or "").startswith("#!") or path.suffix in _SUFFIXES[1:4]
 
 
-def _find_commands(versions: Versions, path: str, text: str, lost: dict[str, ChangedFile]) -> Iterator[Change]:
-    """Yield the lines of a file with commands that name a lost program."""
+def _find_commands(versions: Versions, path: str, text: str, lost: _Lost) -> Iterator[Change]:
+    """Yield the lines of a file with commands that name something lost."""
+    names = "|".join(map(re.escape, sorted(lost.installed))) or "(?!)"
+    installed = re.compile(rf"(?<![\w.}}]){_BIN_FOLDERS}(?:{names})(?![\w/.-])")
     for number, line in enumerate(text.splitlines(), 1):
         if _NO_USE.match(line) or (path.endswith(_YAML_SUFFIXES) and _LIST_ITEM.fullmatch(line)):
             continue
         for match in _PATH.finditer(line):
-            target = _resolve(versions.new, path, match["path"], lost)
+            target = _resolve(versions.new, path, match["path"], lost.programs)
             if target is not None:
                 yield _make_change(phrase("names '{path}', which no longer exists", path=match["path"]), path, number)
-        run = _RUN.search(line)
+        for match in installed.finditer(line):
+            yield _make_change(phrase("names '{path}', which is no longer installed", path=match[0]), path, number)
+        run, launch = _RUN.search(line), _LAUNCH.search(line)
         if run is not None and _is_lost_executable(versions, run["package"], run["program"], lost):
-            text_of_run = phrase(
-                "starts '{name}' of '{package}', which no longer exists", name=run["program"], package=run["package"]
-            )
-            yield _make_change(text_of_run, path, number)
+            yield _make_start_change(run["package"], run["program"], path, number)
+        if launch is not None and _is_lost_launch(versions, launch["package"], launch["file"], lost):
+            yield _make_start_change(launch["package"], launch["file"], path, number)
+
+
+def _make_start_change(package: str, name: str, path: str, line: int) -> Change:
+    return _make_change(
+        phrase("starts '{name}' of '{package}', which no longer exists", name=name, package=package), path, line
+    )
 
 
 def _make_change(text: Phrase, path: str, line: int) -> Change:
@@ -81,10 +136,17 @@ def _resolve(version: Version, path: str, name: str, lost: dict[str, ChangedFile
     return next((candidate for candidate in candidates if candidate in lost), None)
 
 
-def _is_lost_executable(versions: Versions, package: str, name: str, lost: dict[str, ChangedFile]) -> bool:
+def _is_lost_executable(versions: Versions, package: str, name: str, lost: _Lost) -> bool:
     old, new = (find_packages(version).get(package) for version in (versions.old, versions.new))
-    is_named = any(PurePosixPath(path).name == name for path in lost)
+    is_named = name in lost.installed or any(PurePosixPath(path).name == name for path in lost.programs)
     return is_named and old is not None and new is not None and old.has(name) and new.lacks(name)
+
+
+def _is_lost_launch(versions: Versions, package: str, name: str, lost: _Lost) -> bool:
+    """Return whether a package had a launch file that it no longer has under this name, in any of its folders."""
+    old, new = (find_packages(version).get(package) for version in (versions.old, versions.new))
+    is_named = name in lost.launch_files and old is not None and name in old.names
+    return is_named and new is not None and name not in new.names and not new.may_generate
 
 
 def _find_lost_name(versions: Versions, file: ChangedFile) -> Change | None:

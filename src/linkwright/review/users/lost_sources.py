@@ -16,9 +16,16 @@ from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _COMMENT = re.compile(r"#[^\n]*")
 _BUILD = re.compile(
-    r"\b(?:add_library|add_executable|target_sources|generate_parameter_library|generate_parameter_module|"
-    r"rosidl_generate_interfaces|ament_add_gtest|ament_add_gmock|catkin_add_gtest)\s*\((?P<words>[^()]*)\)"
+    r"\b(?P<name>add_library|add_executable|target_sources|generate_parameter_library|generate_parameter_module|"
+    r"rosidl_generate_interfaces|ament_add_gtest|ament_add_gmock|ament_add_pytest_test|catkin_add_gtest|add_rostest|"
+    r"protobuf_generate\w*|add_(?:message|service|action)_files|generate_dynamic_reconfigure_options|"
+    r"rosbuild_add_(?:executable|library)|cuda_add_(?:executable|library)|qt\d?_(?:wrap_(?:cpp|ui)|add_resources)|"
+    r"pluginlib_export_plugin_description_file)\s*\((?P<words>[^()]*)\)",
+    re.IGNORECASE,
 )
+"""The commands of CMake that build or export the files that they name."""
+_INTERFACE_FOLDERS = {"add_message_files": "msg", "add_service_files": "srv", "add_action_files": "action"}
+"""The folders, beside the build file, of the files that commands of catkin name without a folder."""
 _CURRENT_FOLDER = re.compile(r"^\"?(?:\$\{(?:CMAKE_CURRENT_SOURCE_DIR|PROJECT_SOURCE_DIR|CMAKE_SOURCE_DIR)\}/|\./)?")
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*["<](?P<path>[^">\n]+)[">]', re.MULTILINE)
 _GENERATED = (".in", ".em", ".msg", ".srv", ".action", ".yaml", ".cfg", ".proto")
@@ -48,10 +55,12 @@ def _find_lost_words(path: str, text: str, lost: Sequence[str]) -> Iterator[Chan
         if PurePosixPath(file).is_relative_to(folder)
     }
     for command in _BUILD.finditer(text) if names else ():
+        default_folder = _INTERFACE_FOLDERS.get(command["name"].lower(), "")
         for word in re.finditer(r"\S+", command["words"]):
             name = _CURRENT_FOLDER.sub("", word[0]).rstrip('"')
-            if name in names:
-                names.discard(name)
+            file = name if "DIRECTORY" in command["words"] else (PurePosixPath(default_folder) / name).as_posix()
+            if file in names:
+                names.discard(file)
                 line = text[: command.start("words") + word.start()].count("\n") + 1
                 message = phrase("names '{file}', which no longer exists", file=name)
                 yield Change(message, Effect.BREAKING, phrase("the package does not build"), Location(path, line, 1))
