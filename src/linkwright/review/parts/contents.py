@@ -22,7 +22,8 @@ from linkwright.review.element_values import format_values
 from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.files.semantics import find_removal_reason
 from linkwright.review.joint_limits import find_written_reason
-from linkwright.review.merging import merge_reasons, name_edit
+from linkwright.review.merged_reasons import merge_reasons
+from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
-from linkwright.review.merging import merge_reasons
+from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.reports.sentences import format_change
 
 _ORDER = {kind: number for number, kind in enumerate(SubjectKind)}
