@@ -169,6 +169,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
     switched_parts = SwitchedParts(pair, case)
     has_known_poses = partial is None or not partial.has_stand_ins
     parents = ParentChanges(comparison, new, frames if has_known_poses else None)
+    unevaluated: dict[str, None] = {}
     for difference in join_value_differences(differences):
         if added_links.is_in_line_of_link(difference):
             continue
@@ -177,6 +178,8 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
                 removal = format_difference(difference)
                 text = phrase("{change}, unless a missing package defines it", change=removal)
                 yield Change(text, location=_find_difference_location(pair, difference))
+            elif partial.has_unevaluated_side(difference):
+                unevaluated[find_title(difference)[1]] = None
             continue
         if has_other_root and (difference.subject, difference.kind, difference.name) == ("link", "removed", old.root):
             continue
@@ -204,6 +207,8 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             reason,
             _find_mesh_location(pair, case, difference) or _find_difference_location(pair, difference),
         )
+    if unevaluated:
+        pair.add_unevaluated(list(unevaluated))
     if partial is None:
         links, joints = old.links.keys() - new.links.keys(), old.joints.keys() - new.joints.keys()
         yield from find_left_names(new.extensions, links, joints, pair.location)
