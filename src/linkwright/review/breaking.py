@@ -7,7 +7,6 @@ from collections.abc import Collection, Iterable, Sequence
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, find_lost_interfaces
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted
-from linkwright.review.changes import MAX_NAMES
 from linkwright.review.joint_limits import find_limited_reason
 from linkwright.review.names_in_plugins import NAME_TAGS, NAMESPACE_TAG, extract_used_name
 from linkwright.urdf import Robot
@@ -15,6 +14,8 @@ from linkwright.urdf import Robot
 MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
 """The types of joints with a position in ``/joint_states``."""
 _LINEAR = "prismatic"
+_MAX_QUOTED = 6
+"""The maximum number of names in a reason."""
 _CAMERA_NAME = re.compile(r"camera_?name", re.IGNORECASE)
 """The parameter of a camera of gazebo_ros that is the first part of the names of its topics."""
 _INTERFACE = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+) (?P<kind>command|state)_interface (?P<name>\S+)")
@@ -95,8 +96,8 @@ def names_reason(names: Sequence[str]) -> Phrase:
 
 
 def quote_first(names: Iterable[str]) -> Phrase:
-    """Return the first names, each in quotation marks, and the number of the others."""
-    return joined_first(map(quoted, names), MAX_NAMES)
+    """Return the first names, each in quotation marks, and the number of the others, which the change lists."""
+    return joined_first(map(quoted, names), _MAX_QUOTED)
 
 
 def possible_name_reason(name: str) -> Phrase:

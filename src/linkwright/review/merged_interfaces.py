@@ -9,14 +9,12 @@ from dataclasses import replace
 from linkwright.diagnostics import phrase
 from linkwright.review.changes import REMOVED_VALUE, Change, Effect
 from linkwright.review.merged_reasons import merge_reasons
+from linkwright.review.numbered_names import join_numbered
 
 _INTERFACE = re.compile(r"(?P<parent>(?:.* )?(?:command|state)_interface) (?P<name>\S+)")
 """An interface of ros2_control as a whole."""
-_END_NUMBER = re.compile(r"\d+$")
 _SIZE = re.compile(r"\bsize=(\d+)\b")
 """The number of items of an interface, each of which hardware exports under a name of its own."""
-_MIN_RUN = 3
-"""The minimum number of names with consecutive numbers that are shown as one."""
 
 
 def merge_interfaces(changes: Sequence[Change]) -> list[Change]:
@@ -41,23 +39,8 @@ def _join_interfaces(changes: Sequence[Change]) -> Change:
         return first
     names = [change.property_name.rpartition(" ")[2] for change in changes]
     parent = first.property_name.rpartition(" ")[0]
-    sentence = first.sentence.with_arguments(property=f"{parent} {', '.join(_join_numbered(names))}")
+    sentence = first.sentence.with_arguments(property=f"{parent} {', '.join(join_numbered(names))}")
     return replace(first, sentence=sentence, reason=merge_reasons(change.reason for change in changes))
-
-
-def _join_numbered(names: Sequence[str]) -> list[str]:
-    """Return names in their order, with consecutive numbers at their ends as one, such as ``a_0 to a_6``."""
-    runs: list[list[str]] = []
-    for name in names:
-        number = _END_NUMBER.search(name)
-        stem = name[: number.start()] if number is not None else name
-        last = None if not runs else _END_NUMBER.search(runs[-1][-1])
-        is_next = number is not None and last is not None and int(number[0]) == int(last[0]) + 1
-        if is_next and runs[-1][-1][: last.start() if last is not None else None] == stem:
-            runs[-1].append(name)
-        else:
-            runs.append([name])
-    return [name for run in runs for name in (run if len(run) < _MIN_RUN else [f"{run[0]} to {run[-1]}"])]
 
 
 def _replace_sized_interfaces(changes: Sequence[Change]) -> Iterator[Change]:
@@ -101,5 +84,5 @@ def _name_items(change: Change) -> tuple[str, str]:
     size = _SIZE.search(_get_removed_value(change))
     assert size is not None
     parent, _, name = change.property_name.rpartition(" ")
-    items = _join_numbered([f"{name}_{index}" for index in range(int(size[1]))])
+    items = join_numbered([f"{name}_{index}" for index in range(int(size[1]))])
     return change.name, f"{parent} {', '.join(items)}"
