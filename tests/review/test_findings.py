@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
-from linkwright.diagnostics import Diagnostic, phrase
+from linkwright.diagnostics import Diagnostic, Span, phrase
+from linkwright.review import open_versions
 from linkwright.review.folders import finding_with_package_uris
+from linkwright.review.unfixed_findings import drop_unfixed_findings
 from tests.repositories import ARM, MACRO, PACKAGE_XML
 from tests.review.conftest import breaking
 
@@ -181,3 +184,35 @@ def test_share_folders_of_the_computer_become_uris():
     message = phrase("there is no '{path}'", path="/home/ann/.cache/shares/1f/arm/meshes/arm.stl")
     finding = finding_with_package_uris(Diagnostic("SDF162", message), {"arm": Path("/home/ann/.cache/shares/1f/arm")})
     assert str(finding.message) == "there is no 'package://arm/meshes/arm.stl'"
+
+
+def find_fixed(repository, code: str, path: str, message: str, added: Sequence[Diagnostic] = ()) -> list[str]:
+    """Return the codes of the fixed findings of the last commit, if the old version has one finding more."""
+    versions = open_versions(repository.root, "HEAD~1..HEAD")
+    try:
+        fixed = [Diagnostic(code, message, Span(path, 1, 1, 1, 1))]
+        return finding_codes(drop_unfixed_findings(versions, fixed, added, {}))
+    finally:
+        versions.close()
+
+
+@pytest.mark.parametrize(("other", "is_fixed"), [(PATH, False), (SEGMENT, True)])
+def test_finding_about_a_mesh_that_is_missing_now_is_not_fixed(package, other, is_fixed):
+    package.commit({PATH: ARM + "<!-- -->"})
+    missing = Diagnostic("LW424", "the mesh file is missing", Span(other, 1, 1, 1, 1))
+    assert bool(find_fixed(package, "LW435", PATH, "the mesh has 21 482 triangles", [missing])) == is_fixed
+
+
+@pytest.mark.parametrize(
+    ("files", "is_fixed"),
+    [
+        ({"drivers/package.xml": PACKAGE_XML}, False),
+        ({"arm_description/package.xml": PACKAGE_XML.replace("xacro", "drivers")}, True),
+        ({"arm_description/launch/all.launch.py": launch_text("arm_description")}, True),
+    ],
+)
+def test_package_of_launch_files_is_declared_only_by_their_manifest(package, files, is_fixed):
+    package.commit({"arm_description/launch/all.launch.py": launch_text("drivers")})
+    package.commit(files)
+    message = "launch files use a package on which package.xml does not depend: 'drivers'"
+    assert bool(find_fixed(package, "LW848", "arm_description/package.xml", message)) == is_fixed

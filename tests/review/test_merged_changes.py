@@ -301,3 +301,57 @@ def test_colors_that_are_equal_in_8_bits_are_no_change(repository, compare, colo
     repository.commit({PLAIN: CONTROLLERS})
     repository.write({PLAIN: CONTROLLERS.replace("1 0.608 0 1", color)})
     assert bool(compare(repository).subjects) == is_change
+
+
+ARRAYS = """<xacro:arg name="prefix" default=""/>
+  <ros2_control name="arm" type="system">
+    <hardware><plugin>drivers/Arm</plugin></hardware>
+    <gpio name="$(arg prefix)io">INTERFACES</gpio>
+  </ros2_control>
+</robot>"""
+
+
+def prefixed_launch(prefix: str) -> str:
+    command = f"'xacro $(find-pkg-share arm_description)/urdf/arm.urdf.xacro prefix:={prefix}'"
+    node = f"""<node pkg="robot_state_publisher" exec="robot_state_publisher">
+      <param name="robot_description" value="$(command {command})"/></node>"""
+    return f"<launch>{node}</launch>"
+
+
+def test_change_with_other_values_of_a_prefix_is_one_line(package, compare):
+    old = '<command_interface name="out"><param name="max">1</param></command_interface>'
+    text = ARM.replace("</robot>", ARRAYS)
+    files = {f"arm_description/launch/{name}.launch.xml": prefixed_launch(name) for name in ("left_", "right_")}
+    package.commit({**files, ROBOT: text.replace("INTERFACES", old)})
+    package.write({ROBOT: text.replace("INTERFACES", old.replace(">1<", ">2<"))})
+    (change,) = subject(compare(package), ROBOT).changes
+    assert str(change.sentence) == "extension 'ros2_control arm': gpio left_io command_interface out param max 1 -> 2"
+    assert (change.cases, change.other_names) == ((), ())
+
+
+def test_change_with_only_one_of_the_prefixes_names_it(package, compare):
+    text = ARM.replace("</robot>", ARRAYS).replace("INTERFACES", '<command_interface name="out"/>')
+    joint = """<xacro:if value="${'$(arg prefix)' == 'left_'}"><link name="$(arg prefix)tip"/>
+    <joint name="$(arg prefix)tip_joint" type="fixed"><parent link="lower"/><child link="$(arg prefix)tip"/>
+      <origin xyz="0 0 LENGTH"/></joint></xacro:if>
+  <ros2_control"""
+    text = text.replace("<ros2_control", joint, 1)
+    files = {f"arm_description/launch/{name}.launch.xml": prefixed_launch(name) for name in ("left_", "right_")}
+    package.commit({**files, ROBOT: text.replace("LENGTH", "1")})
+    package.write({ROBOT: text.replace("LENGTH", "2")})
+    (change,) = subject(compare(package), ROBOT).changes
+    assert str(change.sentence) == "joint 'left_tip_joint': origin xyz 0 0 1 -> 0 0 2 m (moved by 1 m)"
+    assert change.cases == ("prefix:=left_",)
+
+
+def test_interface_with_a_size_and_the_names_of_its_items_are_one_line(package, compare):
+    old = '<command_interface name="out" size="4"/>'
+    new = "".join(f'<command_interface name="out_{number}"/>' for number in range(4))
+    text = ARM.replace("</robot>", ARRAYS)
+    package.commit({ROBOT: text.replace("INTERFACES", old)})
+    package.write({ROBOT: text.replace("INTERFACES", new)})
+    result = compare(package)
+    assert sentences(subject(result, ROBOT)) == [
+        "extension 'ros2_control arm': gpio io command_interface out size=4 -> out_0 to out_3"
+    ]
+    assert breaking(result) == []

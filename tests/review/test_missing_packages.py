@@ -24,6 +24,11 @@ SENSOR = """  <xacro:include filename="$(find lidar_description)/urdf/lidar.xacr
 WITH_SENSOR = ARM.replace("</robot>", SENSOR)
 
 
+QUARTER = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="quarter" value="0.25"/>
+</robot>"""
+
+
 @pytest.fixture
 def sensor_package(package):
     package.commit({PATH: WITH_SENSOR})
@@ -222,3 +227,31 @@ def test_topic_that_a_call_of_a_missing_macro_newly_passes_may_be_breaking(senso
     for attribute, is_breaking in (('topic="scan"', True), ('rate_limit="5"', False)):
         sensor_package.write({PATH: WITH_SENSOR.replace('rate="10"', f'rate="10" {attribute}')})
         assert bool(breaking(compare(sensor_package))) is is_breaking
+
+
+def test_value_that_needs_a_file_which_only_the_new_version_misses_is_not_compared(package, compare):
+    include = '<xacro:include filename="$(find lidar_description)/urdf/lidar.xacro"/>'
+    call = '<xacro:lidar name="front" parent="lower" angle="${2 * quarter}"/>'
+    angle = '<xacro:include filename="$(find arm_description)/urdf/angle.xacro"/>'
+    package.commit(
+        {
+            PATH: ARM.replace("</robot>", angle + include + call + "</robot>"),
+            "arm_description/urdf/angle.xacro": QUARTER,
+        }
+    )
+    package.write({PATH: ARM.replace("</robot>", angle.replace("arm_d", "maths_d") + include + call + "</robot>")})
+    review_subject = subject(compare(package), PATH)
+    assert [line for line in sentences(review_subject) if "lidar front" in line] == []
+    assert [str(problem.text) for problem in review_subject.problems] == [
+        "values that need definitions of missing files are not compared: 'lidar front'"
+    ]
+
+
+def test_color_of_a_material_that_a_missing_file_may_define_is_not_lost(package, compare):
+    visual = '<visual><geometry><sphere radius="1"/></geometry><material name="white">COLOR</material></visual>'
+    joint = '<joint name="lid_joint" type="fixed"><parent link="lower"/><child link="lid"/></joint>'
+    text = ARM.replace("</robot>", f'<link name="lid">{visual}</link>{joint}</robot>')
+    package.commit({PATH: text.replace("COLOR", '<color rgba="1 1 1 1"/>')})
+    include = '<xacro:include filename="$(find paint_description)/urdf/materials.xacro"/>'
+    package.write({PATH: text.replace("COLOR", "").replace("</robot>", include + "</robot>")})
+    assert [line for item in compare(package).subjects for line in sentences(item) if "color" in line] == []

@@ -426,3 +426,15 @@ def test_renamed_macros_that_call_each_other(library, compare):
     (change,) = subject(compare(library), path).changes
     assert str(change.sentence) == "macro 'wheel' renamed to 'my_wheel'"
     assert change.other_names == ("base -> my_base",)
+
+
+@pytest.mark.parametrize(("file", "is_breaking"), [("segment.xacro", True), ("wheels.xacro", False)])
+def test_removed_call_of_a_macro_from_a_file_that_does_not_exist_breaks_nobody(library, compare, file, is_breaking):
+    include = f'<xacro:include filename="$(find arm_description)/urdf/{file}"/>\n  <xacro:property'
+    text = GRIPPER.replace("<xacro:property", include, 1)
+    call = '<xacro:wheel name="left_wheel"/>'
+    library.commit({TOOL: text.replace("  </xacro:macro>", f"{call}</xacro:macro>")})
+    library.write({TOOL: text})
+    result = compare(library)
+    assert "macro 'gripper': wheel left_wheel removed" in sentences(subject(result, TOOL))
+    assert bool(breaking(result)) == is_breaking

@@ -62,7 +62,7 @@ def test_expression_in_xacro_is_not_breaking(repository, compare):
     result = compare(repository)
     assert breaking(result) == []
     assert sentences(subject(result, path)) == [
-        "link 'floor': visual geometry mesh package://w/meshes/base.stl -> mesh w/meshes/base.stl"
+        "link 'floor': visual geometry mesh package://w/meshes/base.stl -> mesh file://w/meshes/base.stl"
     ]
 
 
@@ -162,3 +162,14 @@ def test_installed_files_have_uris_instead_of_paths_of_the_computer(repository, 
     found = sentences(subject(compare(repository), "arm/urdf/arm.urdf.xacro"))
     expected = "link 'base': visual geometry mesh model://vendor/meshes/a.stl -> mesh file://$(find arm)/meshes/a.stl"
     assert found == [expected]
+
+
+def test_mesh_named_by_its_file_differs_from_its_path(repository, compare):
+    link = '<link name="base"><visual><geometry><mesh filename="{}"/></geometry></visual></link>'
+    text = f'<robot name="arm" xmlns:xacro="http://ros.org/wiki/xacro">{link}</robot>'
+    path = "w/urdf/cell.urdf.xacro"
+    repository.commit({**FILES, path: text.format("$(find w)/meshes/base.stl")})
+    repository.write({path: text.format("file://$(find w)/meshes/base.stl")})
+    assert sentences(subject(compare(repository), path)) == [
+        "link 'base': visual geometry mesh w/meshes/base.stl -> mesh file://w/meshes/base.stl"
+    ]

@@ -11,6 +11,7 @@ from linkwright.diagnostics import phrase
 from linkwright.review import Change, Effect, Review, Subject, SubjectKind
 from linkwright.review.changes import Location
 from linkwright.review.reports import as_data, as_html, as_markdown, as_text
+from linkwright.review.reports.sentences import format_change
 
 
 def make_subject(path, changes, kind=SubjectKind.LAUNCH_FILE):
@@ -191,7 +192,7 @@ def test_changes_in_common_with_an_earlier_file_are_counted():
     ]
     review = Review("main", "topic", subjects)
     text = as_text(review)
-    assert "b.yaml\n  - rate 7 -> 8\n  - the same 2 changes as in a.yaml\n" in text
+    assert "b.yaml\n  - rate 7 -> 8\n  - the same 2 changes as in a.yaml, but not: rate 5 -> 6\n" in text
     assert "c.yaml\n  - speed 1 -> 2\n" in text
     assert "0 breaking changes, 8 changes" in text
     assert [len(subject["changes"]) for subject in as_data(review)["subjects"]] == [3, 3, 2]
@@ -296,3 +297,46 @@ def test_robots_with_only_the_changes_of_a_shared_file_are_one_section():
     text = as_text(review)
     assert "= the same in 2 more files: b.urdf.xacro, c.urdf.xacro" in text
     assert "0 breaking changes, 1 change," in text
+
+
+def make_shared_change(*names: str) -> Change:
+    sentence = phrase(
+        "{subject} '{name}': {property} {old} -> {new}", subject="joint", name="j", property="p", old=1, new=2
+    )
+    return Change(sentence, location=Location("shared.xacro", 3, 1), other_names=names)
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (("joint2", "joint3"), "= the same in one more file: b.urdf.xacro"),
+        (("joint2",), "= the same in one more file: b.urdf.xacro"),
+        (("joint2", "joint3", "joint4"), "- the same change in a shared file as in a.urdf.xacro, here also 'joint4'"),
+        (("left", "right", "middle"), "- joint 'j': p 1 -> 2; also 'left', 'right', 'middle'"),
+    ],
+)
+def test_other_names_of_a_change_to_a_shared_file_are_named(names, expected):
+    changes = {"a": make_shared_change("joint2", "joint3"), "b": make_shared_change(*names)}
+    kind = SubjectKind.DESCRIPTION
+    subjects = [make_subject(f"{name}.urdf.xacro", [change], kind) for name, change in changes.items()]
+    assert f"  {expected}\n" in as_text(Review("main", "topic", subjects))
+
+
+@pytest.mark.parametrize(
+    ("first", "names", "expected"),
+    [
+        ("a.joint1.max", ("a.joint2.max", "a.joint3.max", "a.joint4.max"), "'joint2' to 'joint4'"),
+        ("a.joint1.max", ("a.joint2.max", "a.joint2.min"), "'a.joint2.max', 'a.joint2.min'"),
+        ("a.joint1.max", ("b.joint1.max",), "'b'"),
+        ("joint1.max", ("joint2.max",), "'joint2.max'"),
+        ("a.x.max", ("a.arm_8.max", "a.arm_9.max", "a.arm_10.max", "a.leg_11.max"), "'arm_8' to 'arm_10', 'leg_11'"),
+    ],
+)
+def test_other_parameters_are_named_by_what_differs(first, names, expected):
+    change = Change(phrase("{parameter} {old} -> {new}", parameter=first, old=1, new=2), other_names=names)
+    assert str(format_change(change)) == f"{first} 1 -> 2; also {expected}"
+
+
+def test_place_in_the_old_version_is_marked():
+    change = Change(phrase("link removed"), location=Location("a.urdf", 3, 1, is_old=True))
+    assert "    a.urdf:3:1 (old)\n" in as_text(Review("main", "topic", [make_subject("a.urdf", [change])]))

@@ -65,3 +65,11 @@ def test_program_whose_name_begins_like_that_of_a_test(repository, compare, begi
     repository.write({path: beginning + option})
     lines = [line for found in compare(repository).subjects for line in sentences(found)]
     assert any("'--speed'" in line for line in lines) == is_compared
+
+
+def test_reason_for_several_options_quotes_each(repository, compare):
+    options = "parser.add_argument('--port')\nparser.add_argument('--speed')\n"
+    repository.commit({PATH: ARGPARSE.format("'--rate'") + options})
+    repository.write({PATH: ARGPARSE.format("'--rate'")})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == "callers that pass '--port', '--speed' get an error"

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, find_lost_interfaces
-from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.changes import MAX_NAMES
+from linkwright.diagnostics import Phrase, joined_first, phrase, quoted
 from linkwright.review.joint_limits import find_limited_reason
 from linkwright.review.names_in_plugins import NAME_TAGS, NAMESPACE_TAG, extract_used_name
 from linkwright.urdf import Robot
@@ -15,6 +14,8 @@ from linkwright.urdf import Robot
 MOVING_TYPES = frozenset({"revolute", "continuous", "prismatic"})
 """The types of joints with a position in ``/joint_states``."""
 _LINEAR = "prismatic"
+_MAX_QUOTED = 6
+"""The maximum number of names in a reason."""
 _CAMERA_NAME = re.compile(r"camera_?name", re.IGNORECASE)
 """The parameter of a camera of gazebo_ros that is the first part of the names of its topics."""
 _INTERFACE = re.compile(r"(?:joint|sensor|gpio) (?P<joint>\S+) (?P<kind>command|state)_interface (?P<name>\S+)")
@@ -65,6 +66,13 @@ def frame_reason(name: str) -> Phrase:
     return phrase("programs that look up the frame '{name}' do not find it", name=name)
 
 
+def frames_reason(names: Sequence[str]) -> Phrase:
+    """Return the reason why removing links is breaking."""
+    if len(names) == 1:
+        return frame_reason(names[0])
+    return phrase("programs that look up the frames {names} do not find them", names=quote_first(names))
+
+
 def call_reason(name: str) -> Phrase:
     """Return the reason why removing a call of a macro is breaking."""
     return phrase("programs that use the frames and topics of '{name}' do not find them", name=name)
@@ -84,11 +92,12 @@ def names_reason(names: Sequence[str]) -> Phrase:
     """Return the reason why removing some topics, services or other names is breaking."""
     if len(names) == 1:
         return name_reason(names[0])
-    return phrase("programs that use the names {names} do not find them", names=_quote(names))
+    return phrase("programs that use the names {names} do not find them", names=quote_first(names))
 
 
-def _quote(names: Sequence[str]) -> Phrase:
-    return joined_first([f"'{name}'" for name in names], MAX_NAMES)
+def quote_first(names: Iterable[str]) -> Phrase:
+    """Return the first names, each in quotation marks, and the number of the others, which the change lists."""
+    return joined_first(map(quoted, names), _MAX_QUOTED)
 
 
 def possible_name_reason(name: str) -> Phrase:
@@ -102,7 +111,7 @@ def possible_names_reason(names: Sequence[str]) -> Phrase:
         return possible_name_reason(names[0])
     return phrase(
         "if the node publishes or serves {names}, programs that use the names do not find them",
-        names=_quote(names),
+        names=quote_first(names),
     )
 
 

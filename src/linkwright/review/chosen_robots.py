@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.breaking import frame_reason
+from linkwright.review.breaking import frames_reason
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
@@ -116,4 +116,4 @@ def _compare_robots(versions: Versions, old: str, new: str, location: Location) 
         return None
     names = joined_first(lost, MAX_NAMES)
     text = phrase("the robot '{new}' has no links {names} of '{old}'", new=new, old=old, names=names)
-    return Change(text, Effect.BREAKING, frame_reason(str(names)), location)
+    return Change(text, Effect.BREAKING, frames_reason(lost), location)

@@ -22,7 +22,7 @@ def without_folder(value: _Value, folder: Path) -> _Value:
     """
 
     def change(text: str) -> str:
-        text = text.replace(f"file://{folder}/", "").replace(f"{folder}/", "").replace(str(folder), ".")
+        text = text.replace(f"{folder}/", "").replace(str(folder), ".")
         return text.replace(f"{PLACEHOLDER_FOLDER}/", "package://")
 
     return _change_texts(value, change)

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import replace
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import phrase
 from linkwright.review.changes import REMOVED_VALUE, Change, Location
+from linkwright.review.merged_interfaces import merge_interfaces
+from linkwright.review.merged_reasons import merge_reasons
 
 _PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+|plugin \S+ \((?P<joint>[^()]+)\)) (?P<property>.+)")
 """A property of hardware of ros2_control below one of its joints, GPIOs or sensors, or of a plugin for a joint."""
 _PARAMETER = re.compile(r"(?P<parent>(?:.* )?)(?P<parameter>param \S+)")
 """A parameter of hardware of ros2_control, or of one of its joints, as a whole."""
-_INTERFACE = re.compile(r"(?P<parent>(?:.* )?(?:command|state)_interface) \S+")
-"""An interface of ros2_control as a whole."""
 _TRANSMISSION = "transmission "
 _PART_OF_TRANSMISSION = re.compile(r"(joint|actuator) \S+")
 """A joint or motor of a transmission. Its name differs in each transmission."""
@@ -22,9 +22,6 @@ _TOKEN = re.compile(r"[^\W_]+|[\W_]")
 """A word or number in a name, or a separating character."""
 _NO_NAME = re.compile(r"None|[\d\s.,;:+\-e<>()]*", re.ASCII)
 """A missing value or numbers. They are the same change only if they are equal."""
-_END_NUMBER = re.compile(r"\d+$")
-_MIN_RUN = 3
-"""The minimum number of names with consecutive numbers that are shown as one."""
 _OWN_NAME = "*"
 """The mark for the name of the changed link, joint or extension in its properties and values."""
 
@@ -34,6 +31,7 @@ def merge_changes(changes: Iterable[Change]) -> list[Change]:
 
     Renames count as equal if they replace the same part, such as a prefix.
     """
+    changes = merge_interfaces(list(changes))
     for key, names in (
         (_make_content_key, _list_names),
         (_make_part_key, _list_part_names),
@@ -44,53 +42,7 @@ def merge_changes(changes: Iterable[Change]) -> list[Change]:
             content = key(change) if change.name else None
             groups.setdefault(number if content is None else (content, change.cases), []).append(change)
         changes = [group[0] if len(group) == 1 else _merge_group(group, names) for group in groups.values()]
-    return _merge_interfaces(list(changes))
-
-
-def _merge_interfaces(changes: Sequence[Change]) -> list[Change]:
-    """Return the changes, with added or removed interfaces of the same joint or sensor in one line."""
-    groups: dict[Hashable, list[Change]] = {}
-    for number, change in enumerate(changes):
-        key: Hashable = number
-        interface = _INTERFACE.fullmatch(change.property_name)
-        if interface is not None and change.core is change.sentence:
-            content = change.effect, change.name, change.other_names, change.values, change.cases
-            key = *content, interface["parent"], change.reason is None
-        groups.setdefault(key, []).append(change)
-    return [group[0] if len(group) == 1 else _join_interfaces(group) for group in groups.values()]
-
-
-def _join_interfaces(changes: Sequence[Change]) -> Change:
-    first = changes[0]
-    names = [change.property_name.rpartition(" ")[2] for change in changes]
-    parent = first.property_name.rpartition(" ")[0]
-    sentence = first.sentence.with_arguments(property=f"{parent} {', '.join(_join_numbered(names))}")
-    return replace(first, sentence=sentence, reason=merge_reasons(change.reason for change in changes))
-
-
-def _join_numbered(names: Sequence[str]) -> list[str]:
-    """Return names in their order, with consecutive numbers at their ends as one, such as ``a_0 to a_6``."""
-    runs: list[list[str]] = []
-    for name in names:
-        number = _END_NUMBER.search(name)
-        stem = name[: number.start()] if number is not None else name
-        last = None if not runs else _END_NUMBER.search(runs[-1][-1])
-        is_next = number is not None and last is not None and int(number[0]) == int(last[0]) + 1
-        if is_next and runs[-1][-1][: last.start() if last is not None else None] == stem:
-            runs[-1].append(name)
-        else:
-            runs.append([name])
-    return [name for run in runs for name in (run if len(run) < _MIN_RUN else [f"{run[0]} to {run[-1]}"])]
-
-
-def merge_reasons(reasons: Iterable[Phrase | None]) -> Phrase | None:
-    """Return one reason for breaking changes whose reasons differ only in names.
-
-    The result is None if the changes are not breaking.
-    """
-    distinct = list({str(reason): reason for reason in reasons}.values())
-    first = distinct[0]
-    return first if first is None or len(distinct) == 1 else phrase("{reason}; likewise for the others", reason=first)
+    return merge_interfaces(list(changes))
 
 
 def _make_content_key(change: Change) -> Hashable:

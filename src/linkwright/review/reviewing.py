@@ -83,6 +83,7 @@ from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.sources.reading import forget_source_names
 from linkwright.review.undeclared_packages import mark_undeclared
+from linkwright.review.unfixed_findings import drop_unfixed_findings
 from linkwright.review.users.left_robot_names import find_left_robot_names
 from linkwright.review.users.lost_files import find_lost_files
 from linkwright.review.users.references import find_lost_references
@@ -198,6 +199,7 @@ class _Reviewer:
         ]
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
         added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)
+        fixed = drop_unfixed_findings(self._versions, fixed, added, self._new_paths)
         readable, added = mark_undeclared(self._versions, readable, drop_told_findings(readable, added))
         readable, added = mark_failures(self._versions, readable, added, fixed, old_findings.diagnostics)
         return Review(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from pathlib import PurePosixPath
@@ -12,6 +12,7 @@ from pathlib import PurePosixPath
 import yaml
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.breaking import quote_first
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair, UnreadableFileError
@@ -100,7 +101,7 @@ def compare_generated_parameters(pair: FilePair, old_root: yaml.Node, new_root: 
     if added:
         first = next(iter(added.values()))
         required = [name for name, parameter in added.items() if parameter.is_required]
-        reason = _make_required_reason(joined_first(required, MAX_NAMES)) if required else None
+        reason = _make_required_reason(required) if required else None
         text = phrase("{kind} added: {names}", kind=phrase("parameters"), names=_format_names(added))
         pair.changes.append(_make_change(text, reason, Location(pair.new_path, first.line, first.column)))
     if lost:
@@ -116,8 +117,8 @@ def _make_removal_reason(pair: FilePair, root: yaml.Node, lost: Mapping[str, _Pa
     if user is not None:
         return phrase("'{file}' still sets '{name}', which has no effect", file=user[0], name=user[1])
     return phrase(
-        "values that launch files and parameter files give to '{name}' have no effect",
-        name=joined_first(lost, MAX_NAMES),
+        "values that launch files and parameter files give to {names} have no effect",
+        names=quote_first(lost),
     )
 
 
@@ -135,8 +136,8 @@ def _pair_similar(lost: Mapping[str, _Parameter], added: Mapping[str, _Parameter
             yield old, new
 
 
-def _make_required_reason(names: Phrase | str) -> Phrase:
-    return phrase("the program fails where '{name}' is not set", name=names)
+def _make_required_reason(names: Sequence[str]) -> Phrase:
+    return phrase("the program fails where {names} is not set", names=quote_first(names))
 
 
 def _make_change(text: Phrase, reason: Phrase | None, location: Location) -> Change:
@@ -171,7 +172,7 @@ def _compare_parameter(name: str, old: _Parameter, new: _Parameter) -> Iterator[
             new=new.default or "-",
         )
         is_lost = new.is_required and not old.is_required
-        yield text, _make_required_reason(name) if is_lost else None
+        yield text, _make_required_reason([name]) if is_lost else None
     for rule in dict.fromkeys((*old.rules, *new.rules)):
         before, after = old.rules.get(rule), new.rules.get(rule)
         if before != after:

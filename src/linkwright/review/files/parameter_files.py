@@ -37,7 +37,7 @@ from linkwright.review.files.value_changes import ValueChange, merge_values
 from linkwright.review.files.yaml_includes import resolve_includes
 from linkwright.review.files.yaml_lists import find_item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, collect_values, compose_yaml, read_yaml_text
-from linkwright.review.merging import merge_reasons
+from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.versions import Version
 
 _MAX_VALUES = 32

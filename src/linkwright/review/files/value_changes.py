@@ -10,7 +10,8 @@ from typing import Literal
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.list_changes import change_text
-from linkwright.review.merging import merge_reasons, name_edit
+from linkwright.review.merged_reasons import merge_reasons
+from linkwright.review.merging import name_edit
 
 _ITEM = re.compile(r"(?P<list>[^\[]*)\[(?:old )?\d+\]")
 """The path of a list item without a name."""

@@ -22,10 +22,12 @@ from linkwright.review.element_values import format_values
 from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.files.semantics import find_removal_reason
 from linkwright.review.joint_limits import find_written_reason
-from linkwright.review.merging import merge_reasons, name_edit
+from linkwright.review.merged_reasons import merge_reasons
+from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
+from linkwright.review.parts.missing_includes import has_missing_include
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
@@ -372,7 +374,14 @@ class _ReportedDifference:
         if is_call and self.pair.names_hardware(old):
             removed = Difference("extension", f"{ROS2_CONTROL} {name}", "removed")
             return find_extension_reason(removed) if self.difference.new_element is None else None
-        return call_reason(name) if is_call and name not in _collect_words(self.pair.new.root) else None
+        is_lost = is_call and name not in _collect_words(self.pair.new.root) and not self._calls_missing_macro(old)
+        return call_reason(name) if is_lost else None
+
+    def _calls_missing_macro(self, call: Element) -> bool:
+        """Return whether the old version could not expand a call, because a file of the repository does not exist."""
+        macro = call.tag.removeprefix(_XACRO)
+        version = self.pair.versions.old
+        return macro not in version.macros and has_missing_include(version, self.pair.old_path, self.pair.old.root)
 
     def _find_lost_name_reason(self, old: Element) -> Phrase | None:
         """Return the reason why removing a Gazebo element is breaking; None if it is not.

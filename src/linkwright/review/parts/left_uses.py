@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from pathlib import Path
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
-from linkwright.review.parts.outline import Outline
+from linkwright.review.parts.missing_includes import resolve_include
+from linkwright.review.parts.outline import INCLUDE, Outline
 from linkwright.review.versions import Version, Versions
 from linkwright.xmltree import Element
 
-_INCLUDE, _XACRO = "xacro:include", "xacro:"
-_PATH_IN_PACKAGE = re.compile(r"\$\(find\s+([\w-]+)\s*\)/+([^$]+)")
+_XACRO = "xacro:"
 
 
 def find_left_uses(
@@ -52,14 +49,14 @@ def _find_left_includes(
     versions: Versions, path: str, outline: Outline, renamed: Mapping[str, str | None]
 ) -> Iterator[Change]:
     for element in outline.root.walk():
-        if element.tag != _INCLUDE or element.attributes.get("optional") == "true":
+        if element.tag != INCLUDE or element.attributes.get("optional") == "true":
             continue
         filename = element.attributes.get("filename", "").strip()
-        old = _resolve(versions.old, path, filename)
+        old = resolve_include(versions.old, path, filename)
         old_path = None if old is None or not old.is_file() else versions.old.relative(old)
         if old_path is None or old_path not in renamed:
             continue
-        new = _resolve(versions.new, path, filename)
+        new = resolve_include(versions.new, path, filename)
         if new is None or new.exists():
             continue
         new_path = renamed[old_path]
@@ -67,16 +64,6 @@ def _find_left_includes(
         if new_path is not None:
             text = phrase("includes '{file}', which is now {path}", file=filename, path=new_path)
         yield _make_change(text, _find_location(versions.new, path, element))
-
-
-def _resolve(version: Version, path: str, filename: str) -> Path | None:
-    """Return the file that an include names, or None if its path is computed or its package unknown."""
-    folder = version.file(path).parent
-    match = _PATH_IN_PACKAGE.fullmatch(filename)
-    if match is not None:
-        share = version.share_of(match[1], folder)
-        return None if share is None else share / match[2]
-    return None if "$" in filename or not filename else Path(os.path.normpath(folder / filename))
 
 
 def _find_left_calls(

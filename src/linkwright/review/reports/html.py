@@ -123,9 +123,7 @@ def _render_breaking_changes(review: Review) -> Iterator[str]:
 def _render_section(section: Section, scenes: Scenes) -> str:
     subject = section.subject
     items = [_render_change(change, subject) + _render_place(change, subject) for change in section.changes]
-    items += [
-        _escape_text(format_repeated(path, count, is_shared=is_shared)) for path, count, is_shared in section.repeated
-    ]
+    items += [_escape_text(format_repeated(repeat)) for repeat in section.repeated]
     alike = format_alike(section.alike)
     items += [] if alike is None else [_escape_text(alike)]
     items += [f"<span class='breaking'>{_escape_text(problem.text)}</span>" for problem in subject.problems]

@@ -129,9 +129,7 @@ def _format_section(section: Section) -> str:
     others = [change for change in section.changes if change.effect is not Effect.BREAKING]
     changes = [_format_change(change, subject) for change in _join_actions(others)]
     lines += _fold(changes, _MAX_OPEN_CHANGES, _count_more_changes)
-    lines += [
-        f"- {_escape(format_repeated(path, count, is_shared=is_shared))}" for path, count, is_shared in section.repeated
-    ]
+    lines += [f"- {_escape(format_repeated(repeat))}" for repeat in section.repeated]
     lines += [f"> {_escape(problem.text)}" for problem in subject.problems]
     if not lines:
         return ""

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, counted, joined, phrase
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
-from linkwright.review.merging import merge_reasons
-from linkwright.review.reports.sentences import format_change
+from linkwright.review.merged_reasons import merge_reasons
+from linkwright.review.reports.sentences import Repeat, format_change
 
 _ORDER = {kind: number for number, kind in enumerate(SubjectKind)}
 _MIN_REPEATED = 2
@@ -19,20 +18,6 @@ _MIN_CODE_SECTIONS = 3
 """The minimum number of sources with only other code that share a section."""
 _MIN_NAMES = 3
 """The minimum number of sentences that differ only in a name and are merged."""
-
-
-class Repeat(NamedTuple):
-    """Changes that an earlier section lists.
-
-    Attributes:
-        path: the path of the subject of that section.
-        change_count: the number of changes.
-        is_shared: whether they are changes to files that both subjects include.
-    """
-
-    path: str
-    change_count: int
-    is_shared: bool
 
 
 @dataclass(frozen=True)
@@ -116,19 +101,35 @@ def _make_text_key(change: Change) -> Hashable:
 
 
 def _make_sections(review: Review) -> Iterator[Section]:
-    listed: dict[Hashable, str] = {}
+    listed: dict[Hashable, tuple[str, Change]] = {}
     for subject in sorted(review.subjects, key=lambda subject: _ORDER[subject.kind]):
         changes = []
-        repeated: Counter[str] = Counter()
+        repeated: dict[str, Repeat] = {}
         for change in subject.changes:
-            first = listed.setdefault(change.identity, subject.path) if change.location else subject.path
-            if first != subject.path:
-                repeated[first] += 1
+            first, same = subject.path, change
+            if change.location is not None:
+                first, same = listed.setdefault(change.identity, (subject.path, change))
+            more_names = _find_more_names(same, change)
+            if first == subject.path or more_names is None:
+                changes.append(change)
                 continue
-            changes.append(change)
+            repeat = repeated.get(first, Repeat(first, 0, True))
+            names = tuple(dict.fromkeys([*repeat.more_names, *more_names]))
+            repeated[first] = repeat._replace(change_count=repeat.change_count + 1, more_names=names)
         changes = _merge_alike(subject, changes)
         changes.sort(key=lambda change: (change.effect is not Effect.BREAKING, change.is_code))
-        yield Section(subject, changes, [Repeat(path, count, True) for path, count in repeated.items()])
+        yield Section(subject, changes, list(repeated.values()))
+
+
+def _find_more_names(first: Change, change: Change) -> list[str] | None:
+    """Return the names that a repeated change has and the first one lacks; None if too little is the same.
+
+    Changes with as many names have other names for the same parts.
+    """
+    if len(change.other_names) <= len(first.other_names):
+        return []
+    is_same = set(first.other_names) <= set(change.other_names)
+    return [name for name in change.other_names if name not in first.other_names] if is_same else None
 
 
 def _replace_repeated(sections: Sequence[Section]) -> Iterator[Section]:
@@ -137,8 +138,10 @@ def _replace_repeated(sections: Sequence[Section]) -> Iterator[Section]:
     Breaking changes are listed in each section, and so is a change that is the only one in common.
     """
     listed: dict[Hashable, str] = {}
+    by_path: dict[str, Section] = {}
     for section in sections:
         subject = section.subject
+        by_path[subject.path] = section
         first_paths = [
             None
             if change.is_code or change.effect is Effect.BREAKING or _has_contents(subject, section.changes)
@@ -148,8 +151,26 @@ def _replace_repeated(sections: Sequence[Section]) -> Iterator[Section]:
         counts = Counter(path for path in first_paths if path not in {None, subject.path})
         repeated = {path: count for path, count in counts.items() if path is not None and count >= _MIN_REPEATED}
         changes = [change for change, path in zip(section.changes, first_paths, strict=True) if path not in repeated]
-        repeats = (Repeat(path, count, False) for path, count in repeated.items())
+        repeats = [
+            Repeat(path, count, False, missing=_list_missing(by_path[path], section))
+            for path, count in repeated.items()
+        ]
         yield replace(section, changes=changes, repeated=[*section.repeated, *repeats])
+
+
+def _list_missing(first: Section, section: Section) -> tuple[Phrase, ...]:
+    """Return the changes of an earlier section that another one lacks.
+
+    Breaking changes are listed in each section, and so are other changes of the same parameter.
+    """
+    keys = {_make_text_key(change) for change in section.changes}
+    parameters = {change.sentence.arguments.get("parameter") for change in section.changes} - {None}
+    return tuple(
+        change.sentence
+        for change in first.changes
+        if change.effect is not Effect.BREAKING and not change.is_code and _make_text_key(change) not in keys
+        if change.sentence.arguments.get("parameter") not in parameters
+    )
 
 
 def _fold_repeats(sections: Iterable[Section]) -> list[Section]:
@@ -169,6 +190,7 @@ def _fold_repeats(sections: Iterable[Section]) -> list[Section]:
             or first.subject.figures
             or first.subject.kind is not subject.kind
             or section.repeated[0].change_count != len(first.changes)
+            or section.repeated[0].more_names
         ):
             folded.append(section)
             by_path[subject.path] = section

@@ -3,23 +3,50 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
+from typing import NamedTuple
 
-from linkwright.diagnostics import Diagnostic, Phrase, counted, joined, joined_first, phrase, quoted_names
+from linkwright.diagnostics import Diagnostic, Phrase, counted, joined, joined_first, phrase, quoted, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.argument_sets import ARGUMENT, find_distinct_arguments
 from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject, SubjectKind, ViewImages
+from linkwright.review.excerpts import shorten
+from linkwright.review.numbered_names import find_runs
 from linkwright.review.other_files import group_files
 
 _MAX_NAMES = 24
 """The maximum number of other links or joints that a line names."""
 _MAX_BREAKING_NAMES = 12
 """The maximum number of other links or joints in a line about a breaking change. Users may search for them."""
+_MIN_KEYS = 3
+"""The minimum number of keys in the path of a parameter of which other paths repeat all but one."""
 _MAX_PATHS = 4
 """The maximum number of other files that a line names."""
 _MAX_IMAGE_NOTES = 3
 """The maximum number of notes below images."""
+_MAX_MISSING = 100
+"""The maximum number of characters of a change that a file does not share with another."""
+_MAX_NAMED_MISSING = 2
+"""The maximum number of such changes that a line names."""
 _MAX_NAMED_CASES = 1
 """The maximum number of argument sets that a line names."""
+
+
+class Repeat(NamedTuple):
+    """Changes that an earlier section lists.
+
+    Attributes:
+        path: the path of the subject of that section.
+        change_count: the number of changes.
+        is_shared: whether they are changes to files that both subjects include.
+        more_names: the names of links, joints or parts that change here and not there.
+        missing: the changes of that section that this one lacks.
+    """
+
+    path: str
+    change_count: int
+    is_shared: bool
+    more_names: tuple[str, ...] = ()
+    missing: tuple[Phrase, ...] = ()
 
 
 def get_path_state(subject: Subject) -> Phrase | None:
@@ -31,17 +58,36 @@ def get_path_state(subject: Subject) -> Phrase | None:
 
 def format_change(change: Change) -> Phrase:
     """Return a change in one line, with the other links or joints, or the number of locations."""
-    names = change.other_names
+    names: Sequence[str] = change.other_names
     if not names and change.other_locations:
         return _add_count(change.sentence, 1 + len(change.other_locations))
     if not names:
         return change.sentence
-    limit = _MAX_BREAKING_NAMES if change.effect is Effect.BREAKING else _MAX_NAMES
-    listed = quoted_names(names[:limit])
-    if len(names) <= limit:
+    names = _shorten_paths(str(change.sentence.arguments.get("parameter", "")), names)
+    is_breaking = change.effect is Effect.BREAKING
+    limit = _MAX_BREAKING_NAMES if is_breaking else _MAX_NAMES
+    shown = [[name] for name in names] if is_breaking else find_runs(names)
+    listed = joined(map(_quote_run, shown[:limit]))
+    more = sum(map(len, shown[limit:]))
+    if not more:
         return phrase("{change}; also {names}", change=change.sentence, names=listed)
-    more = len(names) - limit
     return phrase("{change}; also {names} and {count} more", change=change.sentence, names=listed, count=more)
+
+
+def _quote_run(names: Sequence[str]) -> Phrase:
+    """Return a name, or the first and the last of names with consecutive numbers, in quotation marks."""
+    first = quoted(names[0])
+    return first if len(names) == 1 else phrase("{first} to {last}", first=first, last=quoted(names[-1]))
+
+
+def _shorten_paths(first: str, names: Sequence[str]) -> Sequence[str]:
+    """Return the names of other parameters, or what differs in them if it is the same key on the same level."""
+    keys = first.split(".")
+    paths = [name.split(".") for name in names]
+    if len(keys) < _MIN_KEYS or any(" " in name for name in names) or {*map(len, paths)} != {len(keys)}:
+        return names
+    levels = {level for path in paths for level, key in enumerate(path) if key != keys[level]}
+    return names if len(levels) != 1 else [path[min(levels)] for path in paths]
 
 
 def format_cases(change: Change, subject: Subject) -> Phrase | None:
@@ -104,16 +150,24 @@ def format_image_notes(images: Sequence[ViewImages]) -> Phrase | None:
     return shown if notes else None
 
 
-def format_repeated(path: str, count: int, *, is_shared: bool) -> Phrase:
-    """Return the line for changes that an earlier section lists."""
-    if is_shared:
-        return counted(
+def format_repeated(repeat: Repeat) -> Phrase:
+    """Return the line for changes that an earlier section lists, with what is not the same."""
+    path, count = repeat.path, repeat.change_count
+    if repeat.is_shared:
+        text = counted(
             "the same change in a shared file as in {path}",
             "the same {count} changes in shared files as in {path}",
             count,
             path=path,
         )
-    return phrase("the same {count} changes as in {path}", path=path, count=count)
+        if repeat.more_names:
+            return phrase("{change}, here also {names}", change=text, names=quoted_names(repeat.more_names))
+        return text
+    text = phrase("the same {count} changes as in {path}", path=path, count=count)
+    if not repeat.missing:
+        return text
+    missing = [shorten(str(item), _MAX_MISSING) for item in repeat.missing]
+    return phrase("{change}, but not: {changes}", change=text, changes=joined_first(missing, _MAX_NAMED_MISSING))
 
 
 def group_findings(findings: Sequence[Diagnostic]) -> list[Diagnostic]:

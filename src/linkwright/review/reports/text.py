@@ -71,9 +71,10 @@ def _format_section(section: Section) -> Iterator[str]:
         if change.reason is not None:
             yield f"    {shorten(localized(phrase('breaking: {reason}', reason=change.reason)), _MAX_CHARACTERS)}"
         if change.location is not None:
-            yield f"    {change.location.file}:{change.location.line}:{change.location.column}"
-    for path, count, is_shared in section.repeated:
-        yield f"  - {localized(format_repeated(path, count, is_shared=is_shared))}"
+            place = f"{change.location.file}:{change.location.line}:{change.location.column}"
+            yield f"    {localized(phrase('{place} (old)', place=place)) if change.location.is_old else place}"
+    for repeat in section.repeated:
+        yield f"  - {localized(format_repeated(repeat))}"
     alike = format_alike(section.alike)
     if alike is not None:
         yield f"  = {localized(alike)}"

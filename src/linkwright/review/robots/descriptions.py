@@ -22,7 +22,8 @@ from linkwright.review.files.semantics import find_disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.joint_limits import find_limits_reason
 from linkwright.review.left_names import find_left_names
-from linkwright.review.merging import merge_changes, merge_reasons
+from linkwright.review.merged_reasons import merge_reasons
+from linkwright.review.merging import merge_changes
 from linkwright.review.motions import add_motion, compute_angle
 from linkwright.review.names_in_plugins import find_old_path
 from linkwright.review.parts.expanded import find_expanded_elements
@@ -35,6 +36,7 @@ from linkwright.review.plugins import (
 )
 from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
 from linkwright.review.robots.added_links import AddedLinks
+from linkwright.review.robots.argument_names import ArgumentNames, find_argument_names
 from linkwright.review.robots.cases import Case, find_cases, find_switched_cases
 from linkwright.review.robots.collisions import compare_collisions, may_change_collisions
 from linkwright.review.robots.figures import RobotMeasures, compare_figures
@@ -58,6 +60,7 @@ def compare_descriptions(pair: FilePair) -> None:
     groups: dict[Hashable, _Group] = {}
     collisions: list[Change] = []
     drawn_case = ""
+    first_case: Case | None = None
     for case in _find_cases_to_compare(pair, groups):
         pair.cases.append(case.name)
         if case.old.robot is None or case.new.robot is None:
@@ -65,11 +68,10 @@ def compare_descriptions(pair: FilePair) -> None:
         pair.expanded.update(find_expanded_elements(pair.versions, case.old, case.new))
         comparison = case.models.compare(case.old.robot, case.new.robot)
         frames = SharedFrames(case.old.robot, case.new.robot, comparison.links)
+        names = find_argument_names(first_case, case)
+        first_case = first_case or case
         for change in _compare_robots(pair, comparison, frames, case):
-            group = groups.setdefault(change.identity, _Group(change))
-            group.names[change.name] = None
-            group.cases[case.name] = None
-            group.reasons.append(change.reason)
+            groups.setdefault(names.make_key(change), _Group(change)).add(change, case.name, names)
         if case.partial is not None and case.partial.has_stand_ins:
             continue  # where the links are is unknown
         if pair.drawings.images and not pair.images:
@@ -119,21 +121,27 @@ class _Group:
     """A change with its reasons, and the links, joints and argument sets in which it occurs."""
 
     first: Change
-    names: dict[str, None] = field(default_factory=dict)
+    names: dict[str, str] = field(default_factory=dict)
     cases: dict[str, None] = field(default_factory=dict)
-    reasons: list[Phrase | None] = field(default_factory=list)
+    reasons: dict[str, Phrase | None] = field(default_factory=dict)
+
+    def add(self, change: Change, case: str, names: ArgumentNames) -> None:
+        """Add the same change to a link, joint or extension, perhaps with the name of another argument set."""
+        self.names.setdefault(names.translate(change.name), change.name)
+        self.cases[case] = None
+        self.reasons.setdefault(names.translate(str(change.reason)), change.reason)
 
     def change(self, all_cases: Sequence[str]) -> Change:
         cases = () if len(self.cases) == len(set(all_cases)) else tuple(self.cases)
-        reason = merge_reasons(self.reasons)
-        return replace(self.first, cases=cases, reason=reason, other_names=tuple(self.names)[1:])
+        reason = merge_reasons(self.reasons.values())
+        return replace(self.first, cases=cases, reason=reason, other_names=tuple(self.names.values())[1:])
 
 
 def _merge_groups(groups: Iterable[_Group]) -> Iterable[_Group]:
     """Return the groups, with the same change in the files of several argument sets merged."""
     merged: dict[Hashable, _Group] = {}
     for group in groups:
-        key = group.first.effect, str(group.first.sentence), tuple(group.names)
+        key = group.first.effect, str(group.first.sentence), tuple(group.names.values())
         existing = merged.setdefault(key, group)
         if existing is group:
             continue
@@ -161,6 +169,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
     switched_parts = SwitchedParts(pair, case)
     has_known_poses = partial is None or not partial.has_stand_ins
     parents = ParentChanges(comparison, new, frames if has_known_poses else None)
+    unevaluated: dict[str, None] = {}
     for difference in join_value_differences(differences):
         if added_links.is_in_line_of_link(difference):
             continue
@@ -169,6 +178,8 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
                 removal = format_difference(difference)
                 text = phrase("{change}, unless a missing package defines it", change=removal)
                 yield Change(text, location=_find_difference_location(pair, difference))
+            elif partial.has_unevaluated_side(difference):
+                unevaluated[find_title(difference)[1]] = None
             continue
         if has_other_root and (difference.subject, difference.kind, difference.name) == ("link", "removed", old.root):
             continue
@@ -196,6 +207,8 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             reason,
             _find_mesh_location(pair, case, difference) or _find_difference_location(pair, difference),
         )
+    if unevaluated:
+        pair.add_unevaluated(list(unevaluated))
     if partial is None:
         links, joints = old.links.keys() - new.links.keys(), old.joints.keys() - new.joints.keys()
         yield from find_left_names(new.extensions, links, joints, pair.location)

@@ -20,6 +20,9 @@ from linkwright.xmltree import Element
 _KEPT_AS_WRITTEN = frozenset({"name", "link", "joint", "filename", "type"})
 """Attributes that may contain any text, so that unevaluated values are compared as written."""
 _XACRO_PREFIX = "xacro:"
+_EXPRESSION = "${"
+_COLORS = (" color rgba", " texture")
+"""The ends of properties that a material gives to a visual. It may be defined in a missing file."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +83,12 @@ class PartialPair:
         is_removed = difference.kind == "removed" and not self._is_of_stand_in(difference)
         return is_removed and _has_more_omissions(self.new, self.old)
 
+    def has_unevaluated_side(self, difference: Difference) -> bool:
+        """Return whether only one version of an argument of a call needs a name that a missing file defines."""
+        values = difference.old, difference.new
+        is_changed = difference.kind == "changed" and None not in values
+        return is_changed and len({_EXPRESSION in (value or "") for value in values}) > 1
+
     def _is_of_stand_in(self, difference: Difference) -> bool:
         """Return whether a difference is about a link or joint that replaces a missing one."""
         names = {difference.name, difference.old or "" if difference.kind == "renamed" else ""}
@@ -88,7 +97,7 @@ class PartialPair:
     def is_certain(self, difference: Difference) -> bool:
         """Return whether a difference cannot be due to omitted parts."""
         if difference.subject == "extension" and difference.name.startswith(_XACRO_PREFIX):
-            return True
+            return not self.has_unevaluated_side(difference)
         if self._is_of_stand_in(difference):
             return False
         if difference.kind == "added":
@@ -96,6 +105,10 @@ class PartialPair:
         if difference.kind in ("removed", "renamed"):
             return not _has_more_omissions(self.new, self.old)
         part = difference.subject, difference.name
+        if difference.property.endswith(_COLORS) and None in (difference.old, difference.new):
+            lacking, other = (self.new, self.old) if difference.new is None else (self.old, self.new)
+            if _has_more_omissions(lacking, other):
+                return False  # a missing file may define the material
         may_be_in_call = (difference.old is None and part in self.old.incomplete) or (
             difference.new is None and part in self.new.incomplete
         )

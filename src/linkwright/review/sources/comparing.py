@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.breaking import name_reason
+from linkwright.review.breaking import names_reason
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.sources.callbacks import pair_by_callback
@@ -365,7 +365,7 @@ class _SourcePair(WholeSourcePair):
         package = self.new.find_package(self.file.path)
         if parameter is None or is_set_in_package(self.new.version, package, parameter, self.file.path):
             return None
-        return phrase("by default, {reason}", reason=name_reason(", ".join(change.names)))
+        return phrase("by default, {reason}", reason=names_reason(change.names))
 
     def _report_unpaired(
         self, kind: NameKind, removed: Sequence[SourceName], added: Sequence[SourceName], old_names: SourceNames

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.review.breaking import quote_first
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_convertible, is_same_type
 from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
@@ -264,7 +265,7 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
     if detail is Detail.REQUIRED and name.kind is NameKind.FUNCTION:
         return phrase("classes that derive from the class and do not define it do not build") if after else None
     if detail is Detail.REQUIRED and after:
-        return make_required_reason(name.kind, name.name)
+        return make_required_reason(name.kind, [name.name])
     if detail is Detail.ARGUMENTS:
         old_signature, new_signature = parse_signature(old), parse_signature(new)
         is_accepted = old_signature is None or new_signature is None or new_signature.accepts_calls_of(old_signature)
@@ -273,7 +274,7 @@ def _find_detail_reason(name: SourceName, detail: Detail, before: str | None, af
         )
     if detail is Detail.SHORT_FORM:
         lost = sorted(set(old.split(", ")) - {*new.split(", "), ""})
-        return phrase("callers that pass '{name}' get an error", name=", ".join(lost)) if lost else None
+        return phrase("callers that pass {names} get an error", names=quote_first(lost)) if lost else None
     if detail is Detail.LATCH and before:
         return phrase("subscribers that start later do not get the last message")
     return None
@@ -304,13 +305,14 @@ def _read_number(text: str) -> float | None:
         return None
 
 
-def make_required_reason(kind: NameKind, names: Phrase | str) -> Phrase:
+def make_required_reason(kind: NameKind, names: Sequence[str]) -> Phrase:
     """Return the reason why an option or parameter without a default is breaking."""
+    text = quote_first(names)
     if kind is NameKind.PARAMETER:
-        return phrase("the program fails where '{name}' is not set", name=names)
+        return phrase("the program fails where {names} is not set", names=text)
     if kind is NameKind.HARDWARE_PARAMETER:
-        return phrase("the hardware fails where the description does not give '{name}'", name=names)
-    return phrase("callers that do not pass '{name}' get an error", name=names)
+        return phrase("the hardware fails where the description does not give {names}", names=text)
+    return phrase("callers that do not pass {names} get an error", names=text)
 
 
 def find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
@@ -318,12 +320,12 @@ def find_required_reason(items: Sequence[SourceName]) -> Phrase | None:
     names = [item.name for item in items if (Detail.REQUIRED, YES) in item.details]
     undefined = [item.name for item in items if (Detail.UNDEFINED, YES) in item.details]
     if not names and undefined:
-        return phrase("where '{name}' is not set, its variable has no value", name=joined_first(undefined, MAX_NAMES))
+        return phrase("where {names} is not set, its variable has no value", names=quote_first(undefined))
     if not names:
         return None
     if items[0].kind is NameKind.FUNCTION:
         return phrase("classes that derive from the class and do not define it do not build")
-    return make_required_reason(items[0].kind, joined_first(names, MAX_NAMES))
+    return make_required_reason(items[0].kind, names)
 
 
 def read_service_qos(text: str | None) -> tuple[tuple[Detail, str], ...]:

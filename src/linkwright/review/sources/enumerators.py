@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, Span, joined_first, phrase, quoted_names
+from linkwright.review.breaking import quote_first
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.cpp_functions import PUBLIC, read_scopes
 from linkwright.review.sources.namespaces import HeaderChange
@@ -90,11 +91,11 @@ def _compare(
                 old=_qualify(name, key),
                 new=_qualify(name, same_value[0]),
             )
-            yield HeaderChange(text, new[same_value[0]][1], _make_reason(_qualify(name, key)))
+            yield HeaderChange(text, new[same_value[0]][1], _make_reason([_qualify(name, key)]))
     if removed:
         names = [_qualify(name, key) for key in removed]
         text = phrase("enumerators removed: {names}", names=joined_first([f"'{item}'" for item in names], MAX_NAMES))
-        yield HeaderChange(text, old[removed[0]][1], _make_reason(", ".join(names[:MAX_NAMES])), is_old=True)
+        yield HeaderChange(text, old[removed[0]][1], _make_reason(names), is_old=True)
     if added:
         names = [_qualify(name, key) for key in added]
         text = phrase("enumerators added: {names}", names=joined_first([f"'{item}'" for item in names], MAX_NAMES))
@@ -107,8 +108,8 @@ def _compare(
         yield HeaderChange(phrase("values of enumerators: {values}", values=values), new[changed[0]][1], reason)
 
 
-def _make_reason(names: str) -> Phrase:
-    return phrase("code of other packages that uses '{name}' does not build", name=names)
+def _make_reason(names: Sequence[str]) -> Phrase:
+    return phrase("code of other packages that uses {names} does not build", names=quote_first(names))
 
 
 def _qualify(enumeration: str, name: str) -> str:

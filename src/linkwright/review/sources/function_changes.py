@@ -65,7 +65,7 @@ def find_field_reason(item: SourceName, old: SourceNames) -> Phrase | None:
     signatures = [parse_signature(dict(other.details).get(Detail.ARGUMENTS, "")) for other in (before, item)]
     names = [() if signature is None else signature.positional for signature in signatures]
     lost = [f"{item.name}.{name}" for name in names[0] if name not in names[1]]
-    return make_member_reason(joined_first(lost, MAX_NAMES)) if lost and None not in signatures else None
+    return make_member_reason(lost) if lost and None not in signatures else None
 
 
 def merge_function_changes(changes: Sequence[NameChange], *, is_python: bool) -> Iterator[NameChange]:

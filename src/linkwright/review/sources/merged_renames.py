@@ -7,7 +7,8 @@ from collections.abc import Hashable, Sequence
 from dataclasses import replace
 
 from linkwright.review.changes import Change
-from linkwright.review.merging import merge_reasons, name_edit
+from linkwright.review.merged_reasons import merge_reasons
+from linkwright.review.merging import name_edit
 from linkwright.review.sources.details import is_rename
 from linkwright.review.sources.names import NameKind
 

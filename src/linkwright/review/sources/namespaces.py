@@ -6,8 +6,8 @@ import re
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from linkwright.diagnostics import Phrase, Span, joined_first, phrase, quoted_names
-from linkwright.review.changes import MAX_NAMES
+from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
+from linkwright.review.breaking import quote_first
 from linkwright.review.files.build_facts import list_names
 from linkwright.review.sources.names import HEADER_SUFFIXES, NameKind, SourceNames
 from linkwright.review.versions import Version
@@ -51,7 +51,7 @@ def compare_namespaces(
     if not lost:
         return
     names = quoted_names(lost)
-    reason = phrase("code of other packages that uses '{name}' does not build", name=", ".join(lost))
+    reason = phrase("code of other packages that uses {names} does not build", names=names)
     if len(lost) == len(added) == 1:
         text = phrase("namespace '{old}' renamed to '{new}'", old=lost[0], new=added[0])
         yield HeaderChange(text, new.namespaces[added[0]], reason)
@@ -69,9 +69,9 @@ def _find_moved_names(old_names: SourceNames, new_names: SourceNames, old: str, 
     if moved:
         names = [item.name for item in moved]
         text = phrase("{names} moved from namespace '{old}' to '{new}'", names=list_names(names), old=old, new=new)
-        used = joined_first([f"{old}::{name}" for name in names], MAX_NAMES)
+        used = quote_first(f"{old}::{name}" for name in names)
         yield HeaderChange(
-            text, moved[0].span, phrase("code of other packages that uses '{name}' does not build", name=used)
+            text, moved[0].span, phrase("code of other packages that uses {names} does not build", names=used)
         )
 
 

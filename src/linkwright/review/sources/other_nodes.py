@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.changes import MAX_NAMES
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.breaking import quote_first
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, imports
 from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 from linkwright.review.sources.separate_programs import are_in_separate_programs
@@ -91,10 +91,10 @@ def find_other_node_reason(items: Sequence[SourceName]) -> Phrase | None:
     """Return the reason why a node that loses names is breaking, though other nodes have them; None for clients."""
     if items[0].kind in _CLIENT_KINDS:
         return None
-    names = joined_first([item.name for item in items], MAX_NAMES)
+    names = quote_first(item.name for item in items)
     if items[0].kind is NameKind.PARAMETER:
-        return phrase("values of '{name}' for this node have no effect", name=names)
-    return phrase("this node no longer has '{name}'; only another node of the package still has it", name=names)
+        return phrase("values of {names} for this node have no effect", names=names)
+    return phrase("this node no longer has {names}; only another node of the package still has it", names=names)
 
 
 def _are_connected(sources: ChangedSources, path: str, other: str) -> bool:

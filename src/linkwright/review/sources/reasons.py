@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.breaking import frame_reason, message_frame_reason, name_reason
-from linkwright.review.changes import MAX_NAMES
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.breaking import frames_reason, message_frame_reason, names_reason, quote_first
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 
 _HARMLESS_KINDS = (
@@ -56,49 +55,47 @@ def find_removal_reason(
         items = [item for item in items if not _belongs_to_other_node(item, names)]
     if not items or kind in _HARMLESS_KINDS or (kind is NameKind.NODE and _only_sends_requests(names)):
         return None
-    text = joined_first([item.name for item in items], MAX_NAMES)
+    item_names = [item.name for item in items]
+    text = quote_first(item_names)
     if kind is NameKind.PARAMETER:
-        return phrase("values that launch files and parameter files give to '{name}' have no effect", name=text)
+        return phrase("values that launch files and parameter files give to {names} have no effect", names=text)
     if kind is NameKind.ELEMENT:
-        return phrase("values that worlds and descriptions give to '{name}' have no effect", name=text)
+        return phrase("values that worlds and descriptions give to {names} have no effect", names=text)
     if kind is NameKind.HARDWARE_PARAMETER:
-        return phrase("values that descriptions give to '{name}' have no effect", name=text)
+        return phrase("values that descriptions give to {names} have no effect", names=text)
     if kind is NameKind.FRAME:
-        return frame_reason(str(text))
+        return frames_reason(item_names)
     if kind in (NameKind.COMMAND_INTERFACE, NameKind.STATE_INTERFACE):
-        return phrase("controllers that claim '{name}' do not start", name=text)
+        return phrase("controllers that claim {names} do not start", names=text)
     if kind is NameKind.OPTION:
-        return phrase("callers that pass '{name}' get an error", name=text)
+        return phrase("callers that pass {names} get an error", names=text)
     if kind is NameKind.PLUGIN:
         return phrase("programs and configurations that load the class do not find it")
     if kind is NameKind.SIMULATION_PLUGIN:
-        return phrase("worlds and descriptions that load '{name}' do not find it", name=text)
+        return phrase("worlds and descriptions that load {names} do not find it", names=text)
     if kind is NameKind.LIBRARY_PLUGIN:
         is_left = any(True for _ in new_names.of_kind(kind))
         return None if is_left else phrase("worlds and descriptions that load the library get no plugin")
     if kind is NameKind.TREE_NODE:
-        return phrase("behavior trees that use '{name}' cannot be loaded", name=text)
+        return phrase("behavior trees that use {names} cannot be loaded", names=text)
     if kind is NameKind.IMPORT:
-        return phrase("programs that import '{name}' do not find it", name=text)
+        return phrase("programs that import {names} do not find it", names=text)
     if kind in (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER):
         if names.is_program:
             return None
         if path.endswith(PYTHON_SUFFIX) and kind is NameKind.MEMBER:
-            return make_member_reason(text)
+            return make_member_reason(item_names)
         if path.endswith(PYTHON_SUFFIX) and all("." in item.name for item in items):
-            return phrase("programs that call '{name}' do not find it", name=text)
+            return phrase("programs that call {names} do not find it", names=text)
         if path.endswith(PYTHON_SUFFIX):
-            return phrase("programs that import '{name}' do not find it", name=text)
-        return phrase("code of other packages that uses '{name}' does not build", name=text)
-    if len(items) > 1:
-        quoted = joined_first([f"'{item.name}'" for item in items], MAX_NAMES)
-        return phrase("programs that use the names {names} do not find them", names=quoted)
-    return name_reason(str(text))
+            return phrase("programs that import {names} do not find it", names=text)
+        return phrase("code of other packages that uses {names} does not build", names=text)
+    return names_reason(item_names)
 
 
-def make_member_reason(names: Phrase | str) -> Phrase:
+def make_member_reason(names: Sequence[str]) -> Phrase:
     """Return the reason why removed attributes of a class in Python are breaking."""
-    return phrase("programs that set or read '{name}' fail", name=names)
+    return phrase("programs that set or read {names} fail", names=quote_first(names))
 
 
 def _belongs_to_other_node(parameter: SourceName, names: SourceNames) -> bool:
