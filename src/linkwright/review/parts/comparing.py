@@ -140,6 +140,8 @@ class _Comparer:
             pair.is_complete = is_compared or self._is_complete(file.new_path)
             pair.renamed_macros = self._renamed_macros
             pair.find_old_macros = self._graphs.old.find_macro_outlines
+            pair.find_new_macros = self._graphs.new.find_macro_outlines
+            pair.find_old_calls = self._graphs.old.find_calls
             pair.robots = self._graphs.new.find_outlines_of_robots(file.new_path) or ()
             self._compare(pair)
             changes += pair.changes
