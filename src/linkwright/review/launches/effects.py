@@ -41,7 +41,9 @@ from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_
 from linkwright.review.launches.topic_tools import find_forwarding_reason
 from linkwright.review.list_changes import list_items
 
-_USER_INTERFACE_PROGRAM = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
+_USER_INTERFACE_PROGRAM = re.compile(
+    r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/|gazebo(_ros)?/(gui|gzclient)$|(gazebo_ros/)?gzclient$"
+)
 """Programs that offer nothing to other programs."""
 _JOINT_STATE_PREFIX = "joint_state_publisher"
 """The common prefix of the names of two packages that publish the same topics."""
@@ -51,6 +53,8 @@ _SPAWN_PROGRAM = re.compile(
 """Programs that request a robot from another program and exit. They offer nothing themselves."""
 _SPAWN_FILE_NAME = re.compile(r"spawn|create")
 """The names of included files and commands that create robots."""
+_SPAWN_COMMAND = re.compile(r"(?:^|[\s,\[])(?:spawn|create)(?=[\s,\]]|$)")
+"""A word in the arguments of a program with which it creates a robot."""
 _SHELL_SCRIPT = re.compile(r".*\.(sh|bash|zsh)")
 _NAME = re.compile(r"[~/\w]+")
 _NAME_SETTINGS = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remappings")
@@ -164,14 +168,18 @@ def _is_spawner(entry: Entry) -> bool:
 def _spawns_as_many(old: LaunchOutline, new: LaunchOutline) -> bool:
     """Return whether a file creates at least as many robots as before.
 
-    A new include that may create them is also enough.
+    A new include or program that may create them is also enough.
     """
     counts = [sum(map(_is_spawner, outline.entries)) for outline in (old, new)]
     if any(_is_spawner(entry) and _has_computed_names(entry) for entry in new.entries):
         return True  # a loop may create any number
     known = {entry.name for entry in old.entries}
-    may_include = any(_SPAWN_FILE_NAME.search(entry.name) and entry.name not in known for entry in new.entries)
-    return counts[1] >= counts[0] or may_include
+    may_create = any(
+        _SPAWN_FILE_NAME.search(entry.name) or _SPAWN_COMMAND.search(entry.settings.get("arguments", ""))
+        for entry in new.entries
+        if entry.name not in known
+    )
+    return counts[1] >= counts[0] or may_create
 
 
 def _has_computed_names(entry: Entry) -> bool:
