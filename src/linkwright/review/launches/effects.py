@@ -34,6 +34,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     without_condition,
 )
+from linkwright.review.launches.parameter_types import declares_type
 from linkwright.review.launches.sides import Side, find_old_side, is_new_name
 from linkwright.review.launches.spawned_names import is_other_group
 from linkwright.review.launches.taken_names import is_taken_over
@@ -265,7 +266,7 @@ def find_setting_reason(
         return _find_pause_reason(old, new, old_outline, new_outline)
     if entry.kind == SERVER_PARAMETER and setting == "value":
         name = PARAMETER + entry.name.replace("/", ".")
-        return _find_parameter_reason(name, old, new, old_outline, new_outline)
+        return _find_parameter_reason(entry, name, old, new, old_outline, new_outline)
     if entry.kind in ("node", "include") and setting == CONDITION and (_is_spawner(entry) or not offers_nothing(entry)):
         old_holds = evaluate_condition(old_outline.resolve(old or ""))
         is_stopped = evaluate_condition(new_outline.resolve(new or "")) is False
@@ -289,7 +290,7 @@ def find_setting_reason(
         removed = [name for name in old_names if name.strip("/") not in kept]
         is_unknown = any(_EXPRESSION in name for name in new_names)
         return _find_served_name_reason(entry, removed, new_outline) if removed and not is_unknown else None
-    return _find_parameter_reason(setting, old, new, old_outline, new_outline)
+    return _find_parameter_reason(entry, setting, old, new, old_outline, new_outline)
 
 
 def _find_node_remapping_reason(
@@ -324,7 +325,12 @@ def _find_pause_reason(
 
 
 def _find_parameter_reason(
-    setting: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
+    entry: Entry,
+    setting: str,
+    old: str | None,
+    new: str | None,
+    old_outline: LaunchOutline,
+    new_outline: LaunchOutline,
 ) -> Phrase | None:
     """Return the reason why a changed parameter is breaking, or None if it is not.
 
@@ -352,7 +358,9 @@ def _find_parameter_reason(
     if switch_reason is not None or new_outline.is_ros1:
         return switch_reason  # ROS 1 converts numbers
     old_value, new_value = _parse_literal(old_name), _parse_literal(new_name)
-    return find_type_reason(old_value, new_value) if old_value and new_value else None
+    if not old_value or not new_value or declares_type(entry, parameter, new_value, new_outline.root):
+        return None
+    return find_type_reason(old_value, new_value)
 
 
 def _starts_other_programs(old: LaunchOutline, new: LaunchOutline) -> bool:
