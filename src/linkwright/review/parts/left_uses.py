@@ -55,11 +55,11 @@ def _find_left_includes(
         if element.tag != _INCLUDE or element.attributes.get("optional") == "true":
             continue
         filename = element.attributes.get("filename", "").strip()
-        old = _resolve(versions.old, path, filename)
+        old = resolve_include(versions.old, path, filename)
         old_path = None if old is None or not old.is_file() else versions.old.relative(old)
         if old_path is None or old_path not in renamed:
             continue
-        new = _resolve(versions.new, path, filename)
+        new = resolve_include(versions.new, path, filename)
         if new is None or new.exists():
             continue
         new_path = renamed[old_path]
@@ -69,7 +69,7 @@ def _find_left_includes(
         yield _make_change(text, _find_location(versions.new, path, element))
 
 
-def _resolve(version: Version, path: str, filename: str) -> Path | None:
+def resolve_include(version: Version, path: str, filename: str) -> Path | None:
     """Return the file that an include names, or None if its path is computed or its package unknown."""
     folder = version.file(path).parent
     match = _PATH_IN_PACKAGE.fullmatch(filename)
