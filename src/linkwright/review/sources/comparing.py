@@ -392,6 +392,8 @@ class _SourcePair(WholeSourcePair):
         path = self.file.old_path or self.file.path
         if items[0].kind is NameKind.CLASS and not self.is_interface(path):
             return None
+        if self.file.new_path is None and items[0].kind not in _DECLARED_KINDS and self.is_unnamed_script:
+            return None
         if items[0].kind in _DECLARED_KINDS:
             items = [item for item in items if self.can_be_linked(item.name, item.kind)]
         lost = [item for item in items if not self._is_left_to_others(item)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, Span, phrase
@@ -31,6 +31,7 @@ from linkwright.review.sources.swapped_arguments import (
 from linkwright.review.sources.transform_senders import find_one_sided_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.undefined_uses import find_undefined_uses
+from linkwright.review.sources.unnamed_scripts import is_unnamed_script
 from linkwright.review.sources.unused_parameters import find_unused_parameters
 from linkwright.review.sources.used_packages import compare_usage
 
@@ -88,6 +89,13 @@ class WholeSourcePair:
             is_module = package is not None and (side.version.file(path).parent / "__init__.py").is_file()
             return is_module and not is_certainly_uninstalled(side.version, package or "", path)
         return package is not None and is_exported_header(side.version, package, path)
+
+    @cached_property
+    def is_unnamed_script(self) -> bool:
+        """Whether the source was a script that no program or user can start by a name."""
+        path = self.file.old_path or ""
+        package = self.old.find_package(path) if path else None
+        return package is not None and is_unnamed_script(self.old.version, package, path)
 
     def can_be_linked(self, name: str, kind: NameKind = NameKind.FUNCTION) -> bool:
         """Return whether other packages can use a function, class or member of the old source.
