@@ -23,6 +23,8 @@ _NAME_PARAMETER = re.compile(r"(^|[._])names?$")
 """The keys of lists of names. Other lists, such as modes, contain words that many programs use."""
 _PLACEHOLDER = re.compile(r"[A-Z][A-Z0-9_]*|<\w+>|\$\{?\w+\}?")
 """A value that another one can replace."""
+_NODE = re.compile(r"^/?([\w/*]+):\s*(?:#[^\n]*)?\n\s+(?:[\"']?)ros__parameters\b", re.MULTILINE)
+"""A node at the top of a parameter file of ROS 2."""
 _NAME = re.compile(r"[A-Za-z_][\w/.-]{3,}")
 
 
@@ -122,6 +124,22 @@ class KeyReaders:
         texts = (version.text(path) for path in _list_sources(version) if version.package_of(path) in packages)
         return declare_type(texts, parameter, value)
 
+    def load_moved_node(self, node: str) -> bool:
+        """Return whether a launch file names another changed parameter file, and only its new version has a node.
+
+        Args:
+            node: the node that the file lost.
+        """
+        for file in self.versions.changed_files:
+            path = file.new_path or ""
+            if path == self.path or not path.endswith((".yaml", ".yml")):
+                continue
+            has_node = node in _list_nodes(self.versions.new, path)
+            if has_node and node not in _list_nodes(self.versions.old, file.old_path or ""):
+                name = PurePosixPath(path).name
+                return any(name in self.versions.new.text(launch) for launch in find_launch_files(self.versions.new))
+        return False
+
     def _is_node_named(self, node: str) -> bool:
         """Return whether a program of the new version contains the last part of a node's name as a text."""
         pattern = re.compile(rf"[\"'/]{re.escape(re.split(r'[./]', node)[-1])}[\"']")
@@ -157,6 +175,11 @@ def _list_sources(version: Version) -> Iterator[str]:
     for path in version.paths(_SOURCE_SUFFIXES):
         if TEST_FOLDERS.isdisjoint(PurePosixPath(path).parts) and not is_launch_file_name(PurePosixPath(path).name):
             yield path
+
+
+def _list_nodes(version: Version, path: str) -> set[str]:
+    """Return the names of the nodes in a parameter file of ROS 2; none if it cannot be read."""
+    return {match[1] for match in _NODE.finditer(version.text(path))} if path else set()
 
 
 def _names(version: Version, path: str, pattern: re.Pattern[str]) -> bool:
