@@ -347,8 +347,13 @@ def find_dependency_changes(repository, compare, *replacements):
         ("", "build_export_depend", True),
         ("install(DIRECTORY include/ DESTINATION include)", "depend", True),
         ("ament_export_dependencies(gears)", "depend", True),
-        ("add_library(core SHARED src/core.cpp)\ninstall(TARGETS core LIBRARY DESTINATION lib)", "depend", False),
         ("pluginlib_export_plugin_description_file(nav2_core plugins.xml)", "depend", False),
+        ("add_library(core src/core.cpp)", "depend", True),
+        ("add_library(core src/core.cpp)\ninstall(TARGETS core DESTINATION lib)\nament_package()", "depend", False),
+        ("add_library(core src/core.cpp)\ninstall(TARGETS core EXPORT core)\nament_package()", "depend", True),
+        ("add_subdirectory(core)\nament_package()", "depend", False),
+        ("add_subdirectory(exported)\nament_package()", "depend", True),
+        ("ament_python_install_package(arm)\nament_package()", "depend", True),
         ("ament_auto_package()", "depend", True),
         ("ament_package(CONFIG_EXTRAS cmake/core.cmake)", "depend", True),
     ],
@@ -358,7 +363,9 @@ def test_dependency_of_a_package_that_exports_nothing_breaks_nobody(repository, 
     cmake = "project(arm)\nadd_executable(driver src/driver.cpp)\n"
     install = "install(TARGETS driver RUNTIME DESTINATION lib/${PROJECT_NAME})\n"
     manifest = EXPORTS.replace("  <exec_depend>xacro", f"{depend}  <exec_depend>xacro")
-    files = {"a/src/driver.cpp": "int main() {}\n", "a/launch/a.launch": "<launch/>\n"}
+    files = {"a/src/driver.cpp": "int main() {}\n", "a/launch/a.launch": "<launch/>\n", "a/arm/__init__.py": ""}
+    files |= {"a/core/CMakeLists.txt": "add_library(core c.cpp)\n"} if "(core)" in more else {}
+    files |= {"a/exported/CMakeLists.txt": "ament_export_libraries(c)\n"} if "exported" in more else {}
     repository.commit({"a/package.xml": manifest, "a/CMakeLists.txt": f"{cmake}{install}{more}\n", **files})
     repository.write({"a/package.xml": manifest.replace(depend, "")})
     result = compare(repository)

@@ -216,3 +216,38 @@ def test_package_of_launch_files_is_declared_only_by_their_manifest(package, fil
     package.commit(files)
     message = "launch files use a package on which package.xml does not depend: 'drivers'"
     assert bool(find_fixed(package, "LW848", "arm_description/package.xml", message)) == is_fixed
+
+
+SETUP = """from setuptools import setup
+
+setup(
+    name="arm",
+    packages=["arm"],
+    data_files=[
+        ("share/ament_index/resource_index/packages", ["resource/arm"]),
+        ("share/arm", ["package.xml"]),
+    ],
+    entry_points={"console_scripts": ["driver = arm.driver:run"]},
+)
+"""
+PYTHON_PACKAGE = {
+    "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm").replace("ament_cmake", "ament_python"),
+    "arm/resource/arm": "",
+    "arm/arm/__init__.py": "",
+    "arm/arm/driver.py": "def main():\n    pass\n",
+    "arm/launch/arm.launch.py": LAUNCH.replace("{nodes}", 'Node(package="arm", executable="driver")'),
+}
+
+
+def test_setup_with_a_syntax_error_hides_neither_new_nor_fixed_findings(repository, compare):
+    """The wrong function of the entry point is as old as the error."""
+    repository.commit({**PYTHON_PACKAGE, "arm/setup.py": f"b{SETUP}"})
+    repository.commit({"arm/setup.py": SETUP})
+    repaired = compare(repository, "HEAD~1..HEAD")
+    assert (finding_codes(repaired.new_findings), finding_codes(repaired.fixed_findings)) == ([], ["LW820"])
+    repository.commit({"arm/setup.py": f"b{SETUP}"})
+    broken = compare(repository, "HEAD~1..HEAD")
+    assert (finding_codes(broken.new_findings), finding_codes(broken.fixed_findings)) == (["LW820"], [])
+    repository.commit({"arm/setup.py": SETUP})
+    repository.commit({"arm/setup.py": SETUP.replace("driver:run", "driver:start")})
+    assert finding_codes(compare(repository, "HEAD~1..HEAD").new_findings) == ["LW827"]

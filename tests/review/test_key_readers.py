@@ -136,3 +136,25 @@ def test_renamed_node_with_several_parameters_follows_its_source(repository, com
     repository.commit({"a/package.xml": FILES["a/package.xml"], PATH: NODE + LIMITS, "a/src/arm.cpp": source})
     repository.write({PATH: (NODE + LIMITS).replace("arm_node", "arm")})
     assert breaking(compare(repository)) == (["arm_node renamed to arm"] if is_breaking else [])
+
+
+@pytest.mark.parametrize(
+    ("path", "launch_name", "is_breaking"),
+    [
+        ("a/config/leg.yaml", "leg.yaml", False),
+        ("a/config/leg.yaml", "other.yaml", True),
+        (None, "leg.yaml", True),
+    ],
+)
+def test_node_that_moved_to_a_file_which_launch_files_load_has_its_parameters(
+    repository, compare, path, launch_name, is_breaking
+):
+    leg = NODE.replace("arm_node", "leg_node")
+    launch = (
+        f'<launch><node pkg="a" exec="leg"><param from="$(find-pkg-share a)/config/{launch_name}"/></node></launch>'
+    )
+    files = {"a/package.xml": FILES["a/package.xml"], PATH: NODE + leg, "a/launch/leg.launch.xml": launch}
+    repository.commit(files)
+    repository.write({PATH: NODE, **({path: leg} if path else {})})
+    found = [line for line in breaking(compare(repository)) if "leg_node" in line]
+    assert bool(found) == is_breaking

@@ -102,3 +102,32 @@ def test_a_frame_that_a_parameter_no_longer_names_is_there_as_a_link(repository,
     repository.write({path: f"<launch>{state}{driver}</launch>".replace('"base_link"', '"other"')})
     (change,) = subject(compare(repository), path).changes
     assert (change.reason is not None) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("frames", "file", "argument", "may_publish"),
+    [
+        ("map odom", "nav_stack)/launch/mapping.launch", "", True),
+        ("map odom", "camera)/launch/driver.launch", "", False),
+        ("base tool", "nav_stack)/launch/mapping.launch", "", False),
+        ("base tool", "camera)/launch/driver.launch", '<arg name="frame" value="tool"/>', True),
+        ("map odom", "arm)/launch/mapping.launch", "", False),
+    ],
+)
+def test_included_file_of_another_repository_may_publish_a_transform(
+    repository, compare, frames, file, argument, may_publish
+):
+    parent, child = frames.split()
+    static = STATIC.replace("/PARENT", parent).replace("/CHILD", child)
+    package = PACKAGE_XML.replace("arm_description", "arm")
+    included = {"arm/launch/mapping.launch": "<launch/>"}
+    repository.commit({"arm/package.xml": package, "arm/launch/arm.launch": f"<launch>{static}</launch>", **included})
+    text = f'<launch><include file="$(find {file}">{argument}</include></launch>'
+    repository.write({"arm/launch/arm.launch": text})
+    (removed,) = [
+        change
+        for change in subject(compare(repository), "arm/launch/arm.launch").changes
+        if "static_transform_publisher" in str(change.sentence)
+    ]
+    assert (removed.reason is None) == may_publish
+    assert ("may publish its transform" in str(removed.sentence)) == may_publish

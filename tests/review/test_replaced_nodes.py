@@ -115,3 +115,53 @@ def test_file_that_was_not_installed_before_the_package_was_renamed_is_not_new(r
     found = breaking(compare(repository, "HEAD~..HEAD"))
     assert "package 'arm' renamed to 'limb'" in found
     assert not [sentence for sentence in found if "not installed" in sentence]
+
+
+DRIVER = '<node pkg="fake_driver" type="driver" name="{name}">{parameters}</node>'
+PARAMETERS = '<param name="controller_name" value="arm"/><param name="port" value="/dev/arm"/>'
+COMMON = '<param name="use_sim_time" value="true"/><param name="frame_id" value="base"/>'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_replaced"),
+    [
+        (PARAMETERS, PARAMETERS, True),
+        (PARAMETERS, PARAMETERS.replace("/dev/arm", "/dev/hand"), False),
+        (COMMON, COMMON, False),
+        ("", "", False),
+    ],
+)
+def test_program_with_the_same_parameters_replaces_another(repository, compare, old, new, is_replaced):
+    path = "arm/launch/arm.launch"
+    text = f"<launch>{DRIVER.format(name='fake', parameters=old)}</launch>"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: text})
+    text = text.replace(old, new) if old else text
+    repository.write({path: text.replace("fake_driver", "motors").replace('"driver"', '"node"').replace("fake", "m")})
+    replaced = "node 'fake_driver/driver' replaced by node 'motors/node'"
+    assert (replaced in sentences(subject(compare(repository), path))) == is_replaced
+
+
+@pytest.mark.parametrize(
+    ("program", "arguments", "is_lost"),
+    [
+        ("factory", "spawn -f arm.urdf", False),
+        ("factory", "-f respawn.urdf", True),
+        ("create_model", "-f arm.urdf", False),
+    ],
+)
+def test_another_program_may_spawn_the_model(repository, compare, program, arguments, is_lost):
+    path = "arm/launch/arm.launch"
+    old = '<node pkg="gazebo_ros" type="spawn_model" name="a" args="-urdf -param robot_description -model arm"/>'
+    new = f'<node pkg="tools" type="{program}" name="b" args="{arguments}"/>'
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: f"<launch>{old}</launch>"})
+    repository.write({path: f"<launch>{new}</launch>"})
+    assert any("spawn_model' removed" in line for line in breaking(compare(repository))) == is_lost
+
+
+@pytest.mark.parametrize(("program", "is_lost"), [("gui", False), ("gzclient", False), ("gzserver", True)])
+def test_window_of_the_simulator_offers_nothing(repository, compare, program, is_lost):
+    path = "arm/launch/arm.launch"
+    node = f'<node pkg="gazebo_ros" type="{program}" name="window"/>'
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: f"<launch>{node}</launch>"})
+    repository.write({path: "<launch/>"})
+    assert bool(breaking(compare(repository))) == is_lost

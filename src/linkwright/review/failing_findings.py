@@ -30,7 +30,7 @@ def mark_failures(
 
     A line that already names the missing file becomes breaking. A finding of a file whose old version had one of the
     same kind is left out, and so are errors of descriptions if the package had any. Only the first error of a
-    description becomes breaking.
+    description becomes breaking, unless a line tells that it can no longer be read.
 
     Args:
         versions: both versions.
@@ -45,7 +45,7 @@ def mark_failures(
         for finding in old_findings
         if finding.span is not None and _is_refused(finding)
     }
-    refused: set[str] = set()
+    refused = {subject.path for subject in subjects if subject.is_lost}
     old_paths = {file.new_path: file.old_path for file in versions.changed_files if file.new_path}
     result = {subject.path: subject for subject in subjects}
     others = []

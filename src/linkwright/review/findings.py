@@ -17,6 +17,9 @@ from linkwright.review.folders import finding_with_package_uris, without_folder
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version, Versions
 
+_UNPARSED_CODE = "LW820"
+"""The finding about a ``setup.py`` with a syntax error, of which no other finding is known."""
+
 
 @dataclass(frozen=True)
 class Findings:
@@ -100,7 +103,8 @@ def compare_findings(
 
     A finding in a description that the other version could not read, or that no robot there includes, may be
     as old as the file. It is neither new nor fixed. The same holds for a finding that moved to another file, for one
-    that only names a package by its new name, and for one about a file that git cannot check out.
+    that only names a package by its new name, for one about a file that git cannot check out, and for one in a
+    ``setup.py`` that has a syntax error in the other version.
 
     Args:
         versions: both versions.
@@ -125,7 +129,8 @@ def compare_findings(
     rename = PackageNames(find_renamed_packages(versions)).rename_derived
     added_keys = [(finding.code, str(finding.message)) for finding in added]
     fixed_keys = [(finding.code, rename(str(finding.message))) for finding in fixed]
-    return _drop_moved(added, added_keys, fixed_keys), _drop_moved(fixed, fixed_keys, added_keys)
+    added, fixed = _drop_moved(added, added_keys, fixed_keys), _drop_moved(fixed, fixed_keys, added_keys)
+    return _drop_in_unparsed_files(added, fixed, new_paths), _drop_in_unparsed_files(fixed, added, old_paths)
 
 
 def _names_missing_file(finding: Diagnostic, version: Version) -> bool:
@@ -155,6 +160,24 @@ def _drop_moved(
         else:
             result.append(finding)
     return result
+
+
+def _drop_in_unparsed_files(
+    findings: Sequence[Diagnostic], others: Sequence[Diagnostic], names: Mapping[str, str]
+) -> list[Diagnostic]:
+    """Return the findings without those in files that cannot be parsed in the other version.
+
+    Args:
+        findings: the findings that only one version has.
+        others: those that only the other version has.
+        names: the paths of renamed files in the version of the findings, by the path in the other version.
+    """
+    unparsed = {
+        names.get(other.span.file, other.span.file)
+        for other in others
+        if other.code == _UNPARSED_CODE and other.span is not None
+    }
+    return [finding for finding in findings if finding.span is None or finding.span.file not in unparsed]
 
 
 def _invert(names: Mapping[str, str]) -> dict[str, str]:

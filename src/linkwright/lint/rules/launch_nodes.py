@@ -349,6 +349,7 @@ def _list_own_executables(package: PackageContext) -> frozenset[str] | None:
         return None  # CMake targets are defined in too many ways to know all of them
     if (
         setup is None
+        or setup.error is not None
         or not setup.entry_points_complete
         or not is_ament_python(package)
         or "scripts=" in setup.source.text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import PurePosixPath
 
 from linkwright.review.files.build_facts import FactKind
@@ -20,26 +21,35 @@ _EXPORTED_KINDS = frozenset(
 A library without headers, such as a plugin, is only loaded.
 """
 _EXPORTS = re.compile(
-    r"^[^#\n]*(?:\b(?:ament_export_|ament_auto_package|rosidl_|generate_messages|install_python|CONFIG_EXTRAS|CFG_EXTRAS)"
-    r"|\.cmake\b)|^[ \t]*install\s*\([^)]*\binclude\b",
+    r"^[^#\n]*(?:\b(?:ament_export_|ament_auto_package|rosidl_|generate_messages|install_python|ament_python_install)"
+    r"|\b(?:CONFIG_EXTRAS|CFG_EXTRAS|generate_parameter_)"
+    r"|\.cmake\b|\bEXPORT\b)|^[ \t]*install\s*\([^)]*\binclude\b",
     re.MULTILINE | re.IGNORECASE,
 )
 """A command or file that may export something, which the facts may not show."""
+_AMENT_PACKAGE = re.compile(r"^[^#\n]*\bament_package\s*\(", re.MULTILINE)
 
 
 def exports_nothing(version: Version, manifest: str) -> bool:
     """Return whether a package installs nothing with which other packages are built.
 
-    It only builds programs, plugins, and libraries without headers.
+    With ament, others can neither link to a library nor include headers that the package does not export.
 
     Args:
         version: the version of the repository.
         manifest: the path of its ``package.xml`` relative to the root.
     """
     path = (PurePosixPath(manifest).parent / CMAKE_FILE).as_posix()
-    if not version.file(path).is_file() or _EXPORTS.search(version.text(path)):
+    if not version.file(path).is_file() or any(_EXPORTS.search(text) for text in _read_build_files(version, manifest)):
         return False
+    if _AMENT_PACKAGE.search(version.text(path)):
+        return True
     facts = read_cmake_facts(version, path)
-    return (
-        not facts.unknown and not facts.header_paths and all(fact.kind not in _EXPORTED_KINDS for fact in facts.facts)
-    )
+    is_known = not facts.unknown and not facts.has_library
+    return is_known and not facts.header_paths and all(fact.kind not in _EXPORTED_KINDS for fact in facts.facts)
+
+
+def _read_build_files(version: Version, manifest: str) -> Iterator[str]:
+    """Yield the texts of the CMake files of a package, including those of its folders."""
+    for path in version.paths((CMAKE_FILE, ".cmake"), PurePosixPath(manifest).parent.as_posix()):
+        yield version.text(path)

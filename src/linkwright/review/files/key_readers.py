@@ -10,6 +10,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.review.files.declared_types import declare_type
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.list_changes import EMPTY, list_items
@@ -104,6 +105,22 @@ class KeyReaders:
             new_nodes: the nodes that only the new version of the file has.
         """
         return not self._is_node_named(node) and any(map(self._is_node_named, new_nodes))
+
+    def declare_type(self, node: str, parameter: str, value: YamlValue) -> bool:
+        """Return whether the packages with a node declare one of its parameters with the type of a value.
+
+        Args:
+            node: the name of the node.
+            parameter: the name of the parameter.
+            value: the new value.
+        """
+        version, name = self.versions.new, node.strip("/")
+        if not re.fullmatch(r"\w+", name):
+            return False
+        pattern = re.compile(rf"[({{]\s*[\"']{name}[\"']")
+        packages = {version.package_of(path) for path in _list_sources(version) if _names(version, path, pattern)}
+        texts = (version.text(path) for path in _list_sources(version) if version.package_of(path) in packages)
+        return declare_type(texts, parameter, value)
 
     def _is_node_named(self, node: str) -> bool:
         """Return whether a program of the new version contains the last part of a node's name as a text."""

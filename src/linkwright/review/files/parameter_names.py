@@ -147,7 +147,11 @@ class NameRules:
             return None  # a parameter of another plugin
         if not self._has_types or (new_value.is_list and _PLUGIN_LISTS.search(parameter)):
             return None  # ROS 1 has no types, and the lists of Nav2 accept nothing else
-        return find_type_reason(old_value, new_value)
+        type_reason, node = find_type_reason(old_value, new_value), find_node_name(parameter)
+        if type_reason is None or node is None:
+            return type_reason
+        own_name = parameter.partition(".ros__parameters.")[2]
+        return None if self._readers.declare_type(node, own_name, new_value) else type_reason
 
     def find_addition_reason(self, parameter: str, value: str) -> Phrase | None:
         """Return the reason why adding a parameter is breaking, or None if it is not. A new node is not breaking."""

@@ -34,6 +34,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     without_condition,
 )
+from linkwright.review.launches.parameter_types import declares_type
 from linkwright.review.launches.sides import Side, find_old_side, is_new_name
 from linkwright.review.launches.spawned_names import is_other_group
 from linkwright.review.launches.taken_names import is_taken_over
@@ -41,7 +42,9 @@ from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_
 from linkwright.review.launches.topic_tools import find_forwarding_reason
 from linkwright.review.list_changes import list_items
 
-_USER_INTERFACE_PROGRAM = re.compile(r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/")
+_USER_INTERFACE_PROGRAM = re.compile(
+    r"rviz2?/|rqt|joint_state_publisher_gui/|plotjuggler/|gazebo(_ros)?/(gui|gzclient)$|(gazebo_ros/)?gzclient$"
+)
 """Programs that offer nothing to other programs."""
 _JOINT_STATE_PREFIX = "joint_state_publisher"
 """The common prefix of the names of two packages that publish the same topics."""
@@ -51,6 +54,8 @@ _SPAWN_PROGRAM = re.compile(
 """Programs that request a robot from another program and exit. They offer nothing themselves."""
 _SPAWN_FILE_NAME = re.compile(r"spawn|create")
 """The names of included files and commands that create robots."""
+_SPAWN_COMMAND = re.compile(r"(?:^|[\s,\[])(?:spawn|create)(?=[\s,\]]|$)")
+"""A word in the arguments of a program with which it creates a robot."""
 _SHELL_SCRIPT = re.compile(r".*\.(sh|bash|zsh)")
 _NAME = re.compile(r"[~/\w]+")
 _NAME_SETTINGS = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remappings")
@@ -164,14 +169,18 @@ def _is_spawner(entry: Entry) -> bool:
 def _spawns_as_many(old: LaunchOutline, new: LaunchOutline) -> bool:
     """Return whether a file creates at least as many robots as before.
 
-    A new include that may create them is also enough.
+    A new include or program that may create them is also enough.
     """
     counts = [sum(map(_is_spawner, outline.entries)) for outline in (old, new)]
     if any(_is_spawner(entry) and _has_computed_names(entry) for entry in new.entries):
         return True  # a loop may create any number
     known = {entry.name for entry in old.entries}
-    may_include = any(_SPAWN_FILE_NAME.search(entry.name) and entry.name not in known for entry in new.entries)
-    return counts[1] >= counts[0] or may_include
+    may_create = any(
+        _SPAWN_FILE_NAME.search(entry.name) or _SPAWN_COMMAND.search(entry.settings.get("arguments", ""))
+        for entry in new.entries
+        if entry.name not in known
+    )
+    return counts[1] >= counts[0] or may_create
 
 
 def _has_computed_names(entry: Entry) -> bool:
@@ -257,7 +266,7 @@ def find_setting_reason(
         return _find_pause_reason(old, new, old_outline, new_outline)
     if entry.kind == SERVER_PARAMETER and setting == "value":
         name = PARAMETER + entry.name.replace("/", ".")
-        return _find_parameter_reason(name, old, new, old_outline, new_outline)
+        return _find_parameter_reason(entry, name, old, new, old_outline, new_outline)
     if entry.kind in ("node", "include") and setting == CONDITION and (_is_spawner(entry) or not offers_nothing(entry)):
         old_holds = evaluate_condition(old_outline.resolve(old or ""))
         is_stopped = evaluate_condition(new_outline.resolve(new or "")) is False
@@ -281,7 +290,7 @@ def find_setting_reason(
         removed = [name for name in old_names if name.strip("/") not in kept]
         is_unknown = any(_EXPRESSION in name for name in new_names)
         return _find_served_name_reason(entry, removed, new_outline) if removed and not is_unknown else None
-    return _find_parameter_reason(setting, old, new, old_outline, new_outline)
+    return _find_parameter_reason(entry, setting, old, new, old_outline, new_outline)
 
 
 def _find_node_remapping_reason(
@@ -316,7 +325,12 @@ def _find_pause_reason(
 
 
 def _find_parameter_reason(
-    setting: str, old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
+    entry: Entry,
+    setting: str,
+    old: str | None,
+    new: str | None,
+    old_outline: LaunchOutline,
+    new_outline: LaunchOutline,
 ) -> Phrase | None:
     """Return the reason why a changed parameter is breaking, or None if it is not.
 
@@ -344,7 +358,9 @@ def _find_parameter_reason(
     if switch_reason is not None or new_outline.is_ros1:
         return switch_reason  # ROS 1 converts numbers
     old_value, new_value = _parse_literal(old_name), _parse_literal(new_name)
-    return find_type_reason(old_value, new_value) if old_value and new_value else None
+    if not old_value or not new_value or declares_type(entry, parameter, new_value, new_outline.root):
+        return None
+    return find_type_reason(old_value, new_value)
 
 
 def _starts_other_programs(old: LaunchOutline, new: LaunchOutline) -> bool:

@@ -11,6 +11,7 @@ from linkwright.review.launches.outlines import (
     CONDITION,
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
+    PARAMETER,
     REMAPPING,
     SERVER_PARAMETER,
     Entry,
@@ -31,6 +32,10 @@ _MIN_SHARE_OF_COMMON_ARGUMENTS = 0.5
 """The number and the share of passed arguments that an include keeps if another file replaces the included one."""
 _SIMULATOR_FILE = re.compile(r"(?:^|[/_])(?:gazebo|gzserver|gz_sim|ign_gazebo|\w*world|empty)\.launch")
 """The launch files that, judging by their name, start a simulator."""
+_MIN_COMMON_PARAMETERS = 2
+"""The number of parameters and parameter files that a node keeps if another program replaces its program."""
+_COMMON_PARAMETERS = frozenset({"use_sim_time", "robot_description", "frame_id", "autostart", "node_names"})
+"""Parameters that many programs have."""
 _LOADED_NODELET = re.compile(r"(?:load|standalone) (\S+)")
 Match = tuple["Entry | None", "Entry | None"]
 """The old and the new action; None for a version that lacks the action."""
@@ -140,12 +145,25 @@ def _compute_replacement_score(
     has_same_topics = old.settings == new.settings and any(key.startswith(REMAPPING) for key in old.settings)
     if old_package == new_package and has_same_topics and name_similarity >= MIN_SIMILARITY:
         return 1.0 + name_similarity
+    if _have_same_parameters(old, new):
+        return 1.0 + similarity
     other_names = (old_package, new_package), (name or "", new.settings.get("name", ""))
     is_renamed = all(a == b or compute_name_similarity(a, b) >= _MIN_SIMILARITY_OF_PROGRAMS for a, b in other_names)
     is_similar = name_similarity >= _MIN_SIMILARITY_OF_PROGRAMS and (
         similarity >= MIN_SIMILARITY or name_similarity == 1.0
     )
     return name_similarity + similarity if is_similar and is_renamed else 0.0
+
+
+def _have_same_parameters(old: Entry, new: Entry) -> bool:
+    """Return whether two nodes get the same parameters, at least two of which are not common to many programs."""
+    parameters = [
+        {item for item in entry.settings.items() if item[0].startswith(("parameters", PARAMETER))}
+        for entry in (old, new)
+    ]
+    names = {name.removeprefix(PARAMETER) for name, _ in parameters[1]} - _COMMON_PARAMETERS
+    files = new.settings.get("parameters", "").count(".y")  # ".yaml" and ".yml"
+    return parameters[0] == parameters[1] and len(names) + max(files - 1, 0) >= _MIN_COMMON_PARAMETERS
 
 
 def _have_same_namespace(old: Entry, new: Entry, outlines: tuple[LaunchOutline, LaunchOutline]) -> bool:

@@ -25,7 +25,10 @@ _LOCALIZATION_PROGRAM = re.compile(
     r"robot_localization/(ekf|ukf)|robot_pose_ekf/|\w*odometry\w*/"
 )
 """Programs that publish the transform between the map, the odometry and the robot."""
+_LOCALIZATION_FILE = re.compile(r"slam|nav|map|loc|odom|lio|ekf|fusion", re.IGNORECASE)
+"""The paths of launch files that may start such programs."""
 _LOCALIZATION_FRAME = re.compile(r"(.*/)?(map|odom|odom_combined|base|base_link|base_footprint|footprint)")
+_INCLUDED_PACKAGE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/")
 _PARAMETER_FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<path>[^$\s,\]]+\.ya?ml)")
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _LINK = re.compile(r"<link\s+name=[\"']([^\"']+)[\"']")
@@ -35,9 +38,10 @@ _PARENT_FRAME = re.compile(r"--frame-id[ ,]+([^ ,\]]+)")
 
 
 def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutline, versions: Versions) -> Entry | None:
-    """Return an added node that may publish the transform of a removed publisher, or None.
+    """Return an added node or include that may publish the transform of a removed publisher, or None.
 
-    A node may publish it if its program publishes static transforms, or if its parameters name both frames.
+    A node may publish it if its program publishes static transforms, or if its parameters name both frames. An included
+    file of another repository may publish it if it starts a localization, or if it gets the name of the frame.
 
     Args:
         transform: the removed static transform publisher.
@@ -48,13 +52,21 @@ def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutlin
     frames = {frame.strip("/") for frame in _find_parent_and_child(transform, old)}
     if len(frames) != 2 or not transform.name.startswith(TRANSFORM_PUBLISHERS):
         return None
-    old_programs = {entry.name for entry in old.entries if entry.kind == "node"}
+    are_localized = all(map(_LOCALIZATION_FRAME.fullmatch, frames))
+    old_names = {entry.name for entry in old.entries if entry.kind in ("node", "include")}
     for entry in new.entries:
-        if entry.kind != "node" or entry.name in old_programs or entry.name.startswith(TRANSFORM_PUBLISHERS):
+        if entry.kind not in ("node", "include") or entry.name in old_names:
             continue
         if evaluate_condition(new.resolve(entry.settings.get(CONDITION, ""))) is False:
             continue
-        is_localized = _LOCALIZATION_PROGRAM.match(entry.name) and all(map(_LOCALIZATION_FRAME.fullmatch, frames))
+        if entry.kind == "include":
+            is_localization = are_localized and _LOCALIZATION_FILE.search(entry.name) is not None
+            if (is_localization or not frames.isdisjoint(entry.settings.values())) and _is_absent(entry, versions.new):
+                return entry
+            continue
+        if entry.name.startswith(TRANSFORM_PUBLISHERS):
+            continue
+        is_localized = _LOCALIZATION_PROGRAM.match(entry.name) and are_localized
         if (
             _ANY_FRAME_PROGRAM.match(entry.name)
             or is_localized
@@ -62,6 +74,12 @@ def find_other_publisher(transform: Entry, old: LaunchOutline, new: LaunchOutlin
         ):
             return entry
     return _find_added_robot(frames, versions)
+
+
+def _is_absent(include: Entry, version: Version) -> bool:
+    """Return whether an include names a file of a package that the repository does not have."""
+    match = _INCLUDED_PACKAGE.match(include.name)
+    return match is not None and version.share_of(match["package"], version.root) is None
 
 
 def has_robot_with_frame(transform: Entry, old: LaunchOutline, new: IncludedActions, version: Version) -> bool:

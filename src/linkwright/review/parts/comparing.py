@@ -22,6 +22,7 @@ from linkwright.review.parts.interface import (
     make_macro_removal_reason,
 )
 from linkwright.review.parts.left_uses import find_left_uses
+from linkwright.review.parts.malformed_includes import includes_malformed_file
 from linkwright.review.parts.name_substitution import CALL, ComparedContent
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, read_outline
 from linkwright.review.parts.part_pair import PartPair
@@ -140,8 +141,12 @@ class _Comparer:
             pair.is_complete = is_compared or self._is_complete(file.new_path)
             pair.renamed_macros = self._renamed_macros
             pair.find_old_macros = self._graphs.old.find_macro_outlines
+            pair.find_new_macros = self._graphs.new.find_macro_outlines
+            pair.find_old_calls = self._graphs.old.find_calls
             pair.robots = self._graphs.new.find_outlines_of_robots(file.new_path) or ()
             self._compare(pair)
+            if includes_malformed_file(self._versions.old, file.old_path, pair.old):
+                pair.changes = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
             changes += pair.changes
             versions = self._versions
             texts = versions.old.text(file.old_path), versions.new.text(file.new_path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Container, Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference
@@ -52,13 +52,15 @@ _INCLUDE, _INSERT = "xacro:include", "xacro:insert_block"
 def make_comparison(pair: PartPair, old: MacroOutline | None = None, new: MacroOutline | None = None) -> ItemComparison:
     """Return the comparison of the elements of two files, or of two macros in them."""
     renamed = dict(_find_renamed_properties(pair))
+    passed: dict[str, str] = {}
     literals = [read_literals(outline.root) for outline in (pair.old, pair.new)]
     if old is not None and new is not None:
         renamed |= dict(_find_renamed_parameters(old, new))
         for values, macro in zip(literals, (old, new), strict=True):
             for name in macro.parameters:
                 values.pop(name.lstrip("*"), None)
-    old_names = NameSubstitution(literals[0], renamed, pair.renamed_macros)
+        passed = dict(_find_passed_values(pair, old, new, renamed))
+    old_names = NameSubstitution(literals[0], renamed, pair.renamed_macros, passed)
     return ItemComparison(old_names, NameSubstitution(literals[1]))
 
 
@@ -104,6 +106,8 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
     sides = [is_old for is_old, element in zip((True, False), elements, strict=True) if element is not None]
     if difference.value == "conditions":
         return _is_condition_shown(pair, difference)
+    if difference.new is None and elements[1] is not None and pair.loses_parameter(elements[1], difference.value):
+        return True  # the lost parameter is reported
     if None in (difference.old, difference.new) and f"${{{difference.value}}}" in (difference.old, difference.new):
         return True  # a call that passes a parameter on; the parameter itself is reported
     if element.tag == PROPERTY:
@@ -173,6 +177,20 @@ def _find_renamed_parameters(old: MacroOutline, new: MacroOutline) -> Iterator[t
     if [parameter.default for parameter in removed] == [parameter.default for parameter in added]:
         for before, after in zip(removed, added, strict=True):
             yield before.name.lstrip("*"), after.name.lstrip("*")
+
+
+def _find_passed_values(
+    pair: PartPair, old: MacroOutline, new: MacroOutline, renamed: Container[str]
+) -> Iterator[tuple[str, str]]:
+    """Yield the removed parameters of a macro for which all its old calls pass the same value, with the value."""
+    calls = pair.find_old_calls(old.name)
+    for parameter in old.parameters.values():
+        if parameter.name in new.parameters or parameter.name in renamed:
+            continue
+        values = {call.attributes.get(parameter.name) for call in calls}
+        value = values.pop() if len(values) == 1 else None
+        if value is not None:
+            yield parameter.name, " ".join(value.split())
 
 
 # --- sentences -------------------------------------------------------------------------------------------------------

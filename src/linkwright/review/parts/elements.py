@@ -172,6 +172,11 @@ class ItemComparison:
                 old.remove(candidates[0])
                 new.remove(new_item)
                 continue
+            if len(candidates) == len(rivals) == 1 and self._has_call_lost_name(candidates[0], new_item):
+                pairs.append((candidates[0], new_item))
+                old.remove(candidates[0])
+                new.remove(new_item)
+                continue
             calls = [item for item in candidates if self._are_calls_with_other_name(item, new_item)]
             if len(calls) == sum(self._are_calls_with_other_name(calls[0], item) for item in rivals if calls) == 1:
                 pairs.append((calls[0], new_item))
@@ -188,6 +193,13 @@ class ItemComparison:
     def _are_bare_links(self, old: Item, new: Item) -> bool:
         """Return whether two elements are frames: links without contents."""
         return old.element.tag == "link" and not any((*old.element.elements(), *new.element.elements()))
+
+    def _has_call_lost_name(self, old: Item, new: Item) -> bool:
+        """Return whether two elements call one macro under equal conditions, the new one without a name."""
+        if not new.element.tag.startswith(CALL) or new.element.tag in STATEMENTS:
+            return False
+        is_lost = "name" in old.element.attributes and "name" not in new.element.attributes
+        return is_lost and self.are_equal_texts(" ".join(old.conditions), " ".join(new.conditions))
 
     def _are_calls_with_other_name(self, old: Item, new: Item) -> bool:
         """Return whether two elements call one macro under equal conditions, with equal arguments except the name."""

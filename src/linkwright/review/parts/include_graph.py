@@ -11,6 +11,7 @@ from linkwright.lint.inclusions import folders_by_package
 from linkwright.lint.targets import DESCRIPTION_SUFFIXES, find_files_and_packages
 from linkwright.review.parts.outline import MacroOutline, Outline, try_read_outline
 from linkwright.review.versions import Version
+from linkwright.xmltree import Element
 
 
 class IncludeGraph:
@@ -54,6 +55,11 @@ class IncludeGraph:
     def find_macro_outlines(self, macro: str) -> list[MacroOutline]:
         """Return the definitions of a macro in all files."""
         return [self._outlines[path].macros[macro] for path in self.find_files_with_macro(macro)]
+
+    def find_calls(self, macro: str) -> list[Element]:
+        """Return the calls of a macro in all files."""
+        tag = f"xacro:{macro}"
+        return [element for outline in self._outlines.values() for element in outline.root.walk() if element.tag == tag]
 
     def find_macros(self, path: str) -> Collection[str]:
         """Return the names of the macros that a file defines."""

@@ -35,11 +35,13 @@ class NameSubstitution:
         literals: the values of properties without expressions, by name.
         renamed: the new names of parameters and properties, by old name.
         macros: the new names of macros, by old name.
+        passed: the values that all calls of a macro pass for a removed parameter, by its name.
     """
 
     literals: Mapping[str, str] = field(default_factory=dict)
     renamed: Mapping[str, str] = field(default_factory=dict)
     macros: Mapping[str, str] = field(default_factory=dict)
+    passed: Mapping[str, str] = field(default_factory=dict)
 
     def rename_tag(self, tag: str) -> str:
         """Return the tag of an element, with the new name of a macro that it calls."""
@@ -56,6 +58,8 @@ class NameSubstitution:
     def rename_names(self, text: str) -> str:
         """Return a text with the new names of parameters and properties, and single spaces."""
         text = " ".join(text.split())
+        if self.passed:
+            text = _EXPRESSION.sub(lambda match: self.passed.get(match[1].strip(), match[0]), text)
         if not self.renamed or "$" not in text:
             return text
         return _EXPRESSION.sub(lambda match: _WORD.sub(lambda word: self.renamed.get(word[0], word[0]), match[0]), text)

@@ -29,6 +29,8 @@ class PartPair:
         renamed_macros: the new names of the macros that changed files rename, by old name.
         robots: the new outlines of all files of the robots that include the file; empty if some are not known.
         find_old_macros: a function that returns the definitions of a macro in the old repository.
+        find_new_macros: a function that returns the definitions of a macro in the new repository.
+        find_old_calls: a function that returns the calls of a macro in the old repository.
         changes: the changes found so far.
     """
 
@@ -42,6 +44,8 @@ class PartPair:
     renamed_macros: Mapping[str, str] = field(default_factory=dict)
     robots: Sequence[Outline] = ()
     find_old_macros: Callable[[str], Sequence[MacroOutline]] = field(default=lambda _name: ())
+    find_new_macros: Callable[[str], Sequence[MacroOutline]] = field(default=lambda _name: ())
+    find_old_calls: Callable[[str], Sequence[Element]] = field(default=lambda _name: ())
     changes: list[Change] = field(default_factory=list)
 
     def add(self, sentence: Phrase, old: Element | None, new: Element | None, reason: Phrase | None = None) -> None:
@@ -77,6 +81,12 @@ class PartPair:
         macros = self.find_old_macros(call.tag.removeprefix(CALL))
         uses = [element for macro in macros for element in macro.element.walk() if uses_name(element, "name")]
         return bool(uses) and all(element.tag == ROS2_CONTROL for element in uses)
+
+    def loses_parameter(self, call: Element, name: str) -> bool:
+        """Return whether a call passes a parameter that its macro has only in the old repository."""
+        macro = call.tag.removeprefix(CALL)
+        old, new = self.find_old_macros(macro), self.find_new_macros(macro)
+        return any(name in outline.parameters for outline in old) and not any(name in item.parameters for item in new)
 
     def is_read(self, *, is_old: bool) -> bool:
         """Return whether the expansion of a compared robot read the file in one of the versions."""

@@ -35,7 +35,7 @@ from linkwright.review.sources.given_frames import find_given_frame, format_give
 from linkwright.review.sources.interface_patterns import INTERFACE_KINDS, find_claim_reason, select_interfaces
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
-from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern
+from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern, lists_names
 from linkwright.review.sources.names import (
     DYNAMIC_SUFFIX,
     PYTHON_SUFFIX,
@@ -577,6 +577,8 @@ class _SourcePair(WholeSourcePair):
             return
         reason = phrase("the name is a pattern; programs that use one of the old names do not find it")
         is_lost = self._find_removal_reason([old], self.old.get_names(self.file.old_path)) is not None
+        is_listed = new.kind is NameKind.PARAMETER and lists_names(*patterns, self._read_texts()[1])
+        is_lost = is_lost and not is_listed
         yield self.make_change(format_rename(old, new), new.span, self.new, reason if is_lost else None)
 
     def _compare_defaults(

@@ -13,6 +13,8 @@ _PLACEHOLDER = re.compile(r"\{[^{}]*\}|%[-+ #0]*\d*(?:\.\d+)?[hlzjt]*[a-zA-Z]|%\
 _CALLED = re.compile(r"(\w+)\s*\(")
 _JOINING_CALLS = frozenset({"format", "string", "to_string", "str", "c_str", "String"})
 """The functions whose results contain the texts in their arguments."""
+_LISTING = re.compile(r"\b(?:get_parameters_by_prefix|list_parameters|get_param_names|getParamNames)\b")
+"""A function that returns the names of the parameters that are set."""
 _UNKNOWN_PART = "{}"
 """The mark for a part of a pattern with an unknown value."""
 
@@ -41,6 +43,19 @@ def ends_with_name(expression: str, name: str) -> bool:
     if pattern is None or not set(_CALLED.findall(expression)) <= _JOINING_CALLS:
         return False
     return pattern.rpartition(_UNKNOWN_PART)[2].lstrip("~./_") == name.lstrip("~/")
+
+
+def lists_names(old: str | None, new: str | None, text: str) -> bool:
+    """Return whether a source reads the parameters that are set by a prefix, and a new pattern covers an old one.
+
+    Args:
+        old: the old pattern of the names.
+        new: the new pattern.
+        text: the text of the new source.
+    """
+    if old is None or new is None or _LISTING.search(text) is None:
+        return False
+    return re.fullmatch(".*".join(map(re.escape, new.split(_UNKNOWN_PART))), old) is not None
 
 
 def make_expression_pattern(expression: str) -> str | None:
