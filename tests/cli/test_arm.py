@@ -51,6 +51,42 @@ def test_init_keeps_an_existing_package(folder, capsys):
     assert (package / "notes.txt").read_text() == "kept"
 
 
+def test_init_tells_what_gazebo_needs(folder, capsys):
+    source = folder / "elbow_description" / "urdf" / "arm.urdf.xacro"
+    hardware = "<ros2_control name='own' type='system'><hardware><plugin>$(arg plugin)</plugin></hardware>"
+    text = urdf().replace("<robot ", "<robot xmlns:xacro='http://www.ros.org/wiki/xacro' ")
+    arguments = "<xacro:arg name='plugin' default='maker/Robot'/>"
+    joint = "<joint name='pan'><command_interface name='position'/></joint></ros2_control></robot>"
+    source.write_text(text.replace("</robot>", arguments + hardware + joint))
+    assert main(["arm", "init", str(source)]) == 0
+    out = capsys.readouterr().out
+    assert "hardware maker/Robot of the description is not simulated; --gazebo NAME:=VALUE gives" in out
+    assert "links without a mass are left out: shoulder, upper_arm," in out
+    words = ["--gazebo", "plugin:=gz_ros2_control/GazeboSimSystem"]
+    assert main(["arm", "init", str(source), "--force", *words]) == 0
+    assert "maker/Robot" not in capsys.readouterr().out
+    written = str(folder / "elbow_arm_moveit_config" / "config" / "elbow_arm.urdf.xacro")
+    for value, plugin in (("mock_components", "maker/Robot"), ("gazebo", "gz_ros2_control/GazeboSimSystem")):
+        assert main(["xacro", written, f"ros2_control_hardware_type:={value}"]) == 0
+        assert f"<plugin>{plugin}</plugin>" in capsys.readouterr().out
+
+
+def test_init_refuses_arguments_for_the_copy_of_a_description(folder, capsys):
+    (folder / "arm.urdf").write_text(urdf())
+    assert main(["arm", "init", "arm.urdf", "--gazebo", "a:=b"]) == 1
+    assert "ARM108" in capsys.readouterr().err
+
+
+def test_init_refuses_the_name_of_another_package_of_the_workspace(folder, capsys):
+    other = folder / "src" / "taken"
+    other.mkdir(parents=True)
+    (other / "package.xml").write_text("<package format='3'><name>taken</name><version>1.0.0</version></package>")
+    words = ["arm", "init", "elbow_description/urdf/arm.urdf", "--package", "taken"]
+    assert main(words) == 1
+    assert str(other) in capsys.readouterr().err
+    assert main([*words, "--force"]) == 0
+
+
 def test_init_takes_groups_of_the_user(folder, capsys):
     words = ["--group", "short=base:forearm", "--group", "rest=bend,twist", "--end-effector", "gripper=flange"]
     assert main(["arm", "init", "elbow_description/urdf/arm.urdf", *words, "--distro", "humble"]) == 0

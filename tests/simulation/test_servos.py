@@ -8,7 +8,7 @@ import pytest
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.actuators import Servo
 from linkwright.simulation.simulation import Simulation
-from tests.simulation.worlds import make_simulation
+from tests.simulation.worlds import make_simulation, model
 
 _PERIOD_S = 0.01
 _ARM = """<model name="arm"><link name="base"/>
@@ -69,3 +69,22 @@ def test_friction_holds_no_light_joint_beside_its_target() -> None:
     assert not simulation.model.dof_frictionloss.any()
     servo.release()
     assert simulation.model.dof_frictionloss.tolist() == [1.0]
+
+
+@pytest.mark.parametrize("change", ["spawn", "delete"])
+def test_joints_stay_where_they_are_held_when_the_world_changes(simulation, change: str) -> None:
+    servo, motor = simulation.add_servo("arm::turn", 10.0), simulation.add_velocity_motor("arm::turn", 20.0, 10.0)
+    other = model("<model name='other'><static>true</static><link name='l'/></model>")
+    if change == "delete":
+        simulation.spawn(other, "other")
+    motor.release()
+    follow(simulation, servo, np.minimum(2.0 * np.arange(1, 101) * _PERIOD_S, 1.0))
+    revision = simulation.revision
+    simulation.spawn(other, "other") if change == "spawn" else simulation.delete("other")
+    for _ in range(20):
+        simulation.advance(simulation.step)
+        assert simulation.joint_state("arm::turn")[0] == pytest.approx(1.0, abs=0.001)
+    assert simulation.revision > revision
+    servo.release()
+    simulation.advance(NANOSECONDS_PER_SECOND // 10)
+    assert simulation.joint_state("arm::turn")[1] > 1.0, "the motor is still released, so that the bar falls"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -14,14 +13,18 @@ from linkwright.cli.maintainer import find_maintainer
 from linkwright.cli.model_arguments import add_model
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.output import write_output
-from linkwright.diagnostics import Diagnostic, LinkwrightError, has_errors, joined, phrase, print_diagnostics
+from linkwright.diagnostics import Diagnostic, LinkwrightError, has_errors, joined, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
+    from linkwright.descriptions import Description
     from linkwright.diagnostics import Phrase
+    from linkwright.packages import PackageFinder
+    from linkwright.planning.setup.gazebo import GazeboSettings
     from linkwright.planning.setup.groups import GroupRequests, PlanningGroup
-    from linkwright.planning.setup.package import PackageSettings
+    from linkwright.planning.setup.settings import PackageSettings
+    from linkwright.urdf import Robot
 
 _DISTRIBUTIONS = ("humble", "jazzy")
 
@@ -55,6 +58,13 @@ def configure_init(parser: argparse.ArgumentParser) -> None:
         help="make a group an end effector that is attached to a link; may be repeated",
     )
     parser.add_argument(
+        "--gazebo",
+        metavar="NAME:=VALUE",
+        action="append",
+        default=[],
+        help="the value of an <xacro:arg> of the description in Gazebo; may be repeated",
+    )
+    parser.add_argument(
         "--distro",
         choices=_DISTRIBUTIONS,
         default="jazzy",
@@ -73,26 +83,33 @@ def run_init(arguments: argparse.Namespace) -> int:
     from linkwright.packages import PackageFinder
     from linkwright.packages.creation.request import DEFAULT_LICENSE
     from linkwright.packages.naming import check_package_name
-    from linkwright.planning.setup.assistant import PackageChoices, set_up
-    from linkwright.planning.setup.package import file_name, package_files
+    from linkwright.planning.setup.assistant import PackageChoices, RobotInGazebo, set_up
+    from linkwright.planning.setup.package import package_files
+    from linkwright.planning.setup.settings import file_name
 
     finder = PackageFinder(start=[Path(arguments.file).absolute().parent, Path.cwd()])
     values = parse_assignments(arguments.values)
     description = examine(arguments.file, arguments=values, packages=finder)
-    robot = description.robot
-    if robot is None or has_errors(description.diagnostics):
-        print_diagnostics(description.diagnostics, sys.stderr)
-        return 1
+    robot = _require_robot(description)
+    gazebo = parse_assignments(arguments.gazebo)
+    in_gazebo = examine(arguments.file, arguments={**values, **gazebo}, packages=finder) if gazebo else description
     name = arguments.package or f"{file_name(robot.name).lower().replace('-', '_').replace('.', '_')}_moveit_config"
     name_findings = check_package_name(name)
     if has_errors(name_findings):
         raise LinkwrightError(*name_findings)
     folder = Path(arguments.output) / name
-    if (folder.exists() or folder.is_symlink()) and not arguments.force:
-        hint = phrase("choose another --package or --output, or add --force to overwrite its files")
-        raise LinkwrightError(Diagnostic("CLI206", phrase("'{path}' already exists", path=folder), hint=hint))
+    if not arguments.force:
+        _refuse_existing(name, folder, finder)
     choices = PackageChoices(name, find_maintainer(None, None), DEFAULT_LICENSE, arguments.distro)
-    settings = set_up(description, robot, finder, values, _read_requests(arguments), choices)
+    settings = set_up(
+        description,
+        robot,
+        finder,
+        values,
+        _read_requests(arguments),
+        choices,
+        RobotInGazebo(_require_robot(in_gazebo), gazebo),
+    )
     files = package_files(settings)
     for path, text in files.items():
         write_output(folder / path, text)
@@ -100,7 +117,33 @@ def run_init(arguments: argparse.Namespace) -> int:
         print(localized(line))
     print(localized(phrase("Created package {folder} ({count} files)", folder=folder, count=len(files))))
     print_message(localized(phrase("`linkwright launch {package} demo.launch.py` plans motions with it", package=name)))
+    print_message(
+        localized(phrase("`linkwright launch {package} demo_gazebo.launch.py` does so in a simulation", package=name))
+    )
     return 0
+
+
+def _require_robot(description: Description) -> Robot:
+    """Return the robot of a description.
+
+    Raises:
+        LinkwrightError: the description has errors.
+    """
+    if description.robot is None or has_errors(description.diagnostics):
+        raise LinkwrightError(*description.diagnostics)
+    return description.robot
+
+
+def _refuse_existing(name: str, folder: Path, finder: PackageFinder) -> None:
+    """Raise an error if the folder exists, or if the workspace has another package of this name.
+
+    Raises:
+        LinkwrightError: CLI206.
+    """
+    found = folder if folder.exists() or folder.is_symlink() else finder.find_in_sources(name)
+    if found is not None:
+        hint = phrase("choose another --package or --output, or add --force to overwrite its files")
+        raise LinkwrightError(Diagnostic("CLI206", phrase("'{path}' already exists", path=found), hint=hint))
 
 
 def _read_requests(arguments: argparse.Namespace) -> GroupRequests:
@@ -158,6 +201,27 @@ def _summarize(settings: PackageSettings) -> Iterator[Phrase | str]:
     for (first, second), reason in settings.pairs.disabled.items():
         if reason in (DEFAULT, ALWAYS):
             yield f"  {reason}: {first}, {second}"
+    yield from _summarize_gazebo(settings.gazebo)
+
+
+def _summarize_gazebo(gazebo: GazeboSettings) -> Iterator[Phrase]:
+    """Yield the lines about what the description lacks for Gazebo."""
+    if gazebo.other_hardware:
+        yield phrase(
+            "in Gazebo: hardware {plugins} of the description is not simulated; --gazebo NAME:=VALUE gives the "
+            "<xacro:arg> that selects {hardware}",
+            plugins=joined(gazebo.other_hardware),
+            hardware=gazebo.simulator.hardware_plugin,
+        )
+    if gazebo.controllers_file:
+        yield phrase(
+            "in Gazebo: the plugin of the description reads the controllers from {file}", file=gazebo.controllers_file
+        )
+    if gazebo.links_without_mass:
+        yield phrase(
+            "in Gazebo: links without a mass are left out: {links}; `linkwright inertia` computes masses",
+            links=joined(gazebo.links_without_mass),
+        )
 
 
 def _describe(group: PlanningGroup) -> Phrase:

@@ -74,10 +74,7 @@ class Motor:
             self._released_gain = 0.0
 
     def release(self) -> None:
-        """Switch the motor off until a target is set.
-
-        Rebuilding the model switches the motor on again, so call this after each rebuild.
-        """
+        """Switch the motor off until a target is set."""
         index = self._find_actuator()
         gain = float(self._simulation.model.actuator_gainprm[index, 0])
         if gain:

@@ -1,5 +1,7 @@
 """The graph's requests to a transport, and the handling of its results."""
 
+from threading import Thread
+
 import pytest
 
 from linkwright.graph import (
@@ -168,6 +170,25 @@ async def test_early_messages_are_held_until_writer_exists(graph):
     assert [message.data for message in sent] == list("bcd")
     assert publisher.wait_for_all_acked()
     assert len(waited) == 2
+
+
+async def test_messages_published_while_the_held_ones_are_sent_follow_them(graph):
+    publisher = graph.create_node("node").create_publisher(String, "topic", 10)
+    publisher.hold_for_remote(lambda _: True)
+    for text in "ab":
+        publisher.publish(String(data=text))
+    sent, threads = [], []
+
+    def send(message):
+        sent.append(message.data)
+        if message.data == "a":
+            publisher.publish(String(data="c"))
+            threads.append(Thread(target=publisher.publish, args=(String(data="d"),)))
+            threads[0].start()
+
+    publisher.set_remote_sender(send)
+    threads[0].join()
+    assert sent == list("abcd")
 
 
 async def test_messages_are_not_held_without_remote_subscription(graph):

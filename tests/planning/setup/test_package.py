@@ -21,7 +21,8 @@ from linkwright.planning.robot_model import RobotModel
 from linkwright.planning.semantics import read_semantics
 from linkwright.planning.setup.assistant import PackageChoices, set_up
 from linkwright.planning.setup.groups import GroupRequests
-from linkwright.planning.setup.package import PackageSettings, package_files
+from linkwright.planning.setup.package import package_files
+from linkwright.planning.setup.settings import PackageSettings
 from linkwright.planning.setup.yaml_text import quote_yaml, yaml_number
 from linkwright.planning.shapes import robot_shapes
 from tests.planning.arms import urdf
@@ -201,7 +202,7 @@ def test_joints_with_hardware_keep_it(tmp_path: Path) -> None:
     settings = settings_of(tmp_path, urdf().replace("</robot>", control.format(everything) + "</robot>"))
     files = package_files(settings)
     assert "config/elbow_arm.ros2_control.xacro" not in files
-    assert "ros2_control" not in files["config/elbow_arm.urdf.xacro"]
+    assert "elbow_arm_ros2_control" not in files["config/elbow_arm.urdf.xacro"]
 
 
 def test_description_without_package_is_copied(tmp_path: Path) -> None:

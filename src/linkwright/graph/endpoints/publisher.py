@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -201,7 +201,17 @@ class Publisher(TopicEndpoint[M]):
             if self._late_joiner_messages is None and self.send_remote is None:
                 self._wait_until_sent = wait_until_sent
                 self._held_messages = deque(maxlen=self.qos_profile.queue_length)
-                self.send_remote = self._held_messages.append
+                self.send_remote = self._hold
+
+    def _hold(self, message: Any) -> None:
+        """Hold a message, or send it if another thread has called `set_remote_sender` meanwhile."""
+        with self._lock:
+            if self._held_messages is not None:
+                self._held_messages.append(message)
+                return
+            send = self.send_remote
+        if send is not None:
+            send(message)
 
     def set_remote_sender(
         self,
@@ -221,11 +231,15 @@ class Publisher(TopicEndpoint[M]):
                 no limit); returns whether they have.
         """
         with self._lock:
-            held_messages, self._held_messages = self._held_messages, None
-            if send is not None and (self.send_remote is None or held_messages is not None):
-                for message in self._remove_expired_messages() if held_messages is None else held_messages:
+            if send is not None:
+                if self._held_messages is not None:
+                    messages: Iterator[Any] = _take_all(self._held_messages)
+                else:
+                    messages = iter(self._remove_expired_messages() if self.send_remote is None else ())
+                for message in messages:
                     operation = f"sending the messages of topic '{self.name}'"
                     run_logged(self.node.logger, operation, partial(send, message))  # `publish` has returned: just log
+            self._held_messages = None
             self.send_remote = send
             self._wait_until_acknowledged = wait_until_acknowledged if send is not None else None
 
@@ -277,3 +291,9 @@ class Publisher(TopicEndpoint[M]):
             f"Expected {self.msg_type}, got {type(message)}: topic '{self.name}' carries {self.type_name}, "
             f"not {type(message).__name__}"
         )
+
+
+def _take_all(messages: deque[Any]) -> Iterator[Any]:
+    """Remove and yield messages until there are none, also those that are added meanwhile."""
+    while messages:
+        yield messages.popleft()

@@ -15,7 +15,7 @@ from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World, find_physics
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.meshes import MeshLibrary
-from linkwright.simulation.scene.scene import Scene
+from linkwright.simulation.scene.scene import SERVO_SUFFIX, Scene
 
 _MEMORY_THRESHOLD, MAX_LINKS = 1000, 10_000
 """The number of links above which MuJoCo gets memory for all pairs of links, and the maximum number of links."""
@@ -64,6 +64,7 @@ def compile_scene(scene: Scene, previous: tuple[Any, Any] | None = None) -> tupl
             simplefilter("ignore")  # `check` and the simulation report the relevant warnings of MuJoCo
             if previous is not None:
                 model, data = scene.spec.recompile(*previous)
+                _keep_commands(previous[0], model)
                 return model, data
             model = scene.spec.compile()
             return model, mujoco.MjData(model)
@@ -72,6 +73,30 @@ def compile_scene(scene: Scene, previous: tuple[Any, Any] | None = None) -> tupl
         raise LinkwrightError(
             Diagnostic("SIM104", phrase("MuJoCo cannot simulate this world: {reason}", reason=foreign(reason)))
         ) from None
+
+
+def _keep_commands(previous: Any, model: Any) -> None:
+    """Set the targets of servos and the gains of motors in a model as in the previous one.
+
+    MuJoCo keeps its data. Without the targets, joints would leap to their initial positions until the next command.
+    """
+    mujoco = load_mujoco()
+    equality, actuator, joint = (getattr(mujoco.mjtObj, f"mjOBJ_{kind}") for kind in ("EQUALITY", "ACTUATOR", "JOINT"))
+    for index in range(previous.neq):
+        name = mujoco.mj_id2name(previous, equality, index) or ""
+        new_index = mujoco.mj_name2id(model, equality, name) if SERVO_SUFFIX in name else -1
+        if new_index >= 0:
+            model.eq_data[new_index] = previous.eq_data[index]
+            old_dof, new_dof = (
+                each.jnt_dofadr[mujoco.mj_name2id(each, joint, name.partition(SERVO_SUFFIX)[0])]
+                for each in (previous, model)
+            )
+            model.dof_frictionloss[new_dof] = previous.dof_frictionloss[old_dof]
+    for index in range(previous.nu):
+        new_index = mujoco.mj_name2id(model, actuator, mujoco.mj_id2name(previous, actuator, index))
+        if new_index >= 0:
+            model.actuator_gainprm[new_index] = previous.actuator_gainprm[index]
+            model.actuator_biasprm[new_index] = previous.actuator_biasprm[index]
 
 
 def find_rejected_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
