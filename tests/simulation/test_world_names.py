@@ -29,3 +29,16 @@ def test_file_with_named_suffix_is_preferred(tmp_path: Path) -> None:
     assert finder.world("arena") == finder.world("arena.sdf") == folder / "arena.sdf"
     assert finder.world("yard.sdf") == folder / "yard.world"
     assert finder.world("attic.sdf") is None
+
+
+def test_empty_world_of_gz_is_preferred_to_one_in_a_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "bar"
+    (package / "worlds").mkdir(parents=True)
+    (package / "package.xml").write_text('<package format="3"><name>bar</name></package>', encoding="utf-8")
+    for name in ("empty", "cellar"):
+        (package / "worlds" / f"{name}.sdf").write_text(WORLD.format(f"{name}_of_bar"), encoding="utf-8")
+    monkeypatch.chdir(package)
+    assert load_world("cellar.sdf").world.name == "cellar_of_bar"
+    assert load_world("empty.sdf").world.name == "empty"
+    monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(package / "worlds"))
+    assert load_world("empty.sdf").world.name == "empty_of_bar"

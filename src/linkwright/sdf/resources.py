@@ -50,6 +50,8 @@ _MEDIA_SUBFOLDERS = ("", "models", "media/models", "Media/models")
 _SCHEMES = ("model", "package", "file")
 _TEMPLATE_SUFFIXES = (".jinja", ".jinja2", ".j2", ".em", ".erb", ".in", ".template", ".xacro")
 """Suffixes of templates from which a build creates a file, such as ``model.sdf.jinja``."""
+_PACKAGES_WITH_WORLDS_OF_GAZEBO = ("ros_gz_sim", "gazebo_ros")
+"""The packages here that contain the worlds that Gazebo installs, such as ``empty.sdf``."""
 _MIN_NAME_LENGTH = 4
 """The minimum length of a name for which similar names are suggested. ``suv`` is not a misspelling of ``sun``."""
 _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
@@ -172,7 +174,8 @@ class ResourceFinder:
         """Return the file of a world, or None if there is none.
 
         The name is a path, a ``file://`` address or a name on the search path. For a name with a suffix, such as
-        ``empty.sdf``, a file of this name is preferred to one with another suffix.
+        ``empty.sdf``, a file of this name is preferred to one with another suffix, and Gazebo's own file to that of a
+        package, because Gazebo does not look for worlds in packages.
         """
         file = name.removeprefix("file://")
         path = Path(file if file == name else parse_absolute_path(f"//{file}") or file).expanduser()
@@ -180,14 +183,16 @@ class ResourceFinder:
             return path
         if "/" in name:
             return None
-        files = tuple(self._world_files())
+        files = tuple(self._world_files(prefer_gazebo=name.endswith(_WORLD_SUFFIXES)))
         stem = name.partition(".")[0]
         matches = (file for known in (name, stem) for file in files if known in (file.name, file.stem))
         return next(matches, None)
 
-    def _world_files(self) -> Iterator[Path]:
+    def _world_files(self, prefer_gazebo: bool = False) -> Iterator[Path]:
         """Yield the files of worlds on the search path, in the order of the search."""
-        shares = self._packages.packages().values()
+        packages = self._packages.packages()
+        names = sorted(packages, key=lambda name: prefer_gazebo and name not in _PACKAGES_WITH_WORLDS_OF_GAZEBO)
+        shares = [packages[name] for name in names]
         for folder in dict.fromkeys(
             (
                 *(path for model_folder in self._folders for path in (model_folder, model_folder / "worlds")),
