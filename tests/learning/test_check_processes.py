@@ -51,12 +51,6 @@ def busy_processor(check_server):
         process.wait()
 
 
-@pytest.fixture(scope="module")
-def check_server():
-    with check_process.create_check_server() as server:
-        yield server
-
-
 def run_statement(server, folder, statement, processor, time_limit):
     """Run a check that executes one statement on a processor, and return its message."""
     course = folder / "course"
