@@ -99,7 +99,7 @@ read-tests: $(VENV)/.dev
 
 # The quick tests once more, with a look at which lines they reach; fails below the share named in pyproject.toml.
 coverage: $(VENV)/.dev
-	$(PYTEST) $(WORKERS) -m "not browser and not slow" --cov --cov-report=term:skip-covered $(ARGS)
+	$(PYTEST) $(WORKERS) -m "not browser and not slow" -p pytest_cov.plugin --cov --cov-report=term:skip-covered $(ARGS)
 
 test-browser: $(VENV)/.dev page
 	LINKWRIGHT_CHROMIUM=$$($(BIN)/python tools/chromium.py) $(BIN)/pytest -m browser $(ARGS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -62,6 +63,15 @@ def tracked_paths() -> list[Path]:
 
 
 @functools.cache
+def tracked_paths_by_name() -> dict[str, list[Path]]:
+    """Return all tracked paths by their last parts."""
+    paths_by_name = defaultdict(list)
+    for path in tracked_paths():
+        paths_by_name[path.name].append(path)
+    return paths_by_name
+
+
+@functools.cache
 def other_names() -> str:
     """Return names that look like files or modules but are declared elsewhere.
 
@@ -81,7 +91,9 @@ def path_or_module_exists(word: str) -> bool:
     if _MODULE.fullmatch(word):
         folder = REPOSITORY / "src" / Path(*word.split("."))
         return any(path.exists() for path in (folder, folder.with_suffix(".py"), folder.parent.with_suffix(".py")))
-    return any(path.match(word.rstrip("/")) for path in tracked_paths())
+    name = word.rstrip("/").rpartition("/")[2]
+    paths = tracked_paths() if "*" in name else tracked_paths_by_name().get(name, [])
+    return any(path.match(word.rstrip("/")) for path in paths)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))

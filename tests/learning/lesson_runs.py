@@ -8,6 +8,7 @@ import pytest
 
 from linkwright.learning.course import Course, Lesson, find_courses_folder, load_course
 from linkwright.learning.lesson_tests import test_lesson as run_lesson_tests
+from linkwright.process.forked import ForkServer
 
 COURSES = [load_course(file.parent) for file in sorted((find_courses_folder() or ()).glob("*/course.toml"))]
 LESSONS = [
@@ -21,7 +22,8 @@ def lessons_of_part(number: int) -> list[Any]:
     return LESSONS[number::_PARTS]
 
 
-def expect_passes(course: Course, lesson: Lesson) -> None:
+def expect_passes(course: Course, lesson: Lesson, check_server: ForkServer) -> None:
     """Run the tests of a lesson, and fail with the problems."""
-    problems = [f"{result.title}: {result.problem}" for result in run_lesson_tests(course, lesson) if result.problem]
+    results = run_lesson_tests(course, lesson, check_server)
+    problems = [f"{result.title}: {result.problem}" for result in results if result.problem]
     assert not problems, "\n".join(problems)  # pytest explains only assertions in test modules

@@ -18,7 +18,7 @@ from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
 from linkwright.graph.parameters.files import read_parameter_file
 from linkwright.learning.checks import check_process
-from linkwright.learning.checks.check_process import check_in_process, create_check_server
+from linkwright.learning.checks.check_process import check_in_process
 from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.classroom import open_classroom
 from linkwright.learning.course import find_course, load_course
@@ -225,29 +225,26 @@ def replace_in_file(path: Path, old: str, new: str) -> None:
         ("lesson.zh.md", "# 一个连杆\n", "# 一个连杆\n\n![x](images/x.png)\n", "'images/x.png' is missing"),
     ],
 )
-def test_lesson_tests_report_mistakes(tmp_path, capsys, file, old, new, problem):
+def test_lesson_tests_report_mistakes(tmp_path, capsys, check_server, file, old, new, problem):
     folder = tmp_path / "mine"
     run_learn(capsys, "new", str(folder))
     replace_in_file(folder / "01-one-link" / file, old, new)
     if problem == "without its solution":
         replace_in_file(folder / "01-one-link" / "checks.py", "def is_cube(work):", "def is_cube(work):\n    return")
     course = load_course(folder)
-    problems = [str(result.problem) for result in run_lesson_tests(course, course.lessons[0]) if result.problem]
+    results = run_lesson_tests(course, course.lessons[0], check_server)
+    problems = [str(result.problem) for result in results if result.problem]
     assert any(problem in text for text in problems), problems
 
 
 @pytest.fixture(params=["forked", "fresh"])
-def check_server(request):
-    if request.param == "fresh":
-        yield None
-        return
-    if not IS_POSSIBLE:
+def optional_server(request, check_server):
+    if request.param == "forked" and not IS_POSSIBLE:
         pytest.skip("programs are forked on Linux only")
-    with create_check_server() as server:
-        yield server
+    return check_server if request.param == "forked" else None
 
 
-def test_hanging_or_crashing_check_fails_and_leaves_no_process(tmp_path, capsys, check_server):
+def test_hanging_or_crashing_check_fails_and_leaves_no_process(tmp_path, capsys, optional_server):
     folder = tmp_path / "mine"
     run_learn(capsys, "new", str(folder))
     checks = folder / "01-one-link" / "checks.py"
@@ -259,23 +256,23 @@ def test_hanging_or_crashing_check_fails_and_leaves_no_process(tmp_path, capsys,
     )
     step = load_course(folder).steps[0]
     checks.write_text(start + "while True: time.sleep(1)\n")
-    check_in_process(step, tmp_path, time_limit=3.0, server=check_server)  # the server may take long to start
-    result = check_in_process(step, tmp_path, time_limit=3.0, server=check_server)
+    check_in_process(step, tmp_path, time_limit=3.0, server=optional_server)  # the server may take long to start
+    result = check_in_process(step, tmp_path, time_limit=3.0, server=optional_server)
     assert "took longer than 3 s" in str(result.checks[0].message)
     if sys.platform != "win32":
         wait_until(lambda: not is_running(int(marker.read_text())), TIMEOUT_S)
     checks.write_text("import os\nos._exit(7)\n")
-    result = check_in_process(step, tmp_path, server=check_server)
+    result = check_in_process(step, tmp_path, server=optional_server)
     assert "ended early" in str(result.checks[0].message)
     checks.write_text("import os, sys\nprint('a' * 10**6, '\\nthe last line', file=sys.stderr)\nos._exit(7)\n")
-    result = check_in_process(step, tmp_path, server=check_server)
+    result = check_in_process(step, tmp_path, server=optional_server)
     assert "ended early: the last line" in str(result.checks[0].message)
     checks.write_text("1 / 0\n")
-    result = check_in_process(step, tmp_path, server=check_server)
+    result = check_in_process(step, tmp_path, server=optional_server)
     assert "ZeroDivisionError" in str(result.checks[0].message)
 
 
-def test_checks_have_separate_domain_folder_environment_and_seed(tmp_path, capsys, check_server, monkeypatch):
+def test_checks_have_separate_domain_folder_environment_and_seed(tmp_path, capsys, optional_server, monkeypatch):
     folder = tmp_path / "mine"
     run_learn(capsys, "new", str(folder))
     (folder / "01-one-link" / "checks.py").write_text(
@@ -293,7 +290,7 @@ def test_checks_have_separate_domain_folder_environment_and_seed(tmp_path, capsy
     workspace.mkdir()
     monkeypatch.setenv("A_WORD", "here")
     with ThreadPoolExecutor(3) as pool:
-        results = [pool.submit(check_in_process, step, workspace, server=check_server) for _ in range(3)]
+        results = [pool.submit(check_in_process, step, workspace, server=optional_server) for _ in range(3)]
     assert all(result.result().passed for result in results)
     facts = [json.loads(path.read_text()) for path in workspace.iterdir()]
     domains, words, folders, pids, sessions, numbers = zip(*facts, strict=True)

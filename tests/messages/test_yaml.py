@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections import OrderedDict
 
 import pytest
@@ -30,25 +29,31 @@ class Dumper(yaml.Dumper):
     """PyYAML's dumper, which writes ordered dictionaries as rosidl_runtime_py does."""
 
 
-Dumper.add_representer(
-    OrderedDict,
-    lambda dumper, data: yaml.MappingNode(
-        "tag:yaml.org,2002:map",
-        [(dumper.represent_data(key), dumper.represent_data(value)) for key, value in data.items()],
-    ),
-)
+class FastDumper(getattr(yaml, "CDumper", yaml.Dumper)):
+    """The same dumper with PyYAML's writer in C, which takes a tenth of the time."""
 
 
-def dump_yaml(data, flow_style=False):
-    return yaml.dump(data, Dumper=Dumper, allow_unicode=True, width=sys.maxsize, default_flow_style=flow_style)
+for dumper_class in (Dumper, FastDumper):
+    dumper_class.add_representer(
+        OrderedDict,
+        lambda dumper, data: yaml.MappingNode(
+            "tag:yaml.org,2002:map",
+            [(dumper.represent_data(key), dumper.represent_data(value)) for key, value in data.items()],
+        ),
+    )
+
+
+def dump_yaml(data, flow_style=False, dumper=Dumper):
+    return yaml.dump(data, Dumper=dumper, allow_unicode=True, width=2**31 - 1, default_flow_style=flow_style)
 
 
 @pytest.mark.parametrize("name", ALL_MESSAGE_NAMES)
 def test_to_yaml_matches_pyyaml(name):
     for seed, options in enumerate(OPTIONS):
         message = random_message(get_message(name), seed)
-        assert to_yaml(message, **options) == dump_yaml(to_dict(message, **options))
-        assert to_yaml(message, flow_style=True, **options) == dump_yaml(to_dict(message, **options), True)
+        values = to_dict(message, **options)
+        assert to_yaml(message, **options) == dump_yaml(values, dumper=FastDumper)
+        assert to_yaml(message, flow_style=True, **options) == dump_yaml(values, True, dumper=FastDumper)
 
 
 @given(text=st.text(max_size=40))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.scratch_folders import ScratchFolder
-from linkwright.learning.checks.check_process import check_in_process, create_check_server
+from linkwright.learning.checks.check_process import check_in_process
 from linkwright.learning.checks.declarations import load_checks, load_module
 from linkwright.learning.course import CASES_FILE, CHECKS_FILE, Course, Lesson, Step
 from linkwright.learning.errors import file_error
@@ -86,11 +86,16 @@ class TestResult:
     problem: Phrase | None
 
 
-def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
+def test_lesson(course: Course, lesson: Lesson, server: ForkServer) -> Iterator[TestResult]:
     """Test the images, the checks, the solutions and the cases of a lesson.
 
     The checks of each step must fail before its solution and pass after it. The initial workspace has the solutions
     of all steps before the lesson.
+
+    Args:
+        course: the course of the lesson.
+        lesson: the lesson to test.
+        server: starts the processes of the checks; see `create_check_server`.
 
     Yields:
         The result of each test as soon as the test has ended.
@@ -104,7 +109,7 @@ def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
     if unknown:
         yield TestResult(lesson.id, CHECKS_FILE, phrase("there is no step '{step}'", step=unknown[0]))
     cases = load_cases(lesson)
-    with ScratchFolder("lesson") as scratch, create_check_server() as server:
+    with ScratchFolder("lesson") as scratch:
         workspace = Path(scratch) / "before"
         workspace.mkdir()
         for name, source in course.files_before(lesson.steps[0]).items():

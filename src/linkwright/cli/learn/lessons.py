@@ -32,17 +32,19 @@ def configure_test(parser: argparse.ArgumentParser) -> None:
 
 def run_test(arguments: argparse.Namespace) -> int:
     """Test lessons, and return 1 if a test fails."""
+    from linkwright.learning.checks.check_process import create_check_server
     from linkwright.learning.course import find_course, load_course
     from linkwright.learning.lesson_tests import test_lesson
 
     course = load_course(find_course(arguments.course))
     failures = count = 0
-    for lesson in course.find_lessons(arguments.lessons):
-        for result in test_lesson(course, lesson):
-            count += 1
-            failures += result.problem is not None
-            print(f"{'ok  ' if result.problem is None else 'FAIL'} {result.lesson}/{result.title}", flush=True)
-            if result.problem is not None:
-                print(f"     {localized(result.problem)}", flush=True)
+    with create_check_server() as server:
+        for lesson in course.find_lessons(arguments.lessons):
+            for result in test_lesson(course, lesson, server):
+                count += 1
+                failures += result.problem is not None
+                print(f"{'ok  ' if result.problem is None else 'FAIL'} {result.lesson}/{result.title}", flush=True)
+                if result.problem is not None:
+                    print(f"     {localized(result.problem)}", flush=True)
     print(localized(phrase("{count} tests, {failures} failed", count=count, failures=failures)), file=sys.stderr)
     return 1 if failures else 0
