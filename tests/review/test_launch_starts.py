@@ -271,3 +271,28 @@ def test_file_of_the_same_package_with_a_similar_name_replaces_an_include(review
     files = [f"include of '$(find camera)/launch/{name}.launch'" for name in ("rs_rgbd", "rs_camera")]
     assert found == [" replaced by ".join(files)]
     assert lost == []
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "is_breaking"),
+    [
+        ("use_sim", "true", "false", True),
+        ("use_fake_hardware", "false", "true", True),
+        ("use_mock_hardware", "True", "False", True),
+        ("use_sim_time", "true", "false", False),
+        ("use_sim", "true", "True", False),
+        ("sim_config", "true", "false", False),
+    ],
+)
+def test_default_that_switches_between_hardware_and_simulation_is_breaking(
+    repository, compare, name, old, new, is_breaking
+):
+    path = "arm/launch/arm.launch.xml"
+    text = f"""<launch>
+  <arg name="{name}" default="{{}}"/>
+  <include file="$(find-pkg-share elsewhere)/launch/robot.launch.xml"><arg name="flag" value="$(var {name})"/></include>
+</launch>
+"""
+    repository.commit({path: text.format(old)})
+    repository.write({path: text.format(new)})
+    assert bool(breaking(compare(repository))) is is_breaking

@@ -36,6 +36,7 @@ from linkwright.review.launches.outlines import (
 )
 from linkwright.review.launches.parameter_types import declares_type
 from linkwright.review.launches.sides import Side, find_old_side, is_new_name
+from linkwright.review.launches.simulated_hardware import find_hardware_reason
 from linkwright.review.launches.spawned_names import is_other_group
 from linkwright.review.launches.taken_names import is_taken_over
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names, format_title
@@ -439,7 +440,7 @@ def _find_default_reason(
     is_name = bool(old_name) and old_name != new_name and "/" not in f"{old_name}{new_name}"
     if reason is None and is_name and _NAME_ARGUMENT.search(argument.name):
         return name_reason(old_name)
-    return reason
+    return reason or find_hardware_reason(argument.name, old_value, new_value)
 
 
 def _starts_elsewhere(entry: Entry, outline: LaunchOutline) -> bool:
