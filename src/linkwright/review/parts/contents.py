@@ -27,7 +27,7 @@ from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
-from linkwright.review.parts.missing_includes import has_missing_include
+from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
@@ -108,9 +108,19 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
         return True  # a call that passes a parameter on; the parameter itself is reported
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
+    if element.tag == _INCLUDE and any(_is_of_absent_package(pair, elements)):
+        return False  # the robots are compared without it
     if element.tag in (_INCLUDE, _INSERT):
         return not find_lost_choices(pair, difference) and any(pair.is_read(is_old=is_old) for is_old in sides)
     return any(pair.is_expanded(elements[0 if is_old else 1], is_old=is_old) for is_old in sides)
+
+
+def _is_of_absent_package(pair: PartPair, elements: tuple[Element | None, Element | None]) -> Iterator[bool]:
+    """Yield for each version whether an include names a file of a package that is not found."""
+    sides = (pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path)
+    for element, (version, path) in zip(elements, sides, strict=True):
+        if element is not None:
+            yield names_absent_package(version, path, element.attributes.get("filename", "").strip())
 
 
 def _is_condition_shown(pair: PartPair, difference: PartDifference) -> bool:
