@@ -31,6 +31,7 @@ from linkwright.review.parts.missing_includes import has_missing_include, names_
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.parts.repeated_calls import find_repeated_call
 from linkwright.review.plugins import find_sensor_reason
 from linkwright.review.simulators import find_simulator_reason
 from linkwright.xmltree import Element
@@ -292,7 +293,7 @@ class _ReportedDifference:
         """The reason why the change is breaking, or None if it is not."""
         difference, old = self.difference, self.difference.old_element
         if old is None:
-            return self._find_default_topic_reason()
+            return self._find_default_topic_reason() or self._find_repeated_call_reason()
         if difference.value == "conditions":
             return self._find_condition_reason(difference.old or "", difference.new or "")
         lost_choices = find_lost_choices(self.pair, difference)
@@ -373,6 +374,14 @@ class _ReportedDifference:
         sensors = [sensor for sensor in self.pair.new.root.walk() if sensor.tag == "sensor"]
         owner = next((sensor for sensor in sensors if any(child is element for child in sensor.elements())), None)
         return None if owner is None else find_sensor_reason(owner)
+
+    def _find_repeated_call_reason(self) -> Phrase | None:
+        """Return the reason why an added call of a macro is breaking: the file already makes the part; or None."""
+        element = self.difference.new_element
+        if self.macro is not None or element is None or not self.difference.is_whole or len(self.difference.path) > 1:
+            return None
+        name = find_repeated_call(self.pair.old.root, self.pair.new.root, element)
+        return None if name is None else phrase("the robot has the links and joints of '{name}' twice", name=name)
 
     def _find_lost_call_reason(self, old: Element) -> Phrase | None:
         """Return the reason why a removed call of a macro, or its other name, is breaking.
