@@ -280,8 +280,7 @@ def test_numbered_interfaces_that_take_the_place_of_an_array_are_not_lost(reposi
     repository.write({URDF: INTERFACES.format(name="arm", interface=interfaces)})
     result = compare(repository)
     assert sentences(subject(result, URDF)) == [
-        "extension 'ros2_control arm': joint a command_interface out_0 to out_3 added: data_type=bool",
-        "extension 'ros2_control arm': joint a command_interface out removed: size=4",
+        "extension 'ros2_control arm': joint a command_interface out size=4 -> out_0 to out_3 data_type=bool"
     ]
     assert not result.breaking_changes
 

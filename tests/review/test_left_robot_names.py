@@ -92,3 +92,16 @@ def test_a_frame_that_a_macro_would_define_with_another_argument(repository, com
     text = '<robot><xacro:macro name="c" params="p"><link name="${p}era"/></xacro:macro><xacro:c p="op"/></robot>\n'
     files = {"arm/camera.xacro": text, "arm/a.py": LOOKUP.format("camera")}
     assert find_users(repository, compare, files) == [("arm/a.py", 3, FRAME)]
+
+
+def test_several_frames_that_a_source_loses_are_looked_for(repository, compare):
+    send = 't{0} = TransformStamped()\nt{0}.child_frame_id = "{1}"\nTransformBroadcaster(None).sendTransform(t{0})\n'
+    imports = "from geometry_msgs.msg import TransformStamped\nfrom tf2_ros import TransformBroadcaster\n"
+    files = {
+        "arm/package.xml": MANIFEST.format("arm"),
+        "arm/a.yaml": "driver:\n  ros__parameters:\n    frame_id: lamp\n",
+    }
+    repository.commit({**files, "arm/frames.py": imports + send.format(1, "lamp") + send.format(2, "lens")})
+    repository.write({"arm/frames.py": imports})
+    lines = [str(change.sentence) for _, change in compare(repository).breaking_changes]
+    assert "names the frame 'lamp', which 'arm/frames.py' no longer has" in lines

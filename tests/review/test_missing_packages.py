@@ -255,3 +255,11 @@ def test_color_of_a_material_that_a_missing_file_may_define_is_not_lost(package,
     include = '<xacro:include filename="$(find paint_description)/urdf/materials.xacro"/>'
     package.write({PATH: text.replace("COLOR", "").replace("</robot>", include + "</robot>")})
     assert [line for item in compare(package).subjects for line in sentences(item) if "color" in line] == []
+
+
+def test_other_file_of_a_missing_package_is_reported_as_it_is_written(sensor_package, compare):
+    sensor_package.write({PATH: WITH_SENSOR.replace("urdf/lidar.xacro", "urdf/lidar_v2.xacro")})
+    folder = "$(find lidar_description)/urdf"
+    assert sentences(subject(compare(sensor_package), PATH)) == [
+        f"include filename: {folder}/lidar.xacro -> {folder}/lidar_v2.xacro"
+    ]

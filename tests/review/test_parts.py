@@ -438,3 +438,21 @@ def test_removed_call_of_a_macro_from_a_file_that_does_not_exist_breaks_nobody(l
     result = compare(library)
     assert "macro 'gripper': wheel left_wheel removed" in sentences(subject(result, TOOL))
     assert bool(breaking(result)) == is_breaking
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_breaking"),
+    [
+        ('name="lidar"', 'name="lidar" rate="5"', True),
+        ('name="lidar"', 'name="lidar" prefix="rear_"', False),
+        ('name="lidar"', 'name="lidar_2"', False),
+        ('name="imu"', 'name="imu"', False),
+    ],
+)
+def test_second_call_of_a_macro_with_the_same_names_is_breaking(package, compare, old, new, is_breaking):
+    include = '<xacro:include filename="$(find lidar_description)/lidar.xacro"/>'
+    block = "<xacro:if value=\"${'$(arg tool)' == 'laser'}\"><xacro:%s %s parent=\"lower\"/></xacro:if>"
+    first = include + block % ("lidar" if "lidar" in old else "imu", old)
+    package.commit({ROBOT: ARM.replace("</robot>", first + "</robot>")})
+    package.write({ROBOT: ARM.replace("</robot>", first + block % ("lidar", new) + "</robot>")})
+    assert bool(breaking(compare(package))) == is_breaking

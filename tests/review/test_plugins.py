@@ -107,3 +107,25 @@ def test_namespace_of_a_plugin_is_compared_as_gazebo_ros_completes_it(repository
     repository.write({PATH: robot_text(plugin % new)})
     reasons = [str(change.reason) for found in compare(repository).subjects for change in found.changes]
     assert reasons == ([] if reason is None else [reason])
+
+
+LIDAR = """<gazebo reference="base"><sensor name="{}" type="gpu_lidar"><topic>scan</topic>
+<{}><range><max>10</max></range></{}>{}</sensor></gazebo>"""
+
+
+@pytest.mark.parametrize(
+    ("new", "expected", "reason"),
+    [
+        (("front", "ray", "ray", "<gz_frame_id>base</gz_frame_id><pose>0 0 1 0 0 0</pose>"),
+         "sensor 'lidar' renamed to 'front': pose 0 0 1 0 0 0 added", None),
+        (("front", "ray", "ray", ""), "sensor 'lidar' renamed to 'front': gz_frame_id base removed",
+         "programs that look for the frame 'base' in the messages do not find it"),
+    ],
+)  # fmt: skip
+def test_sensor_with_another_name_in_the_same_place_is_compared(repository, compare, new, expected, reason):
+    old = "lidar", "lidar", "lidar", "<gz_frame_id>base</gz_frame_id>"
+    repository.commit({PATH: robot_text(LIDAR.format(*old))})
+    repository.write({PATH: robot_text(LIDAR.format(*new))})
+    (change,) = subject(compare(repository), PATH).changes
+    assert str(change.sentence) == f"extension 'gazebo base': {expected}"
+    assert str(change.reason) == str(reason)

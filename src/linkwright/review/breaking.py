@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Sequence
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference, find_lost_interfaces
 from linkwright.diagnostics import Phrase, joined_first, phrase, quoted
+from linkwright.review.changes import MAX_NAMES
 from linkwright.review.joint_limits import find_limited_reason
 from linkwright.review.names_in_plugins import NAME_TAGS, NAMESPACE_TAG, extract_used_name
 from linkwright.urdf import Robot
@@ -70,7 +71,7 @@ def frames_reason(names: Sequence[str]) -> Phrase:
     """Return the reason why removing links is breaking."""
     if len(names) == 1:
         return frame_reason(names[0])
-    return phrase("programs that look up the frames {names} do not find them", names=quote_first(names))
+    return phrase("programs that look up the frames {names} do not find them", names=_quote(names))
 
 
 def call_reason(name: str) -> Phrase:
@@ -93,6 +94,11 @@ def names_reason(names: Sequence[str]) -> Phrase:
     if len(names) == 1:
         return name_reason(names[0])
     return phrase("programs that use the names {names} do not find them", names=quote_first(names))
+
+
+def _quote(names: Iterable[str]) -> Phrase:
+    """Return names, each in quotation marks, as many as a sentence lists."""
+    return joined_first(map(quoted, names), MAX_NAMES)
 
 
 def quote_first(names: Iterable[str]) -> Phrase:

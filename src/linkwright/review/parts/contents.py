@@ -27,10 +27,11 @@ from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
-from linkwright.review.parts.missing_includes import has_missing_include
+from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
 from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.parts.repeated_calls import find_repeated_call
 from linkwright.review.plugins import find_sensor_reason
 from linkwright.review.simulators import find_simulator_reason
 from linkwright.xmltree import Element
@@ -112,9 +113,19 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
         return True  # a call that passes a parameter on; the parameter itself is reported
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
+    if element.tag == _INCLUDE and any(_is_of_absent_package(pair, elements)):
+        return False  # the robots are compared without it
     if element.tag in (_INCLUDE, _INSERT):
         return not find_lost_choices(pair, difference) and any(pair.is_read(is_old=is_old) for is_old in sides)
     return any(pair.is_expanded(elements[0 if is_old else 1], is_old=is_old) for is_old in sides)
+
+
+def _is_of_absent_package(pair: PartPair, elements: tuple[Element | None, Element | None]) -> Iterator[bool]:
+    """Yield for each version whether an include names a file of a package that is not found."""
+    sides = (pair.versions.old, pair.old_path), (pair.versions.new, pair.new_path)
+    for element, (version, path) in zip(elements, sides, strict=True):
+        if element is not None:
+            yield names_absent_package(version, path, element.attributes.get("filename", "").strip())
 
 
 def _is_condition_shown(pair: PartPair, difference: PartDifference) -> bool:
@@ -300,7 +311,7 @@ class _ReportedDifference:
         """The reason why the change is breaking, or None if it is not."""
         difference, old = self.difference, self.difference.old_element
         if old is None:
-            return self._find_default_topic_reason()
+            return self._find_default_topic_reason() or self._find_repeated_call_reason()
         if difference.value == "conditions":
             return self._find_condition_reason(difference.old or "", difference.new or "")
         lost_choices = find_lost_choices(self.pair, difference)
@@ -381,6 +392,14 @@ class _ReportedDifference:
         sensors = [sensor for sensor in self.pair.new.root.walk() if sensor.tag == "sensor"]
         owner = next((sensor for sensor in sensors if any(child is element for child in sensor.elements())), None)
         return None if owner is None else find_sensor_reason(owner)
+
+    def _find_repeated_call_reason(self) -> Phrase | None:
+        """Return the reason why an added call of a macro is breaking: the file already makes the part; or None."""
+        element = self.difference.new_element
+        if self.macro is not None or element is None or not self.difference.is_whole or len(self.difference.path) > 1:
+            return None
+        name = find_repeated_call(self.pair.old.root, self.pair.new.root, element)
+        return None if name is None else phrase("the robot has the links and joints of '{name}' twice", name=name)
 
     def _find_lost_call_reason(self, old: Element) -> Phrase | None:
         """Return the reason why a removed call of a macro, or its other name, is breaking.

@@ -23,6 +23,12 @@ def has_missing_include(version: Version, path: str, root: Element) -> bool:
     return None not in files and any(file is not None and not file.exists() for file in files)
 
 
+def names_absent_package(version: Version, path: str, filename: str) -> bool:
+    """Return whether an include names a file of a package that is not found."""
+    match = _PATH_IN_PACKAGE.fullmatch(filename)
+    return match is not None and version.share_of(match[1], version.file(path).parent) is None
+
+
 def resolve_include(version: Version, path: str, filename: str) -> Path | None:
     """Return the file that an include names, or None if its path is computed or its package unknown."""
     folder = version.file(path).parent

@@ -26,7 +26,7 @@ _MAX_IMAGE_NOTES = 3
 _MAX_MISSING = 100
 """The maximum number of characters of a change that a file does not share with another."""
 _MAX_NAMED_MISSING = 2
-"""The maximum number of such changes that a line names."""
+"""The maximum number of such changes that a line names. A reader does not take files with more of them for equal."""
 _MAX_NAMED_CASES = 1
 """The maximum number of argument sets that a line names."""
 
@@ -164,10 +164,10 @@ def format_repeated(repeat: Repeat) -> Phrase:
             return phrase("{change}, here also {names}", change=text, names=quoted_names(repeat.more_names))
         return text
     text = phrase("the same {count} changes as in {path}", path=path, count=count)
-    if not repeat.missing:
-        return text
     missing = [shorten(str(item), _MAX_MISSING) for item in repeat.missing]
-    return phrase("{change}, but not: {changes}", change=text, changes=joined_first(missing, _MAX_NAMED_MISSING))
+    if not 0 < len(missing) <= min(_MAX_NAMED_MISSING, count - 1):
+        return text
+    return phrase("{change}, but not: {changes}", change=text, changes=joined(missing))
 
 
 def group_findings(findings: Sequence[Diagnostic]) -> list[Diagnostic]:

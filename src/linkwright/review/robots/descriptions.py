@@ -11,7 +11,7 @@ from linkwright.descriptions.comparison import Comparison, Difference, Differenc
 from linkwright.diagnostics import Phrase, joined, phrase, term
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.argument_sets import find_distinct_arguments
-from linkwright.review.breaking import find_breaking_reason, frame_reason
+from linkwright.review.breaking import find_breaking_reason, frame_reason, message_frame_reason
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.controller_files import find_controller_file_reason
 from linkwright.review.drawings.images import render_collisions, render_views
@@ -34,6 +34,7 @@ from linkwright.review.plugins import (
     format_contents,
     is_still_offered,
 )
+from linkwright.review.renamed_sensors import SensorReplacement, merge_renamed_sensors
 from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
 from linkwright.review.robots.added_links import AddedLinks
 from linkwright.review.robots.argument_names import ArgumentNames, find_argument_names
@@ -164,7 +165,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
     if has_other_root:
         yield _make_root_change(old, new, frames)
     added_names = find_added_topics(comparison.differences)
-    differences = merge_replaced_plugins(comparison.differences)
+    differences = merge_renamed_sensors(merge_replaced_plugins(comparison.differences))
     added_links = AddedLinks(differences, new)
     switched_parts = SwitchedParts(pair, case)
     has_known_poses = partial is None or not partial.has_stand_ins
@@ -186,6 +187,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
         reason = (
             (None if is_still_offered(difference, added_names) else find_breaking_reason(difference, old, new))
             or find_missing_topics_reason(difference, added_names)
+            or _find_frame_reason(difference)
             or find_default_topic_reason(difference, new.extensions)
             or find_lost_call_reason(difference, comparison.differences)
             or find_passed_name_reason(difference)
@@ -231,6 +233,12 @@ def _find_simulator_reason(pair: FilePair, difference: Difference) -> Phrase | N
     location = _find_difference_location(pair, difference)
     path = None if location is None or location.is_old else location.file
     return find_simulator_reason(difference, pair.versions.new, path)
+
+
+def _find_frame_reason(difference: Difference) -> Phrase | None:
+    """Return the reason why a sensor that no longer names the frame of its messages is breaking, or None."""
+    frame = difference.lost_frame if isinstance(difference, SensorReplacement) else None
+    return None if frame is None else message_frame_reason(frame)
 
 
 def _find_expression_reason(difference: Difference) -> Phrase | None:

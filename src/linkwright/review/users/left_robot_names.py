@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import package_name
-from linkwright.review.breaking import frame_reason, joint_name_reason
+from linkwright.review.breaking import frame_reason, frames_reason, joint_name_reason
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.yaml_values import read_yaml_values
@@ -57,6 +57,7 @@ _SUBSTITUTION = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
 _BROADCAST = re.compile(r"\bsendTransform\b|TransformBroadcaster\b")
 _COMMON_FRAMES = frozenset({"earth", "map", "odom", "world"})
 """The frames that localization and simulations publish, too."""
+_QUOTED_NAME = re.compile(r"'([^']*)'")
 _PLAIN_NAME = re.compile(r"[\w/.-]{2,}")
 
 
@@ -106,16 +107,21 @@ def find_left_robot_names(versions: Versions, subjects: Sequence[Subject]) -> It
 
 def _list_lost_names(subjects: Sequence[Subject]) -> Iterator[_LostName]:
     """Yield the frames and moving joints that files lost with all argument sets."""
-    templates = {frame_reason("").template: True, joint_name_reason("").template: False}
+    templates = {
+        frame_reason("").template: True,
+        frames_reason(["", ""]).template: True,
+        joint_name_reason("").template: False,
+    }
     for subject in subjects:
         for change in subject.changes:
             if change.reason is None or change.reason.template not in templates or change.cases:
                 continue
-            for name in (str(change.reason.arguments["name"]), *_list_other_names(change)):
-                for word in name.split(", "):
-                    is_lost = _PLAIN_NAME.fullmatch(word) and word.strip("/") not in _COMMON_FRAMES
-                    if is_lost and subject.kind is not SubjectKind.PART:
-                        yield _LostName(word.strip("/"), subject.path, templates[change.reason.template])
+            arguments = change.reason.arguments
+            names = [str(arguments["name"])] if "name" in arguments else _QUOTED_NAME.findall(str(arguments["names"]))
+            for word in (*names, *_list_other_names(change)):
+                is_lost = _PLAIN_NAME.fullmatch(word) and word.strip("/") not in _COMMON_FRAMES
+                if is_lost and subject.kind is not SubjectKind.PART:
+                    yield _LostName(word.strip("/"), subject.path, templates[change.reason.template])
 
 
 def _list_other_names(change: Change) -> list[str]:
