@@ -328,6 +328,9 @@ DEPENDENCIES = EXPORTS.replace(
 )
 
 
+CATKIN_EXPORT = "catkin_package(CATKIN_DEPENDS gears)"
+
+
 def find_dependency_changes(repository, compare, *replacements):
     repository.commit({"a/package.xml": DEPENDENCIES})
     text = DEPENDENCIES
@@ -370,6 +373,16 @@ def test_dependency_of_a_package_that_exports_nothing_breaks_nobody(repository, 
     repository.write({"a/package.xml": manifest.replace(depend, "")})
     result = compare(repository)
     assert breaking(result) == [f"{tag} removed: gears"] * is_breaking
+
+
+@pytest.mark.parametrize(("package", "is_breaking"), [("catkin_package()", False), (CATKIN_EXPORT, True)])
+def test_dependency_of_a_package_that_builds_nothing_breaks_nobody(repository, compare, package, is_breaking):
+    depend = "  <depend>gears</depend>\n"
+    manifest = EXPORTS.replace("  <exec_depend>xacro", f"{depend}  <exec_depend>xacro")
+    cmake = f"project(arm)\nfind_package(catkin REQUIRED COMPONENTS gears)\n{package}\n"
+    repository.commit({"a/package.xml": manifest, "a/CMakeLists.txt": cmake, "a/launch/a.launch": "<launch/>\n"})
+    repository.write({"a/package.xml": manifest.replace(depend, "")})
+    assert breaking(compare(repository)) == ["depend removed: gears"] * is_breaking
 
 
 def test_dependencies_with_the_same_tags_are_one_line(repository, compare):

@@ -45,7 +45,7 @@ def exports_nothing(version: Version, manifest: str) -> bool:
     if _AMENT_PACKAGE.search(version.text(path)):
         return True
     facts = read_cmake_facts(version, path)
-    is_known = not facts.unknown and not facts.has_library
+    is_known = not facts.unknown and not (facts.has_library and facts.targets)
     return is_known and not facts.header_paths and all(fact.kind not in _EXPORTED_KINDS for fact in facts.facts)
 
 

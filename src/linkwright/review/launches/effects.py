@@ -24,6 +24,7 @@ from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.matching import compute_name_similarity, find_loaded_class
 from linkwright.review.launches.outlines import (
     CONDITION,
+    NAMES_AS_REMAPPINGS,
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PARAMETER,
@@ -277,6 +278,8 @@ def find_setting_reason(
     if setting.startswith(REMAPPING):
         source = without_condition(setting).removeprefix(REMAPPING)
         return _find_node_remapping_reason(entry, source, old, new, old_outline, new_outline)
+    if setting == NAMES_AS_REMAPPINGS:
+        return phrase("the launch file fails") if new is not None and old is None else None
     if setting == "name" and None in (old, new) and _is_default_node_name(entry, old or new or ""):
         return None
     if setting in _NAME_SETTINGS:

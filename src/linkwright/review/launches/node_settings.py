@@ -5,7 +5,13 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Mapping, Sequence
 
-from linkwright.review.launches.outlines import CONDITION, PARAMETER, REMAPPING, with_condition
+from linkwright.review.launches.outlines import (
+    CONDITION,
+    NAMES_AS_REMAPPINGS,
+    PARAMETER,
+    REMAPPING,
+    with_condition,
+)
 from linkwright.review.launches.text import BoundExpression, format_branches
 
 _INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
@@ -46,7 +52,15 @@ def split_remappings(value: BoundExpression) -> dict[str, str]:
             others.append(part)
         else:
             remappings |= {f"{REMAPPING}{source}": target for source, target in pairs}
-    return _format_unknown_parts("remappings", value, others) | remappings
+    names = [part for part in others if _is_text(part)]
+    others = [part for part in others if not _is_text(part)]
+    unknown = _format_unknown_parts(NAMES_AS_REMAPPINGS, value, names)
+    return unknown | _format_unknown_parts("remappings", value, others) | remappings
+
+
+def _is_text(part: BoundExpression) -> bool:
+    node = part.texts.resolve(part.node).node
+    return isinstance(node, ast.Constant) and isinstance(node.value, str)
 
 
 def split_parameters(value: BoundExpression) -> dict[str, str]:

@@ -268,6 +268,7 @@ class _SourcePair(WholeSourcePair):
     ) -> list[tuple[SourceName, SourceName]]:
         """Return the pairs of an old and a new name of the same thing."""
         if kind is NameKind.PARAMETER and old_items and new_items:
+            old_items = [item for item in old_items if not self.is_unread_parameter(item.name)]
             return pair_similar(old_items, new_items, self._read_uses(old_items, new_items).differ)
         if kind is NameKind.FUNCTION:
             pairs = list(self._pair_by_code(old_items, new_items))
@@ -409,6 +410,8 @@ class _SourcePair(WholeSourcePair):
             return None
         if items[0].kind in _DECLARED_KINDS:
             items = [item for item in items if self.can_be_linked(item.name, item.kind)]
+        if items and items[0].kind is NameKind.PARAMETER:
+            items = [item for item in items if not self.is_unread_parameter(item.name)]
         lost = [item for item in items if not self._is_left_to_others(item)]
         if not lost:
             return find_other_node_reason(items) if items else None

@@ -23,6 +23,7 @@ from linkwright.review.sources.package_imports import (
 from linkwright.review.sources.protected_members import compare_protected
 from linkwright.review.sources.rates import compare_loops, compare_rates, compare_timers
 from linkwright.review.sources.reasons import find_removal_reason
+from linkwright.review.sources.separate_programs import are_in_separate_programs
 from linkwright.review.sources.swapped_arguments import (
     compare_argument_order,
     find_swapped_definitions,
@@ -31,6 +32,7 @@ from linkwright.review.sources.swapped_arguments import (
 from linkwright.review.sources.transform_senders import find_one_sided_sender
 from linkwright.review.sources.unbuilt_sources import find_exported_class, is_unbuilt
 from linkwright.review.sources.undefined_uses import find_undefined_uses
+from linkwright.review.sources.unread_parameters import is_only_declared
 from linkwright.review.sources.unused_parameters import find_unused_parameters
 from linkwright.review.sources.used_packages import compare_usage
 
@@ -88,6 +90,20 @@ class WholeSourcePair:
             is_module = package is not None and (side.version.file(path).parent / "__init__.py").is_file()
             return is_module and not is_certainly_uninstalled(side.version, package or "", path)
         return package is not None and is_exported_header(side.version, package, path)
+
+    def is_unread_parameter(self, name: str) -> bool:
+        """Return whether the old source only declares a parameter, so that its values had no effect."""
+        path = self.file.old_path or ""
+        package = self.old.find_package(path) if path else None
+        if package is None:
+            return False
+        version = self.old.version
+        others = (
+            version.text(other)
+            for other in version.paths((*CPP_SUFFIXES, PYTHON_SUFFIX), package)
+            if other != path and not are_in_separate_programs(version, package, path, [other])
+        )
+        return is_only_declared(version.text(path), others, name, is_python=path.endswith(PYTHON_SUFFIX))
 
     def can_be_linked(self, name: str, kind: NameKind = NameKind.FUNCTION) -> bool:
         """Return whether other packages can use a function, class or member of the old source.
