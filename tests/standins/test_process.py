@@ -197,6 +197,8 @@ class TestProcessEffects:
             ("carrier_msgs.msg", "hint: put the ROS package 'carrier_msgs' into the workspace's src folder"),
             ("image_geometry", "hint: it is part of vision_opencv, which must be compiled"),
             ("serial", f"hint: {package_hint('pyserial')}"),
+            ("moveit_commander", "hint: 'moveit_commander' is part of ROS 1; in ROS 2 it is 'moveit.planning'"),
+            ("rospy", "hint: 'rospy' is part of ROS 1; in ROS 2 it is 'rclpy'"),
             ("unheard_of", "ModuleNotFoundError: No module named 'unheard_of'"),
         ],
     )

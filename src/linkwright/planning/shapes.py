@@ -11,8 +11,8 @@ from linkwright.geometry.arrays import Array, row_from_pose
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, Sphere
 from linkwright.inertia.mesh_library import MeshLibrary
-from linkwright.planning.convex_parts import split_into_hulls
 from linkwright.planning.robot_model import PlacedShape
+from linkwright.simulation.scene.convex_parts import split_into_hulls
 from linkwright.urdf import Collision, Mesh, Robot
 
 _MIN_CORNERS = 4

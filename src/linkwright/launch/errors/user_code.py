@@ -46,7 +46,6 @@ _PYTHON_CONSTANTS = {"true": "True", "false": "False", "null": "None", "none": "
 _MAX_SUGGESTED_MODULES = 3
 _MAX_CALL_LINES = 5
 """The number of lines of a call that are searched for an argument."""
-_ROS_1_MODULES = ("rospy", "roslib")
 _MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
 _UNEXPECTED_ARGUMENT = re.compile(r"([\w.]+)\(\) got an unexpected keyword argument '([^']+)'")
 
@@ -263,6 +262,7 @@ def _import_hint(error: ImportError) -> Phrase | None:
         find_missing_name,
         make_other_module_hint,
         make_provider_hint,
+        make_ros_1_hint,
     )
 
     missing_attribute = find_missing_name(error)
@@ -282,8 +282,8 @@ def _import_hint(error: ImportError) -> Phrase | None:
             iter_module.name for iter_module in pkgutil.iter_modules(getattr(sys.modules[parent], "__path__", ()))
         ]
         return did_you_mean(name, siblings) or _other_kind_hint(parent)
-    if missing_module in _ROS_1_MODULES:
-        return phrase("'{module}' is part of ROS 1; in ROS 2 it is 'rclpy'", module=missing_module)
+    if ros_1_hint := make_ros_1_hint(missing_module):
+        return ros_1_hint
     packages = {full_name.split("/")[0] for full_name in interface_names("msg")}
     known_packages = ("launch", "launch_ros", "ament_index_python", "rclpy", *sorted(packages))
     suggestion = did_you_mean(missing_module, known_packages)

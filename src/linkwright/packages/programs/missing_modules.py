@@ -1,4 +1,4 @@
-"""Hints on the source of a missing Python module or name: a ROS package, PyPI, a module."""
+"""Hints on the source of a missing Python module or name: a ROS package, PyPI, a module, or its successor in ROS 2."""
 
 from __future__ import annotations
 
@@ -40,6 +40,16 @@ _COMPILED_PACKAGES = {
     "rqt_gui_py": "rqt",
 }
 """Module -> the repository of its ROS package, for packages with parts in C++."""
+
+_ROS_1_MODULES = {
+    "actionlib": "rclpy.action",
+    "moveit_commander": "moveit.planning",
+    "rosbag": "rosbag2_py",
+    "roslib": "rclpy",
+    "rospy": "rclpy",
+    "tf": "tf2_ros",
+}
+"""Module of ROS 1 -> its successor in ROS 2."""
 
 ROS_MODULES = (*_ROS_PACKAGES, *_COMPILED_PACKAGES)
 """The modules of ROS packages with a known origin that are not available here."""
@@ -101,6 +111,15 @@ def make_other_module_hint(error: ImportError) -> Phrase | None:
     return phrase("import it from {modules}", modules=quoted_names(modules, " or ")) if modules else None
 
 
+def make_ros_1_hint(module: str) -> Phrase | None:
+    """Return a hint with the successor of a module of ROS 1, or None for another module."""
+    top_module = module.partition(".")[0]
+    successor = _ROS_1_MODULES.get(top_module)
+    if successor is None:
+        return None
+    return phrase("'{module}' is part of ROS 1; in ROS 2 it is '{successor}'", module=top_module, successor=successor)
+
+
 def make_provider_hint(module: str) -> Phrase:
     """Return a hint for installing a module that cannot be imported."""
     return make_known_provider_hint(module) or phrase(
@@ -111,6 +130,8 @@ def make_provider_hint(module: str) -> Phrase:
 
 def make_known_provider_hint(module: str) -> Phrase | None:
     """Return the hint of `provider_hint` for a known module, or None for an unknown module."""
+    if hint := make_ros_1_hint(module):
+        return hint
     top_module = module.partition(".")[0]
     project = _ROS_PACKAGES.get(top_module)
     if project is not None:

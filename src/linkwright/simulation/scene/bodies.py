@@ -191,13 +191,16 @@ class BodyWriter:
                 if visual.material is not None or not geom.material:
                     geom.rgba = _get_color(visual, _WHITE if geom.material else _GRAY)
 
-    def add_collisions(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
-        """Add the collisions of a link as geoms, and record their friction."""
+    def add_collisions(self, body: Any, link: Link, frames: Frames, *, fixed: bool, rolls: bool = False) -> None:
+        """Add the collisions of a link as geoms, and record their friction.
+
+        `fixed` and `rolls` are those of `MeshLibrary.collisions`.
+        """
         counts: Counter[str] = Counter()
         for collision in link.collisions:
             pose = frames.in_link(collision.pose, link.name)
             surface = collision.surface
-            for geom in self._add_geoms(body, collision, pose, counts, fixed=fixed):
+            for geom in self._add_geoms(body, collision, pose, counts, fixed=fixed, rolls=rolls):
                 geom.group = COLLISION_GROUP
                 geom.contype, geom.conaffinity = surface.category_bitmask, surface.collide_bitmask
                 apply_surface(geom, surface)
@@ -206,7 +209,14 @@ class BodyWriter:
                     self.geoms_without_friction.add(geom.name)
 
     def _add_geoms(
-        self, body: Any, item: Visual | Collision, pose: Transform, counts: Counter[str], *, fixed: bool
+        self,
+        body: Any,
+        item: Visual | Collision,
+        pose: Transform,
+        counts: Counter[str],
+        *,
+        fixed: bool,
+        rolls: bool = False,
     ) -> Iterable[Any]:
         """Add the geoms of a visual or collision to a body, name them, and return them.
 
@@ -218,7 +228,7 @@ class BodyWriter:
         if simple_geom is not None:
             geoms = [simple_geom]
         elif isinstance(item, Collision):
-            geoms = self._meshes.collisions(body, item.geometry, pose, item.element, fixed=fixed)
+            geoms = self._meshes.collisions(body, item.geometry, pose, item.element, fixed=fixed, rolls=rolls)
         elif not geoms:
             geoms = self._meshes.visuals(body, item.geometry, pose, item.element)
         for geom in geoms:

@@ -22,6 +22,7 @@ from linkwright.sdf.links import Visual
 from linkwright.sdf.resources import Missing, ResourceFinder
 from linkwright.sdf.shapes import Cone, Heightmap, Mesh, Plane, Polyline, Shape
 from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.scene.convex_parts import split_into_hulls
 from linkwright.simulation.scene.shapes import compute_cone_vertices, set_pose
 from linkwright.simulation.scene.textured_shapes import create_textured_mesh
 from linkwright.simulation.scene.textures import limit_texture_size
@@ -67,7 +68,7 @@ class MeshLibrary:
         self._files = {key: path for key, path in self._files.items() if path is not None}
 
     def collisions(
-        self, body: Any, shape: Shape, pose: Transform, element: Element | None, *, fixed: bool
+        self, body: Any, shape: Shape, pose: Transform, element: Element | None, *, fixed: bool, rolls: bool = False
     ) -> list[Any]:
         """Add a collision to a body as convex pieces or a heightmap, and return the added geoms.
 
@@ -78,13 +79,16 @@ class MeshLibrary:
             shape: a mesh, cone, polygon or heightmap.
             pose: the pose of the shape in the frame of the body.
             element: the element of the shape in the file; None if there is no file.
-            fixed: whether the body never moves; on a movable body, a mesh is replaced by its convex hull.
+            fixed: whether the body never moves; on a movable body, a mesh is replaced by a few convex hulls that
+                contain it.
+            rolls: whether the body may be a wheel, whose mesh is replaced by a single hull, because the seams
+                between several hulls would bump.
         """
         if isinstance(shape, Heightmap):
             return self._add_heightmap(body, shape, pose, element)
-        key = ("collision", shape, _create_cache_key(self._find_shape_file(shape, element)), fixed)
+        key = ("collision", shape, _create_cache_key(self._find_shape_file(shape, element)), fixed, rolls)
         if key not in self._assets:
-            self._assets[key] = [self._add_hull(corners) for corners in self._read_pieces(shape, element, fixed=fixed)]
+            self._assets[key] = [self._add_hull(corners) for corners in self._read_pieces(shape, element, fixed, rolls)]
         return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
     def visuals(self, body: Any, shape: Shape, pose: Transform, element: Element | None) -> list[Any]:
@@ -101,7 +105,7 @@ class MeshLibrary:
                 self._assets[key] = [] if path is None else list(self._add_visual_meshes(shape, path, element))
             else:
                 self._assets[key] = [
-                    self._add_hull(corners) for corners in self._read_pieces(shape, element, fixed=True)
+                    self._add_hull(corners) for corners in self._read_pieces(shape, element, fixed=True, rolls=False)
                 ]
         return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
@@ -113,7 +117,7 @@ class MeshLibrary:
         set_pose(geom, pose)
         return geom
 
-    def _read_pieces(self, shape: Shape, element: Element | None, *, fixed: bool) -> list[Array]:
+    def _read_pieces(self, shape: Shape, element: Element | None, fixed: bool, rolls: bool) -> list[Array]:
         """Return the vertices of each convex piece of a shape.
 
         The list is empty if the shape cannot be used.
@@ -142,7 +146,10 @@ class MeshLibrary:
         vertices = vertices * np.asarray(shape.scale)
         if np.prod(shape.scale) < 0:
             faces = faces[:, ::-1]
-        pieces = convex_pieces(vertices, faces, _MAX_PIECES) if fixed else [vertices[np.unique(faces)]]
+        if fixed:
+            pieces = convex_pieces(vertices, faces, _MAX_PIECES)
+        else:
+            pieces = ([] if rolls else split_into_hulls(vertices, faces)) or [vertices[np.unique(faces)]]
         return [thicken(corners) for corners in pieces]
 
     def _add_visual_meshes(self, shape: Mesh, path: Path, element: Element | None) -> Iterator[str]:

@@ -475,7 +475,8 @@ class Scene:
         else:
             body.explicitinertial, body.ipos = True, [0.0, 0.0, 0.0]  # otherwise rays of MuJoCo 3 miss the body
         self._writer.add_visuals(body, link, placed_link.frames, fixed=is_fixed)
-        self._writer.add_collisions(body, link, placed_link.frames, fixed=is_fixed)
+        rolls = joint is not None and joint.is_continuous
+        self._writer.add_collisions(body, link, placed_link.frames, fixed=is_fixed, rolls=rolls)
         return body
 
     def _find_movable_joints(self, models: Iterable[str]) -> list[PlacedJoint]:

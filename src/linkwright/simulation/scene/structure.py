@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from math import inf
 
 from linkwright.geometry.single import Transform, Vector3, compose
 from linkwright.sdf.frames import FrameError, Frames, PlacedLink, place_links
@@ -35,6 +36,14 @@ class PlacedJoint:
     child: str
     pose: Transform
     axes: tuple[tuple[Axis, Vector3], ...]
+
+    @property
+    def is_continuous(self) -> bool:
+        """Whether the joint turns without limits. In SDF, a URDF's continuous joint is revolute."""
+        limit = self.axes[0][0].limit if self.axes else None
+        return self.joint.type == "continuous" or (
+            self.joint.type == "revolute" and limit is not None and limit.lower == -inf and limit.upper == inf
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,6 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.ros2_control.classic_gains import parse_gains, read_gains
 from linkwright.simulation.plugins.ros2_control.hardware import SimulatedSystem
-from linkwright.simulation.plugins.ros2_control.joints import is_continuous
 from linkwright.simulation.plugins.ros2_control.plugin import ManagerParameters, SimulatedManager
 from linkwright.simulation.scene.structure import PlacedJoint
 from linkwright.urdf import Robot
@@ -68,7 +67,7 @@ class ClassicSystem(SimulatedSystem):
         A deliberate difference: wheels without a controller roll, so that another plugin can drive them.
         """
         kind = joint.commands[0].name
-        return kind != EFFORT and not (kind == VELOCITY and is_continuous(placed_joint))
+        return kind != EFFORT and not (kind == VELOCITY and placed_joint.is_continuous)
 
     def stop(self, *, active: bool) -> None:
         """Switch the emergency stop on or off."""

@@ -10,24 +10,12 @@ from linkwright.control.hardware.description import ComponentDescription
 from linkwright.control.hardware.interfaces import EFFORT, POSITION, VELOCITY, CommandInterface, StateInterface
 from linkwright.control.motion.pid import Pid
 from linkwright.simulation.actuators import Motor, Servo
-from linkwright.simulation.scene.structure import PlacedJoint
 from linkwright.simulation.simulation import Simulation
 
 _VELOCITY_GAIN = 20.0
 """The velocity gain of motors, in N m per rad/s of velocity error (N per m/s for prismatic joints)."""
 _MAX_SERVO_SPEED = 1000.0
 """The maximum speed of servos in rad/s, or in m/s for prismatic joints."""
-
-
-def is_continuous(joint: PlacedJoint) -> bool:
-    """Return whether a joint turns without limits.
-
-    In SDF, a URDF's continuous joint is revolute.
-    """
-    limit = joint.axes[0][0].limit
-    return joint.joint.type == "continuous" or (
-        joint.joint.type == "revolute" and limit.lower == -inf and limit.upper == inf
-    )
 
 
 class SimulatedJoint:
@@ -74,7 +62,7 @@ class SimulatedJoint:
         simulation.keep_awake(placed_joint.child)
         limit = placed_joint.axes[0][0].limit.effort
         self._max_effort = limit if isfinite(limit) and limit > 0.0 else inf
-        self._is_continuous = is_continuous(placed_joint)
+        self._is_continuous = placed_joint.is_continuous
         self._accepts_forces = bool(pids) or EFFORT in commands
         self._motor: Motor | None = None
         self._servo: Servo | None = None

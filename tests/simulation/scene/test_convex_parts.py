@@ -1,6 +1,8 @@
-"""The split of meshes into convex hulls, and the collisions of links with such meshes."""
+"""The split of meshes into convex hulls, and the collisions of moving links with such meshes."""
 
 from __future__ import annotations
+
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,13 +10,12 @@ import pytest
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.polyhedron import Faces, polyhedron_properties
-from linkwright.planning.convex_parts import split_into_hulls
-from linkwright.planning.robot_model import PlacedShape
-from linkwright.planning.shapes import scale_shape
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
+from linkwright.simulation.scene.convex_parts import split_into_hulls
+from tests.simulation.worlds import box, make_simulation
 
-pytestmark = pytest.mark.extra("arm")
-
-_POSE = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+GROUND = """<model name="ground"><static>true</static><link name="l"><collision name="c"><geometry><plane/></geometry>
+</collision></link></model>"""
 
 
 def box_mesh(low: tuple[float, float, float], high: tuple[float, float, float]) -> tuple[Array, Faces]:
@@ -84,8 +85,34 @@ class TestSplit:
         assert split_into_hulls(triangle, np.zeros((0, 3), dtype=np.int64)) == []
 
 
-def test_parts_of_a_mesh_grow_from_the_same_center() -> None:
-    center = np.array((1.0, 0.0, 0.0))
-    part = np.array(((2.0, 0.0, 0.0), (3.0, 0.0, 0.0), (2.0, 1.0, 0.0), (2.0, 0.0, 1.0)))
-    scaled = scale_shape(PlacedShape(part, _POSE, center), 2.0)
-    np.testing.assert_allclose(scaled.shape, center + 2.0 * (part - center))
+def write_elbow(folder: Path) -> str:
+    """Write an elbow as an STL file, and return the geometry of a model."""
+    vertices, faces = elbow_mesh()
+    corners = ("".join(f"vertex {x} {y} {z}\n" for x, y, z in vertices[face]) for face in faces)
+    facets = "".join(f"facet normal 0 0 0\nouter loop\n{text}endloop\nendfacet\n" for text in corners)
+    (folder / "elbow.stl").write_text(f"solid m\n{facets}endsolid m\n")
+    return f"<geometry><mesh><uri>{(folder / 'elbow.stl').as_uri()}</uri></mesh></geometry>"
+
+
+@pytest.mark.parametrize("limits", ["<limit><lower>-1</lower><upper>1</upper></limit>", ""])
+def test_link_collides_where_its_mesh_is_unless_it_may_be_a_wheel(tmp_path: Path, limits: str) -> None:
+    """A ball is between the ends of an elbow, where the hull of the whole elbow is."""
+    elbow = f"""<model name="arm"><link name="base"/>
+    <joint name="f" type="fixed"><parent>world</parent><child>base</child></joint>
+    <link name="elbow"><collision name="c">{write_elbow(tmp_path)}</collision></link>
+    <joint name="turn" type="revolute"><parent>base</parent><child>elbow</child>
+    <axis><xyz>0 1 0</xyz>{limits}</axis></joint></model>"""
+    ball = """<model name="ball"><static>true</static><pose>0.2 0.05 0.2 0 0 0</pose><link name="l">
+    <collision name="c"><geometry><sphere><radius>0.02</radius></sphere></geometry></collision></link></model>"""
+    simulation = make_simulation(elbow, ball)
+    simulation.advance(simulation.step)
+    assert (simulation.data.ncon == 0) == bool(limits)
+
+
+def test_box_rests_in_the_corner_of_a_moving_mesh(tmp_path: Path) -> None:
+    elbow = f"""<model name="elbow"><link name="l"><inertial><pose>0.15 0.05 0.1 0 0 0</pose><mass>1</mass></inertial>
+    <collision name="c">{write_elbow(tmp_path)}</collision></link></model>"""
+    simulation = make_simulation(GROUND, elbow, box("box", "0.2 0.05 0.16 0 0 0", "0.1 0.08 0.1", mass=0.1))
+    simulation.advance(NANOSECONDS_PER_SECOND)
+    x, y, z, *_ = simulation.model_pose("box")
+    assert (x, y, z) == pytest.approx((0.2, 0.05, 0.15), abs=0.01)
