@@ -121,8 +121,9 @@ def _iterate_plugins() -> Iterator[tuple[str, str, str, str]]:
         yield "controller_server", "controller_server", "progress_checker_plugins", f"nav2_controller/{kind}"
     for kind in (planner_server._NAVFN, *planner_server._REPLACED_TYPES):  # the tables of the node
         yield "planner_server", "planner_server", "planner_plugins", kind
-    for kind, _ in behavior_server._BEHAVIOR_TYPES.values():
-        yield "behavior_server", "behavior_server", "behavior_plugins", kind
+    for server in (behavior_server.BehaviorServer, behavior_server.RecoveriesServer):
+        for kind in server.NODE.plugin_types():
+            yield server.DEFAULT_NAME, server.DEFAULT_NAME, f"{server.NODE.KIND}_plugins", kind
     yield "smoother_server", "smoother_server", "smoother_plugins", "nav2_smoother/SimpleSmoother"
     yield (
         "waypoint_follower",

@@ -42,6 +42,8 @@ async def make_node(program: str, *arguments: str, namespace: str = "/", **param
         ("rqt_image_view camera/image_raw", PanelRequest("image", IMAGE, topic="/camera/image_raw")),
         ("rqt_image_view /a --ros-args -r /a:=/b", PanelRequest("image", IMAGE, topic="/b")),
         ("rqt_image_view", PanelRequest("displays", IMAGE)),
+        ("image_view", PanelRequest("image", IMAGE, topic="/image")),
+        ("image_view --ros-args -r image:=/camera/image_raw", PanelRequest("image", IMAGE, topic="/camera/image_raw")),
         ("rqt_plot", PanelRequest("plot")),
         ("rqt_plot /odom/x:y pose/z", PanelRequest("plot", fields=("/odom/x:y", "/pose/z"))),
         ("rqt", None),

@@ -37,7 +37,10 @@ def test_empty_world_of_gz_is_preferred_to_one_in_a_package(tmp_path: Path, monk
     (package / "package.xml").write_text('<package format="3"><name>bar</name></package>', encoding="utf-8")
     for name in ("empty", "cellar"):
         (package / "worlds" / f"{name}.sdf").write_text(WORLD.format(f"{name}_of_bar"), encoding="utf-8")
-    monkeypatch.chdir(package)
+    monkeypatch.chdir(tmp_path)
+    gazebo = tmp_path / "ros_gz_sim"  # the sources of this package contain no worlds
+    gazebo.mkdir()
+    (gazebo / "package.xml").write_text('<package format="3"><name>ros_gz_sim</name></package>', encoding="utf-8")
     assert load_world("cellar.sdf").world.name == "cellar_of_bar"
     assert load_world("empty.sdf").world.name == "empty"
     monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(package / "worlds"))

@@ -62,13 +62,14 @@ class PanelNode(SingleNode, NodeWithPanel):
                 linear=self._read_parameter("default_vx_max", (int, float), float),
                 angular=self._read_parameter("default_vw_max", (int, float), float),
             )
-        if program.positional_kind == "topic" and not values:  # the user chooses the topic in the list of displays
+        topic = program.default_topic or (values[0] if program.positional_kind == "topic" and values else "")
+        if program.positional_kind == "topic" and not topic:  # the user chooses the topic in the list of displays
             return PanelRequest("displays", program.display_class)
         return (
             PanelRequest(
                 program.panel,
                 program.display_class,
-                topic=self._node.resolve_topic_name(values[0]) if program.positional_kind == "topic" else "",
+                topic=self._node.resolve_topic_name(topic) if topic else "",
                 fields=tuple(map(self._make_absolute, values)) if program.positional_kind == "fields" else (),
                 node=self._make_absolute(values[0]) if program.positional_kind == "node" and values else "",
             )

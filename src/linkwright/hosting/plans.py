@@ -192,8 +192,8 @@ def _create_window_config() -> RvizConfig:
 
 
 def _find_panel_program(package: str | None, executable: str) -> PanelProgram | None:
-    """Return the program of rqt whose window is a panel of the page, or None for other nodes."""
-    if package is None or not package.startswith("rqt"):
+    """Return the program of rqt or image_view whose window is a panel of the page, or None for other nodes."""
+    if package is None or not package.startswith(("rqt", "image_view")):
         return None
     from linkwright.hosting.rqt_programs import find_panel_program  # few launches start programs of rqt
 

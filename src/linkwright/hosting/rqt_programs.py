@@ -1,4 +1,4 @@
-"""The programs of rqt: those that open a panel of the page, and those without a panel."""
+"""The programs of rqt and image_view: those that open a panel of the page, and those without a panel."""
 
 from __future__ import annotations
 
@@ -12,23 +12,26 @@ from linkwright.diagnostics import Phrase, phrase
 
 @dataclass(frozen=True)
 class PanelProgram:
-    """A program of rqt, and the panel that it opens.
+    """A program of rqt or image_view, and the panel that it opens.
 
     Attributes:
         panel: the name of the panel in the page; empty if the page opens as it is.
         display_class: the class of the display that the panel needs; empty if it needs none.
         positional_kind: the meaning of the positional arguments: a topic, fields to plot, a node, recordings, or none.
         ignored_options: the options that are accepted without an effect, each with the number of its values.
+        default_topic: the topic that the panel shows without an argument; empty if the user chooses it.
     """
 
     panel: str
     display_class: str = ""
     positional_kind: Literal["", "topic", "fields", "node", "recordings"] = ""
     ignored_options: Mapping[str, int] = field(default_factory=dict)
+    default_topic: str = ""
 
 
 PANEL_PROGRAMS: Mapping[tuple[str, str], PanelProgram] = MappingProxyType(
     {
+        ("image_view", "image_view"): PanelProgram("image", "rviz_default_plugins/Image", default_topic="image"),
         ("rqt", "rqt"): PanelProgram(""),
         ("rqt_bag", "rqt_bag"): PanelProgram("", positional_kind="recordings", ignored_options={"--clock": 0}),
         ("rqt_console", "rqt_console"): PanelProgram("log"),

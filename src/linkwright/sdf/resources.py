@@ -20,6 +20,7 @@ from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.finder import find_shipped_folder
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
+from linkwright.packages.share_layout import iterate_substitutes
 from linkwright.packages.uri import parse_absolute_path
 from linkwright.xmltree.reader import parse_file
 
@@ -50,8 +51,6 @@ _MEDIA_SUBFOLDERS = ("", "models", "media/models", "Media/models")
 _SCHEMES = ("model", "package", "file")
 _TEMPLATE_SUFFIXES = (".jinja", ".jinja2", ".j2", ".em", ".erb", ".in", ".template", ".xacro")
 """Suffixes of templates from which a build creates a file, such as ``model.sdf.jinja``."""
-_PACKAGES_WITH_WORLDS_OF_GAZEBO = ("ros_gz_sim", "gazebo_ros")
-"""The packages here that contain the worlds that Gazebo installs, such as ``empty.sdf``."""
 _MIN_NAME_LENGTH = 4
 """The minimum length of a name for which similar names are suggested. ``suv`` is not a misspelling of ``sun``."""
 _SUN_AND_GROUND = {"sun": "sun", "ground plane": "ground_plane"}
@@ -189,10 +188,13 @@ class ResourceFinder:
         return next(matches, None)
 
     def _world_files(self, prefer_gazebo: bool = False) -> Iterator[Path]:
-        """Yield the files of worlds on the search path, in the order of the search."""
-        packages = self._packages.packages()
-        names = sorted(packages, key=lambda name: prefer_gazebo and name not in _PACKAGES_WITH_WORLDS_OF_GAZEBO)
-        shares = [packages[name] for name in names]
+        """Yield the files of worlds on the search path, in the order of the search.
+
+        The worlds that Gazebo installs are in the substitutes for its packages.
+        """
+        shares = list(self._packages.packages().values())
+        gazebo_shares = [share for _, share in iterate_substitutes()]
+        shares = [*gazebo_shares, *shares] if prefer_gazebo else [*shares, *gazebo_shares]
         for folder in dict.fromkeys(
             (
                 *(path for model_folder in self._folders for path in (model_folder, model_folder / "worlds")),

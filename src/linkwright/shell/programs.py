@@ -25,7 +25,7 @@ PROGRAMS = {
     "urdf_to_graphiz": (PROGRAMS_MODULE, "urdf_to_graphviz"),
     "rviz2": (PROGRAMS_MODULE, "rviz2"),
     **{name: (PROGRAMS_MODULE, name) for name in ("gz", "ign", "gazebo", "gzserver", "gzclient")},
-    **{name: (PROGRAMS_MODULE, name) for _, name in PANEL_PROGRAMS},
+    **{name: (PROGRAMS_MODULE, name) for package, name in PANEL_PROGRAMS if package.startswith("rqt")},
     "launch_test": (PROGRAMS_MODULE, "launch_test"),
     "colcon": (PROGRAMS_MODULE, "colcon"),
     "linkwright": ("linkwright", None),

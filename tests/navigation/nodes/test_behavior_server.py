@@ -15,7 +15,7 @@ from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
 from linkwright.navigation.costmaps.footprints import make_circle, place_footprint
 from linkwright.navigation.following.follower import ZERO_VELOCITY
 from linkwright.navigation.grids.grid import Grid
-from linkwright.navigation.nodes.behavior_server import BehaviorServer
+from linkwright.navigation.nodes.behavior_server import BehaviorServer, RecoveriesServer
 from linkwright.navigation.nodes.costmap_messages import raw_message
 from linkwright.nodes import NodeOptions
 from tests.navigation.nodes.robots import DrivingRobot, GoalSender
@@ -136,3 +136,33 @@ async def test_backup_target_beside_robot_is_rejected(robot):
     goal = GoalSender(robot, "BackUp", "backup")
     await goal.send(target=get_message("geometry_msgs/msg/Point")(x=0.3, y=0.1), speed=0.2)
     assert await goal.status_after(1.0) == GoalStatus.ABORTED
+
+
+async def test_recoveries_server_of_foxy_has_three_behaviors(graph, clock, log):
+    robot = CostmapRobot(graph, clock)
+    robot.pose = (2.5, 2.5, 0.4)
+    parameters = {
+        "recovery_plugins": ["spin", "backup", "wait"],
+        "spin.plugin": "nav2_recoveries/Spin",
+        "backup.plugin": "nav2_recoveries/BackUp",
+        "wait.plugin": "nav2_recoveries/Wait",
+        "global_frame": "odom",
+    }
+    server = RecoveriesServer(graph, NodeOptions(parameters={"autostart_node": True, **parameters}))
+    await robot.run(1.0)
+    goal = GoalSender(robot, "Spin", "spin")
+    await goal.send(target_yaw=pi / 2, time_allowance=Duration(seconds=10.0).to_msg())
+    assert await goal.status_after(10.0) == GoalStatus.SUCCEEDED
+    assert robot.pose[2] == pytest.approx(0.4 + pi / 2, abs=0.1)
+    created = [record.text for record in log if "Creating recovery plugin" in record.text]
+    assert created[1] == "Creating recovery plugin backup of type nav2_recoveries/BackUp"
+    assert server.node.get_name() == "recoveries_server"
+    server.close()
+
+
+async def test_recoveries_server_refuses_behaviors_that_came_later(graph, log):
+    parameters = {"recovery_plugins": ["drive"], "drive.plugin": "nav2_recoveries/DriveOnHeading"}
+    server = RecoveriesServer(graph, NodeOptions(parameters={"autostart_node": True, **parameters}))
+    await graph.settle()
+    assert any("cannot be 'nav2_recoveries/DriveOnHeading'" in str(record.text) for record in log)
+    server.close()

@@ -1,8 +1,10 @@
 """nav2's behavior_server: spin, back up, drive on heading, wait and assisted teleoperation.
 
-Source: nav2_behaviors, Humble and Jazzy. Obstacles are read from ``local_costmap/costmap_raw``, and the footprint from
-``local_costmap/published_footprint``. A deliberate difference: a behavior other than wait fails when the costmap is no
-longer published.
+It was recoveries_server in Foxy and Galactic, with fewer behaviors.
+
+Source: nav2_behaviors, Humble and Jazzy; nav2_recoveries, Foxy and Galactic. Obstacles are read from
+``local_costmap/costmap_raw``, and the footprint from ``local_costmap/published_footprint``. A deliberate difference: a
+behavior other than wait fails when the costmap is no longer published.
 """
 
 from __future__ import annotations
@@ -44,13 +46,14 @@ _QUEUE_DEPTH = 10
 _COSTMAP_TIMEOUT_S = 5.0
 """The age in seconds at which a costmap is out of date."""
 _ERROR_CODES = {Outcome.TIMEOUT: "TIMEOUT", Outcome.COLLISION: "COLLISION_AHEAD"}
-_BEHAVIOR_TYPES = {
-    "spin": ("nav2_behaviors/Spin", "nav2_msgs/action/Spin"),
-    "backup": ("nav2_behaviors/BackUp", "nav2_msgs/action/BackUp"),
-    "drive_on_heading": ("nav2_behaviors/DriveOnHeading", "nav2_msgs/action/DriveOnHeading"),
-    "assisted_teleop": ("nav2_behaviors/AssistedTeleop", "nav2_msgs/action/AssistedTeleop"),
-    "wait": ("nav2_behaviors/Wait", "nav2_msgs/action/Wait"),
+_CLASS_NAMES = {
+    "spin": "Spin",
+    "backup": "BackUp",
+    "drive_on_heading": "DriveOnHeading",
+    "assisted_teleop": "AssistedTeleop",
+    "wait": "Wait",
 }
+"""The behaviors, each with the name of its class and of its action type."""
 
 
 class _AssistedTeleop(Behavior):
@@ -73,9 +76,23 @@ class _AssistedTeleop(Behavior):
 
 
 class BehaviorNode(ManagedNode):
-    """The managed node of behavior_server."""
+    """The managed node of behavior_server.
+
+    Attributes:
+        PACKAGE: the package of the plugins.
+        KIND: what the parameter of the plugins calls them.
+        BEHAVIORS: the behaviors that it has.
+    """
 
     _FRAME: ClassVar[str] = "odom"
+    PACKAGE: ClassVar[str] = "nav2_behaviors"
+    KIND: ClassVar[str] = "behavior"
+    BEHAVIORS: ClassVar[tuple[str, ...]] = tuple(_CLASS_NAMES)
+
+    @classmethod
+    def plugin_types(cls) -> dict[str, str]:
+        """Return the types of the plugins, as a mapping to the behaviors."""
+        return {f"{cls.PACKAGE}/{_CLASS_NAMES[name]}": name for name in cls.BEHAVIORS}
 
     def declare(self) -> None:
         """Declare nav2's parameters."""
@@ -128,16 +145,15 @@ class BehaviorNode(ManagedNode):
         for message_type in choose_velocity_types(self, teleop_topic, self._publishes_stamped):
             self.register(self.create_subscription(message_type, teleop_topic, self._on_teleop_velocity, _QUEUE_DEPTH))
         self._output = VelocityTopic(self, "cmd_vel", self._publishes_stamped)
-        for plugin in get_string_list(self, "behavior_plugins", list(_BEHAVIOR_TYPES)):
-            plugin_type = get_plugin_type(
-                self, plugin, {name: class_name for name, (class_name, _) in _BEHAVIOR_TYPES.items()}
-            )
-            behavior_by_class = {class_name: (name, action) for name, (class_name, action) in _BEHAVIOR_TYPES.items()}
-            if plugin_type not in behavior_by_class:
-                raise invalid_value_error(f"{plugin}.plugin", plugin_type, self.get_name(), list(behavior_by_class))
-            name, action = behavior_by_class[plugin_type]
-            self.get_logger().info(f"Creating behavior plugin {plugin} of type {plugin_type}")
-            self._servers[plugin] = self.register(self._create_server(plugin, name, action))
+        behaviors_by_type = self.plugin_types()
+        default_types = {name: plugin_type for plugin_type, name in behaviors_by_type.items()}
+        for plugin in get_string_list(self, f"{self.KIND}_plugins", self.BEHAVIORS):
+            plugin_type = get_plugin_type(self, plugin, default_types)
+            if plugin_type not in behaviors_by_type:
+                raise invalid_value_error(f"{plugin}.plugin", plugin_type, self.get_name(), list(behaviors_by_type))
+            name = behaviors_by_type[plugin_type]
+            self.get_logger().info(f"Creating {self.KIND} plugin {plugin} of type {plugin_type}")
+            self._servers[plugin] = self.register(self._create_server(plugin, name))
 
     def deactivate(self) -> None:
         """Stop the robot and abort the current goal."""
@@ -156,11 +172,11 @@ class BehaviorNode(ManagedNode):
 
     # --- goals --------------------------------------------------------------------------------------------------------
 
-    def _create_server(self, plugin: str, name: str, action: str) -> GoalServer:
+    def _create_server(self, plugin: str, name: str) -> GoalServer:
         def begin(goal: ServerGoalHandle) -> None:
             self._start(self._servers[plugin], name, goal.request)
 
-        return GoalServer(self, action, plugin, begin)
+        return GoalServer(self, f"nav2_msgs/action/{_CLASS_NAMES[name]}", plugin, begin)
 
     def _start(self, server: GoalServer, name: str, goal: Any) -> None:
         self.get_logger().info(f"Running {name}")
@@ -315,6 +331,19 @@ class BehaviorServer(ManagedServer):
 
     DEFAULT_NAME = "behavior_server"
     NODE = BehaviorNode
+
+
+class _RecoveryNode(BehaviorNode):
+    """The managed node of recoveries_server."""
+
+    PACKAGE, KIND, BEHAVIORS = "nav2_recoveries", "recovery", ("spin", "backup", "wait")
+
+
+class RecoveriesServer(ManagedServer):
+    """The running recoveries_server node."""
+
+    DEFAULT_NAME = "recoveries_server"
+    NODE = _RecoveryNode
 
 
 def _make_feedback(name: str, step: Step, elapsed: float, goal: Any) -> dict[str, Any]:
