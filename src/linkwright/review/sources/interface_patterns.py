@@ -16,7 +16,7 @@ _MARKS = {
     NUMBER_PART: rf"(?:{NUMBER_PART}|\d+)",
     UNKNOWN_PART: r".+",
 }
-"""What each mark in the name of an interface may stand for."""
+"""The texts that each mark in the name of an interface replaces."""
 _MARK = re.compile("|".join(map(re.escape, _MARKS)))
 _CONFIGURATION = re.compile(r"\b(?:command|state)_interface_configuration\b")
 
