@@ -130,6 +130,8 @@ FORCE = "    state_interfaces.emplace_back(hardware_interface::StateInterface(jo
     [
         (FORCE, "", "state interfaces removed: '<name>/force'"),
         ('"force"', '"torque"', "state interface '<name>/force' renamed to '<name>/torque'"),
+        ("kForce, &f_", "prefix_ + kForce, &f_", ""),  # the prefix may be empty
+        ("joint.name, kForce", '"tip", kForce', ""),
         (' + "_" + std::to_string(i)', "", "state interfaces removed: '<name>_io/<name>_<number>'"),
         ("HW_IF_POSITION", "item.name", ""),  # the description may name it
         ("const auto & joint :", "const auto & item :", ""),

@@ -53,3 +53,14 @@ def test_macro_that_names_a_removed_mesh_is_breaking(repository, compare, text, 
     repository.commit({"a/meshes/base.stl": None})
     found = breaking(compare(repository, "HEAD~1..HEAD"))
     assert [item for item in found if item != "mesh removed"] == expected
+
+
+@pytest.mark.parametrize(
+    ("path", "is_told"), [("b/ui/runner.py", True), ("a/setup.py", False), ("b/launch/all.launch.py", False)]
+)
+def test_program_of_any_package_that_names_a_removed_launch_file_is_breaking(repository, compare, path, is_told):
+    files = {"b/package.xml": PACKAGE_XML.replace("arm_description", "b"), path: "run(['core.launch.py'])\n"}
+    repository.commit({**FILES, **files, "a/launch/core.launch.py": "x = 1\n"})
+    repository.commit({"a/launch/core.launch.py": None})
+    found = breaking(compare(repository, "HEAD~1..HEAD"))
+    assert ("names the file 'core.launch.py', which was removed" in found) is is_told

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
 PATH = "a/urdf/robot.urdf"
@@ -129,3 +130,21 @@ def test_sensor_with_another_name_in_the_same_place_is_compared(repository, comp
     (change,) = subject(compare(repository), PATH).changes
     assert str(change.sentence) == f"extension 'gazebo base': {expected}"
     assert str(change.reason) == str(reason)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "topic", "is_breaking"),
+    [
+        ([LIGHT], [LIGHT, DRIVE], "cmd_vel", False),
+        (["<gazebo/>", DOCK], ["<gazebo/>", DOCK, DRIVE], "/cmd_vel", False),
+        ([LIGHT], [LIGHT, DRIVE], "speed", True),
+        ([LIGHT, DRIVE], [LIGHT], "cmd_vel", True),
+    ],
+)
+def test_topic_of_a_source_that_an_added_plugin_has_is_not_lost(repository, compare, old, new, topic, is_breaking):
+    source = f'void Drive::Load() {{ sub_ = node_->create_subscription<Twist>("{topic}", 10, f); }}\n'
+    files = {"a/package.xml": PACKAGE_XML, "a/src/drive.cpp": source}
+    repository.commit({**files, PATH: robot_text(*old)})
+    repository.commit({"a/src/drive.cpp": None, PATH: robot_text(*new)})
+    found = breaking(compare(repository, "HEAD~1..HEAD"))
+    assert (f"subscriptions removed: '{topic}' (Twist)" in found) is is_breaking

@@ -141,3 +141,31 @@ def test_a_description_that_declares_a_lost_base_class_is_named(review_source, l
     _, broken = review_source(PLUGIN + export, PLUGIN + left, {"arm/foo.xml": description})
     line = "declares 'arm::Foo' for 'mbf::Planner', for which no source exports it any more"
     assert (line in broken) is is_lost
+
+
+PORTS = """#include "hover.hpp"
+class Hover : public BT::StatefulActionNode {
+ public:
+  static BT::PortsList providedPorts() {
+    return providedBasicPorts({
+      BT::InputPort<double>("minimum_distance", 0.0, "Distance"),
+      BT::OutputPort<std::vector<int>>("error"), BT::InputPort("goal")});
+  }
+};
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("minimum_distance", "minimum_radius",
+         "port of behavior trees 'minimum_distance' renamed to 'minimum_radius'"),
+        (', BT::InputPort("goal")', "", "ports of behavior trees removed: 'goal'"),
+        ('("goal")', '("goal"), BT::InputPort("path")', None),
+        ('"Distance"', '"Least distance"', None),
+    ],
+)  # fmt: skip
+def test_ports_of_nodes_of_behavior_trees_are_names(review_source, old, new, expected):
+    assert old in PORTS
+    _, broken = review_source(PORTS, PORTS.replace(old, new))
+    assert broken == ([expected] if expected else [])

@@ -90,6 +90,32 @@ def test_a_condition_that_a_parameter_does_not_fulfill_by_default_is_breaking(
     assert (None if change.reason is None else str(change.reason)) == (REASON if is_breaking else None)
 
 
+MODES = """class Mode(IntEnum):
+    SLOW = 0
+
+    FAST = 1  # quick
+
+
+MODE = 'mode'
+
+
+"""
+
+
+@pytest.mark.parametrize(
+    ("condition", "is_breaking"),
+    [("mode is Mode.FAST", True), ("mode == Mode.SLOW", False), ("mode is not Mode.SLOW", True),
+     ("mode is Mode.OTHER", False)],
+)  # fmt: skip
+def test_a_condition_on_a_member_of_an_enumeration_has_its_value(repository, compare, condition, is_breaking):
+    lines = "        given = self.declare_parameter(MODE, value=Mode.SLOW)\n        mode = Mode(given.value)\n"
+    text = MODES + PYTHON
+    repository.commit({**MANIFEST, "arm/a.py": text.format(lines + OUT)})
+    repository.write({"arm/a.py": text.format(f"{lines}        if {condition}:\n    {OUT}")})
+    (change,) = [each for each in compare(repository).subjects[0].changes if "only if" in str(each.sentence)]
+    assert (None if change.reason is None else str(change.reason)) == (REASON if is_breaking else None)
+
+
 def test_a_condition_on_a_parameter_that_a_file_of_the_package_sets_is_not_breaking(repository, compare):
     head, settings = PARAMETER.format("False"), {"arm/config/arm.yaml": "arm:\n  ros__parameters:\n    debug: true\n"}
     repository.commit({**MANIFEST, **settings, "arm/a.py": PYTHON.format(head + OUT)})

@@ -63,6 +63,7 @@ from linkwright.review.launch_paths import (
 from linkwright.review.launches.formats import join_format_changes
 from linkwright.review.launches.helpers import imports_actions
 from linkwright.review.launches.missing_programs import drop_told_findings
+from linkwright.review.moved_topics import merge_moved_topics
 from linkwright.review.notes import (
     group_equal_problems,
     is_unreadable_as_before,
@@ -280,7 +281,8 @@ class _Reviewer:
         result += (subject for subject in self._run_step(source_subjects) if subject.path not in paths)
         for search in SEARCHES:
             result = _add_changes(result, self._run_step(search))
-        return sorted(drop_told_headers(merge_removed_options(result)), key=lambda subject: subject.path)
+        result = merge_moved_topics(merge_removed_options(result), self._versions.new.package_of)
+        return sorted(drop_told_headers(result), key=lambda subject: subject.path)
 
     def _find_removed_submodules(self) -> Iterator[Subject]:
         """Yield the removed submodules, whose contents are unknown.

@@ -12,7 +12,7 @@ from linkwright.review.sources.names import NameKind, SourceName, SourceNames
 
 INTERFACE_KINDS = (NameKind.COMMAND_INTERFACE, NameKind.STATE_INTERFACE, NameKind.CLAIMED_INTERFACE)
 _MARKS = {
-    NAME_PART: rf"(?:{NAME_PART}|[^<>])+",
+    NAME_PART: rf"(?:{NAME_PART}|[^<>])*",  # a prefix may be empty
     NUMBER_PART: rf"(?:{NUMBER_PART}|\d+)",
     UNKNOWN_PART: r".+",
 }
@@ -26,6 +26,7 @@ def select_interfaces(items: Sequence[SourceName], other_names: SourceNames) -> 
 
     A computed name in the other version may give them. A computed name alone does not count if it has no text of its
     own, or if the other version names no interface of the kind, because then another source or ros2_control may do it.
+    Two computed names may be the same if one of them may be the other.
 
     Args:
         items: the interfaces of a kind.
@@ -33,12 +34,12 @@ def select_interfaces(items: Sequence[SourceName], other_names: SourceNames) -> 
     """
     if not items:
         return []
-    others = [re.compile(_make_pattern(other.name)) for other in other_names.of_kind(items[0].kind)]
+    known = list(other_names.of_kind(items[0].kind))
     return [
         item
         for item in items
-        if not any(other.fullmatch(item.name) for other in others)
-        and (_MARK.search(item.name) is None or (bool(others) and _has_text(item.name)))
+        if not any(_may_be_equal(item.name, other.name) for other in known)
+        and (_MARK.search(item.name) is None or (bool(known) and _has_text(item.name)))
     ]
 
 
@@ -59,6 +60,11 @@ def find_claim_reason(items: Sequence[SourceName], old_text: str, names: SourceN
         return None
     text = joined_first(required, MAX_NAMES)
     return phrase("on robots whose hardware does not have '{name}', the controller does not start", name=text)
+
+
+def _may_be_equal(name: str, other: str) -> bool:
+    """Return whether two names, of which each may be computed, may be the same."""
+    return any(re.fullmatch(_make_pattern(first), second) for first, second in ((name, other), (other, name)))
 
 
 def _is_conditional(item: SourceName, names: SourceNames) -> bool:

@@ -49,6 +49,7 @@ class NameKind(Enum):
     SIMULATION_PLUGIN = (phrase("plugin of Gazebo"), phrase("plugins of Gazebo"))
     LIBRARY_PLUGIN = (phrase("plugin of Gazebo Classic"), phrase("plugins of Gazebo Classic"))
     TREE_NODE = (phrase("node of behavior trees"), phrase("nodes of behavior trees"))
+    TREE_PORT = (phrase("port of behavior trees"), phrase("ports of behavior trees"))
     CLASS = (phrase("class"), phrase("classes"))
     FUNCTION = (phrase("function"), phrase("functions"))
     MEMBER = (phrase("public member"), phrase("public members"))

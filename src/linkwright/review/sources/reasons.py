@@ -78,6 +78,8 @@ def find_removal_reason(
         return None if is_left else phrase("worlds and descriptions that load the library get no plugin")
     if kind is NameKind.TREE_NODE:
         return phrase("behavior trees that use {names} cannot be loaded", names=text)
+    if kind is NameKind.TREE_PORT:
+        return phrase("behavior trees that set {names} cannot be loaded", names=text)
     if kind is NameKind.IMPORT:
         return phrase("programs that import {names} do not find it", names=text)
     if kind in (NameKind.CLASS, NameKind.FUNCTION, NameKind.MEMBER):

@@ -20,6 +20,7 @@ _PATTERNS = (
     (NameKind.SIMULATION_PLUGIN, rf"\b(?:GZ|IGNITION)_ADD_PLUGIN_ALIAS\s*\({_CLASS},(?P<aliases>[^()]*)\)"),
     (NameKind.TREE_NODE, r"[.>]\s*(?:registerNodeType|registerBuilder)\s*(?:<[^;{}()]*>)?\s*\(" + _TEXT),
     (NameKind.TREE_NODE, rf"[.>]\s*registerSimple(?:Action|Condition|Decorator)\s*\({_TEXT}"),
+    (NameKind.TREE_PORT, rf"\b(?:Input|Output|Bidirectional)Port\s*(?:<[^;{{}}()]*>)?\s*\((?!\s*[^\"\s]){_TEXT}"),
     (NameKind.TREE_NODE, rf"\b(?:CreateRosNodePlugin|RegisterRos\w*(?:\s*<[^;{{}}()]*>)?)\s*\({_TEXT}"),
 )
 _COMPILED = [(kind, re.compile(pattern)) for kind, pattern in _PATTERNS]
@@ -28,7 +29,7 @@ _DEFINITION = re.compile(r"^[ \t]*#[ \t]*define\b(?:[^\n\\]|\\\r?\n|\\.)*", re.M
 
 
 def find_registrations(text: str) -> Iterator[FoundName]:
-    """Yield the classes and nodes of behavior trees that a source registers.
+    """Yield the classes that a source registers, and the nodes of behavior trees with their ports.
 
     A class of Gazebo with other names only has these, because worlds name them.
 

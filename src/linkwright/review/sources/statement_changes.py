@@ -21,6 +21,7 @@ from linkwright.review.sources.moved_code import without_functions, without_stat
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
 from linkwright.review.sources.new_assertions import find_new_assertions
 from linkwright.review.sources.new_failures import FailureSide, find_new_failures
+from linkwright.review.sources.opposite_signs import find_opposite_reason
 from linkwright.review.sources.renamed_classes import drop_reported, find_renamed_classes, rename_classes
 from linkwright.review.sources.renamed_variables import find_renamed_variables
 from linkwright.review.sources.renamed_words import rename_words
@@ -74,7 +75,9 @@ def _compare_values(
         replaced = [*find_replaced_literals(*paths)]
     sentences = [*(str(change.sentence) for change in reported), *(str(text) for text, _ in replaced)]
     for text, span in (*replaced, *find_value_changes(*paths, sentences)):
-        yield Change(text, location=Location(file.new_path, span.line, span.column))
+        reason = find_opposite_reason(text, new.get_names(file.new_path))
+        effect = Effect.CHANGED if reason is None else Effect.BREAKING
+        yield Change(text, effect, reason, Location(file.new_path, span.line, span.column))
     for change in find_text_changes(*paths):
         path = file.old_path if change.is_old else file.new_path
         yield Change(change.sentence, location=Location(path, change.line, 1, change.is_old))

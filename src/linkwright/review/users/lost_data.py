@@ -8,7 +8,9 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import SourceText, phrase
 from linkwright.files.git_repository import ChangedFile
+from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.files.setup_files import SETUP_FILE
 from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.users.installed_readers import without_comments
 from linkwright.review.users.references import find_share_paths
@@ -42,7 +44,7 @@ def find_lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> 
     changed = {file.old_path: file.new_path for file in changed_files}
     for path in versions.new.paths((*_READER_SUFFIXES, *_DESCRIPTION_SUFFIXES)) if lost else ():
         parts = PurePosixPath(path).parts
-        if not TEST_FOLDERS.isdisjoint(parts) or ".launch." in path or path.endswith("_launch.py"):
+        if not TEST_FOLDERS.isdisjoint(parts) or is_launch_file_name(parts[-1]):
             continue
         is_description = path.endswith(_DESCRIPTION_SUFFIXES)
         text = versions.new.text(path)
@@ -52,7 +54,9 @@ def find_lost_data(versions: Versions, changed_files: Sequence[ChangedFile]) -> 
             if is_description and PurePosixPath(name).suffix.lower() not in _SHAPE_SUFFIXES:
                 continue
             line = 0 if name in told else _find_line(text, name)
-            if line and versions.new.package_of(path) == versions.old.package_of(old_path):
+            is_own = versions.new.package_of(path) == versions.old.package_of(old_path)
+            is_launch = is_launch_file_name(name) and parts[-1] != SETUP_FILE
+            if line and (is_launch or (is_own and not is_launch_file_name(name))):
                 yield path, _make_change(path, name, line, is_renamed=changed.get(old_path) is not None)
 
 
@@ -65,6 +69,8 @@ def _list_told_names(version: Version, path: str, text: str) -> set[str]:
 
 def _is_data(path: str) -> bool:
     pure_path = PurePosixPath(path)
+    if is_launch_file_name(pure_path.name):
+        return TEST_FOLDERS.isdisjoint(pure_path.parts)
     is_named = len(pure_path.name) >= _MIN_NAME_LENGTH and pure_path.suffix not in ("", ".md", ".txt", ".xml")
     return is_named and pure_path.suffix not in _PROGRAM_SUFFIXES and TEST_FOLDERS.isdisjoint(pure_path.parts)
 
