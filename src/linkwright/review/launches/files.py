@@ -41,6 +41,7 @@ from linkwright.review.launches.including_files import IncludingFiles, describe_
 from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
+from linkwright.review.launches.object_texts import report_object_texts
 from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, CodePart, Entry, LaunchOutline
 from linkwright.review.launches.python_tests import report_object_tests
 from linkwright.review.launches.reading import read_outline
@@ -127,6 +128,7 @@ def compare_launch_files(pair: FilePair) -> None:
         if pair.new_file.suffix == PYTHON_SUFFIX:
             compare_imports(pair)
             report_object_tests(pair)
+            report_object_texts(pair)
         report_undefined_names(pair)
     if old.is_ros1 and not new.is_ros1 and PurePosixPath(pair.old_path).name != PurePosixPath(pair.new_path).name:
         _mark_unbreaking(pair, keeps_renaming=True)  # no user starts the file by its old name
