@@ -13,6 +13,7 @@ from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
 from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, with_condition
 from linkwright.review.launches.python_tests import SUBSTITUTIONS
+from linkwright.review.list_changes import EMPTY
 
 _MAX_DEPTH = 30
 _MAX_CHARACTERS = 10_000
@@ -262,9 +263,8 @@ class ExpressionTexts:
             if function in _ARGUMENT_CONDITIONS and arguments:
                 return f"{_ARGUMENT_CONDITIONS[function]} {self.text(arguments[0])}"
             if function in _COMPARISON_CONDITIONS and len(arguments) > 1:
-                return (
-                    f"if $(var {self.text(arguments[0])}) {_COMPARISON_CONDITIONS[function]} {self.text(arguments[1])}"
-                )
+                right = self.text(arguments[1]) or EMPTY
+                return f"if $(var {self.text(arguments[0])}) {_COMPARISON_CONDITIONS[function]} {right}"
         return f"if {self.text(node)}"
 
     def format_parameter(self, node: ast.expr) -> str:
@@ -464,7 +464,8 @@ class ExpressionTexts:
         if function == "perform_substitution":
             return part(first)
         if function in _COMPARISON_SUBSTITUTIONS and len(arguments) > 1:
-            return f"{part(first)} {_COMPARISON_SUBSTITUTIONS[function]} {part(arguments[1])}"
+            left, right = (part(argument) or EMPTY for argument in arguments[:2])
+            return f"{left} {_COMPARISON_SUBSTITUTIONS[function]} {right}"
         if function == "FindExecutable":
             return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):
