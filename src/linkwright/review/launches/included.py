@@ -237,7 +237,7 @@ class IncludedActions:
                 for match in _USED_ARGUMENT.finditer(text):
                     if match["name"] not in declared:
                         undeclared.setdefault(match["name"], entry)
-            for name in self._find_missing_arguments(entry, depth) - declared:
+            for name in sorted(self._find_missing_arguments(entry, depth) - declared):
                 undeclared.setdefault(name, entry)
         return undeclared
 
