@@ -120,6 +120,39 @@ def test_comparison_of_an_argument_may_be_a_substitution(review_changes):
     assert review_changes("arm.launch.py", LOOP, 'LaunchConfigurationEquals("map", "")', new) == ([], [])
 
 
+def test_a_comparison_with_an_empty_text_shows_it_and_is_evaluated(review_changes):
+    condition = '        condition=LaunchConfigurationEquals("map", ""),\n'
+    changes, found = review_changes(
+        "arm.launch.py", LOOP.replace(condition, ""), "        arguments", f"{condition}        arguments"
+    )
+    (line,) = changes
+    assert line.endswith("condition if $(var map) == '' added")
+    assert not found
+
+
+SHELF = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import LaunchConfigurationEquals, LaunchConfigurationNotEquals
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("file", default_value="day"),
+        Node(package="arm", executable="log", name="log"),
+    ])
+"""
+EMPTY_ONLY = 'Node(package="arm", executable="log", name="log", condition=LaunchConfigurationEquals("file", "")),\n'
+OTHERWISE = EMPTY_ONLY.replace("Equals", "NotEquals").replace('name="log", ', 'name="log", respawn=True, ')
+
+
+@pytest.mark.parametrize(("new", "is_breaking"), [(EMPTY_ONLY, True), (f"{EMPTY_ONLY}        {OTHERWISE}", False)])
+def test_a_node_that_two_opposite_conditions_start_still_starts_by_default(review_changes, new, is_breaking):
+    old = 'Node(package="arm", executable="log", name="log"),\n'
+    _, found = review_changes("arm.launch.py", SHELF, old, new)
+    assert bool(found) is is_breaking
+
+
 PROGRAM_GUARD = """
 
 if __name__ == "__main__":

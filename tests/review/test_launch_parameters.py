@@ -157,3 +157,35 @@ def test_arguments_are_renamed_only_if_their_names_or_the_places_of_their_values
     renamed = f"argument 'publish_tf' renamed to '{name}'"
     assert (renamed in breaking(result)) == is_renamed
     assert any(sentence.startswith("argument 'publish_tf' removed") for sentence in breaking(result)) != is_renamed
+
+
+FRAMES = """<launch>
+  <arg name="robot" default="amy"/>
+  <node pkg="arm" type="start.sh" name="simulator" args="$(arg robot)">
+    <param name="base_frame" value="$(arg robot)/base"/>
+    <param name="sole_frame" value="$(arg robot)/sole"/>
+    <param name="imu_frame" value="$(arg robot)/imu"/>
+  </node>
+</launch>
+"""
+
+
+def test_frames_that_no_longer_depend_on_an_argument_are_one_breaking_line(repository, compare):
+    path = "arm/launch/arm.launch"
+    repository.commit({path: FRAMES})
+    new = FRAMES.replace("$(arg robot)/", "$(arg prefix)").replace("<node", '<arg name="prefix" default=""/><node')
+    repository.write({path: new})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.sentence) == (
+        "node 'arm/start.sh': parameters base_frame $(arg robot)/base -> $(arg prefix)base, "
+        "sole_frame $(arg robot)/sole -> $(arg prefix)sole, imu_frame $(arg robot)/imu -> $(arg prefix)imu"
+    )
+    assert str(change.reason) == "for callers that pass 'robot', programs do not find the frames by their old names"
+
+
+def test_a_single_frame_of_a_node_may_be_one_that_it_uses(repository, compare):
+    path = "arm/launch/arm.launch"
+    text = "\n".join(line for line in FRAMES.splitlines() if "sole" not in line and "imu" not in line)
+    repository.commit({path: text})
+    repository.write({path: text.replace("$(arg robot)/", "")})
+    assert not compare(repository).breaking_changes

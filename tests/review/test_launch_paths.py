@@ -44,11 +44,20 @@ def test_launch_file_of_any_format_that_names_a_lost_file_is_told(repository, co
     assert found == ["names 'config/arm.yaml' of 'arm', which no longer exists"]
 
 
-@pytest.mark.parametrize(("name", "text"), FORMATS)
+@pytest.mark.parametrize(("name", "text"), [*FORMATS, ("arm.launch.py", PYTHON)])
 def test_launch_file_that_newly_names_a_missing_file_is_breaking(repository, compare, name, text):
     repository.commit({**FILES, f"arm/launch/{name}": text})
     repository.write({f"arm/launch/{name}": text.replace("arm.yaml", "robot.yaml")})
-    assert breaking(compare(repository)) == ["names 'config/robot.yaml' of 'arm', which does not exist"]
+    result = compare(repository)
+    assert breaking(result) == ["names 'config/robot.yaml' of 'arm', which does not exist"]
+    assert not any(finding.code == "LW842" for finding in result.new_findings)  # the line tells it
+
+
+def test_launch_file_that_checks_which_files_exist_may_name_a_missing_one(repository, compare):
+    checking = PYTHON.replace("    return", "    if not os.path.isfile(file):\n        file = None\n    return")
+    repository.commit({**FILES, "arm/launch/arm.launch.py": checking})
+    repository.write({"arm/launch/arm.launch.py": checking.replace("arm.yaml", "robot.yaml")})
+    assert breaking(compare(repository)) == []
 
 
 @pytest.mark.parametrize(

@@ -43,3 +43,54 @@ def test_a_launch_file_that_passes_a_removed_argument_is_named(
     found = [line for line in breaking(compare(repository)) if line.startswith("passes")]
     line = f"passes 'run' to 'lamp/launch/{included}', which no longer has the argument"
     assert found == ([line] if is_found else [])
+
+
+WRAPPER = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.conditions import IfCondition
+from launch.launch_description_sources import AnyLaunchDescriptionSource
+from launch.substitutions import LaunchConfiguration
+from launch_ros.substitutions import FindPackageShare
+def generate_launch_description():
+    run = LaunchConfiguration("run")
+    return LaunchDescription([
+        DeclareLaunchArgument("run", default_value="0"),
+        IncludeLaunchDescription(
+            AnyLaunchDescriptionSource([FindPackageShare("PACKAGE"), "/launch/inner.launch.xml"]),
+            launch_arguments={"rate": "1"}.items(),
+            condition=IfCondition(run),
+        ),
+    ])
+"""
+DECLARED = '        DeclareLaunchArgument("run", default_value="0"),\n'
+INNER = '<launch><arg name="{}" default="1"/><node pkg="a" exec="b" name="$(var {})"/></launch>\n'
+
+
+@pytest.mark.parametrize(
+    ("package", "inner", "old", "is_found"),
+    [
+        ("lamp", "other", {}, True),
+        ("lamp", "run", {}, False),  # the included file gets the value of the caller
+        ("lamp", "run", {'"rate": "1"': '"run": "1"'}, True),
+        ("elsewhere", "other", {}, True),
+        ("elsewhere", "other", {'"rate": "1"': '"run": run'}, False),  # a file that may still use the value
+        ("elsewhere", "other", {'"rate": "1"': '"run": "1"'}, True),
+    ],
+)
+def test_a_removed_argument_of_a_file_that_includes_others(repository, compare, package, inner, old, is_found):
+    """The value of a caller has an effect if an included file may use it."""
+    wrapper = WRAPPER.replace("PACKAGE", package)
+    for text, replacement in old.items():
+        wrapper = wrapper.replace(text, replacement)
+    new = wrapper.replace(DECLARED, "").replace("            condition=IfCondition(run),\n", "")
+    new = new.replace('    run = LaunchConfiguration("run")\n', "").replace('"run": run', '"rate": "1"')
+    files = {
+        "lamp/package.xml": MANIFEST,
+        "lamp/launch/a.launch.py": wrapper,
+        "lamp/launch/inner.launch.xml": INNER.format(inner, inner),
+        "lamp/launch/b.launch.py": PYTHON.replace("a.launch.xml", "a.launch.py"),
+    }
+    repository.commit(files)
+    repository.write({"lamp/launch/a.launch.py": new})
+    line = "passes 'run' to 'lamp/launch/a.launch.py', which no longer has the argument"
+    assert (line in breaking(compare(repository))) is is_found

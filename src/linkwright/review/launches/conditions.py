@@ -6,6 +6,8 @@ import ast
 import re
 from collections.abc import Callable
 
+from linkwright.review.list_changes import EMPTY
+
 _SEPARATOR = re.compile(r" and (?=(?:if|unless|after) )")
 _EVAL_SUBSTITUTION = re.compile(r"\$\(eval (.*)\)", re.DOTALL)
 _COMPARISON = re.compile(r"(?P<left>\S*) (?P<operator>==|!=) (?P<right>\S*)")
@@ -44,7 +46,8 @@ def _evaluate_text(text: str) -> bool | None:
     if evaluation is None:
         comparison = _COMPARISON.fullmatch(text)
         if comparison is not None:
-            return (comparison["left"] == comparison["right"]) == (comparison["operator"] == "==")
+            left, right = (comparison[side].replace(EMPTY, "") for side in ("left", "right"))
+            return (left == right) == (comparison["operator"] == "==")
         return _BOOLEANS.get(text.lower())
     try:
         return _to_bool(_evaluate_expression(ast.parse(text, mode="eval").body))

@@ -272,6 +272,9 @@ def find_setting_reason(
     if entry.kind in ("node", "include") and setting == CONDITION and (_is_spawner(entry) or not offers_nothing(entry)):
         old_holds = evaluate_condition(old_outline.resolve(old or ""))
         is_stopped = evaluate_condition(new_outline.resolve(new or "")) is False
+        others = [other for other in new_outline.entries if other is not entry]
+        if any(_starts_same_node(entry, other, new_outline, new_outline) for other in others):
+            return None  # another action starts the node under the opposite condition
         return phrase("by default, it no longer starts") if old_holds and is_stopped else None
     if entry.kind != "node" or offers_nothing(entry):
         return None

@@ -41,6 +41,7 @@ from linkwright.review.launches.including_files import IncludingFiles, describe_
 from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
+from linkwright.review.launches.object_texts import report_object_texts
 from linkwright.review.launches.outlines import (
     NAMES_AS_REMAPPINGS,
     READING,
@@ -134,6 +135,7 @@ def compare_launch_files(pair: FilePair) -> None:
         if pair.new_file.suffix == PYTHON_SUFFIX:
             compare_imports(pair)
             report_object_tests(pair)
+            report_object_texts(pair)
         report_undefined_names(pair)
     if any(NAMES_AS_REMAPPINGS in entry.settings for entry in old.entries):
         _mark_unbreaking(pair, keeps_renaming=True)  # the old file failed

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import LinkwrightError
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import is_launch_file
-from linkwright.review.launches.argument_uses import uses_argument
+from linkwright.review.launches.argument_uses import USED_ARGUMENT, uses_argument
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import offers_nothing
 from linkwright.review.launches.matching import get_launch_file_stem
@@ -237,7 +237,7 @@ class IncludedActions:
                 for match in _USED_ARGUMENT.finditer(text):
                     if match["name"] not in declared:
                         undeclared.setdefault(match["name"], entry)
-            for name in self._find_missing_arguments(entry, depth) - declared:
+            for name in sorted(self._find_missing_arguments(entry, depth) - declared):
                 undeclared.setdefault(name, entry)
         return undeclared
 
@@ -264,6 +264,37 @@ class IncludedActions:
         """Return whether a file that the launch file of ROS 2 includes uses an argument, which it gets from there."""
         files = [] if self.outline.is_ros1 else self._included.items()
         return any(uses_argument(self._version.file(path), name, outline.entries) for path, outline in files)
+
+    def passes_on(self, name: str) -> bool:
+        """Return whether an included file of ROS 2 uses an argument that the include does not set.
+
+        It gets the value of the callers of the launch file.
+        """
+        for entry in self.outline.entries:
+            file = None if name in map(without_condition, entry.settings) else self.find_included_file(entry, self.file)
+            outline = None if file is None else self._read_outline(file)
+            path = None if file is None else self._version.relative(file)
+            if file is None or outline is None or path is None:
+                continue
+            if uses_argument(file, name, outline.entries) or IncludedActions(self._version, path, outline).may_use(
+                name
+            ):
+                return True
+        return False
+
+    def passes_to_unknown_file(self, name: str) -> bool:
+        """Return whether the launch file passes the value of an argument to a file outside of the repository."""
+        includes = [entry for entry in self.outline.entries if entry.kind == "include"]
+        return any(
+            self._is_unknown(entry) and name in USED_ARGUMENT.findall(value)
+            for entry in includes
+            for setting, value in entry.settings.items()
+            if setting != CONDITION
+        )
+
+    def _is_unknown(self, include: Entry) -> bool:
+        resolved = replace(include, name=self.outline.resolve(include.name))
+        return self.find_included_file(resolved, self.file) is None
 
 
 def find_callers(version: Version, path: str, name: str) -> Iterator[tuple[LaunchOutline, Entry]]:

@@ -19,6 +19,16 @@ from linkwright.review.launches.static_transforms import find_child_frame
 _USED_ARGUMENT = re.compile(r"\$\((?:var|arg) ([\w./-]+)")
 _SWITCHED_NAMESPACE = re.compile(r"(?P<name>.+) \((?P<condition>(?:if|unless) .+)\)")
 _FRAME_PREFIX = re.compile(r"(?:parameter )?(?:.*/)?(?:tf|frame)_prefix")
+_FRAME_PARAMETER = re.compile(r"parameter \w+_frame(_id)?")
+_PREFIXED = re.compile(r"\$\((?:var|arg) [\w.-]+\)/?\w[\w/]*")
+"""A frame with a prefix that an argument gives."""
+_MIN_FRAMES = 3
+"""The minimum number of parameters with frames of a node that probably publishes them."""
+
+
+def make_frames_reason(name: str) -> Phrase:
+    """Return the reason why frames that no longer depend on an argument are breaking."""
+    return phrase("for callers that pass '{name}', programs do not find the frames by their old names", name=name)
 
 
 def explain_lost_frames(
@@ -39,7 +49,7 @@ def explain_lost_frames(
     lost = [name for name in _USED_ARGUMENT.findall(old_frames) if name in arguments and name not in kept]
     if not lost:
         return None
-    return phrase("for callers that pass '{name}', programs do not find the frames by their old names", name=lost[0])
+    return make_frames_reason(lost[0])
 
 
 def explain_enabled_namespace(setting: str, old: str | None, new: str | None, outline: LaunchOutline) -> Phrase | None:
@@ -96,4 +106,7 @@ def _find_frames(entry: Entry, setting: str, text: str) -> str:
     """Return the frame, or the prefix of frames, in a value; empty for other settings."""
     if _FRAME_PREFIX.fullmatch(setting):
         return text
+    if _FRAME_PARAMETER.fullmatch(setting) and _PREFIXED.fullmatch(text):
+        frames = [name for name in entry.settings if _FRAME_PARAMETER.fullmatch(name)]
+        return text if len(frames) >= _MIN_FRAMES else ""
     return find_child_frame(entry.name, text) if setting == "arguments" else ""

@@ -42,6 +42,12 @@ _STARTS = (
 )
 _FINDING = "LW844"
 """The finding about a program that a launch file starts and that does not exist."""
+_FILE_FINDING = "LW842"
+"""The finding about a file that a launch file names and that does not exist."""
+MISSING_FILE = "names '{file}' of '{package}', which does not exist"
+"""The sentence about such a file."""
+_FINDINGS = {**dict.fromkeys(_STARTS, _FINDING), MISSING_FILE: _FILE_FINDING}
+"""The finding about the same problem, by the sentence of the change."""
 _COMMENT = re.compile(r"#[^\n]*")
 _COMPUTED_NAME = re.compile(
     r"\b(?:foreach|macro|function|include)\s*\(|add_executable\s*\(\s*[^\s)]*\$\{(?!PROJECT_NAME\})"
@@ -253,20 +259,26 @@ def _find_named_packages(entry: Entry) -> Iterator[str]:
 
 
 def drop_told_findings(subjects: Sequence[Subject], findings: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """Return the findings without those about programs that a breaking line of the same launch file names."""
+    """Return the findings without those about programs and files that a breaking line of the same launch file names."""
     told = {
-        (subject.path, change.sentence.arguments.get("name"))
+        (subject.path, _FINDINGS[change.sentence.template], change.sentence.arguments.get(_get_key(change.sentence)))
         for subject in subjects
         for change in subject.changes
-        if change.sentence.template in _STARTS
+        if change.sentence.template in _FINDINGS
     }
-    return [finding for finding in findings if finding.code != _FINDING or _get_program(finding) not in told]
+    return [finding for finding in findings if _get_missing(finding) not in told]
 
 
-def _get_program(finding: Diagnostic) -> tuple[str, object]:
-    """Return the launch file and the name of the program of a finding."""
+def _get_key(sentence: Phrase) -> str:
+    """Return the argument of a sentence that names the missing program or file."""
+    return "file" if sentence.template == MISSING_FILE else "name"
+
+
+def _get_missing(finding: Diagnostic) -> tuple[str, str, object]:
+    """Return the launch file, the code, and the name of the program or file of a finding."""
     arguments = getattr(finding.message, "arguments", {})
-    return ("" if finding.span is None else finding.span.file), arguments.get("executable")
+    path = "" if finding.span is None else finding.span.file
+    return path, finding.code, arguments.get("path" if finding.code == _FILE_FINDING else "executable")
 
 
 def _make_removal_change(package: str, name: str, *, is_left: bool) -> Phrase:

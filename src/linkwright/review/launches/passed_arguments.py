@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
@@ -11,6 +12,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import find_launch_files, is_launch_file
+from linkwright.review.launches.argument_uses import read_code
 from linkwright.review.launches.included import IncludedActions
 from linkwright.review.launches.outlines import CONDITION, LaunchOutline, without_condition
 from linkwright.review.launches.reading import read_outline
@@ -20,7 +22,8 @@ from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 def find_passed_arguments(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the launch files that pass an argument which a changed file no longer declares, each with a change.
 
-    Of ROS 2, where an included file may use any argument of its caller, only files without includes count.
+    In ROS 2, an included file may use any argument of its caller. An argument counts if the included files of the
+    repository do not use it, and the old version did not pass it to other files.
     """
     lost = {
         file.new_path: names
@@ -45,10 +48,19 @@ def _find_lost_arguments(versions: Versions, old_path: str, new_path: str) -> di
     names = {entry.name for entry in old.entries if entry.kind == "argument"} - remaining
     if new.is_ros1:
         return {name: phrase("the include fails") for name in sorted(names)}
-    if any(entry.kind in ("include", "action") for entry in new.entries):
+    if new.has_unknown_actions or any(entry.kind == "action" for entry in new.entries):
         return {}
-    text = versions.new.text(new_path)
-    return {name: phrase("the value has no effect") for name in sorted(names) if name not in text}
+    text = read_code(versions.new.file(new_path))
+    actions = IncludedActions(versions.new, new_path, new)
+    old_actions = IncludedActions(versions.old, old_path, old)
+    used = {name for name in names if _names_outside_of_keys(text, name)}
+    used |= {name for name in names if actions.passes_on(name) or old_actions.passes_to_unknown_file(name)}
+    return {name: phrase("the value has no effect") for name in sorted(names - used)}
+
+
+def _names_outside_of_keys(text: str, name: str) -> bool:
+    """Return whether a text contains a name, except as a key such as ``'NAME': ...`` of an argument that it passes."""
+    return re.search(rf"(?<![\w.-]){re.escape(name)}(?![\w.-]|[\"']\s*:)", text) is not None
 
 
 def _check_caller(version: Version, path: str, lost: dict[str, dict[str, Phrase]]) -> Iterator[Change]:

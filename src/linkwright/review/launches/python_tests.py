@@ -14,6 +14,10 @@ from linkwright.review.launches.names import LaunchPythonFile
 from linkwright.review.sources.reading import try_read_source
 
 _CONFIGURATION = "LaunchConfiguration"
+SUBSTITUTIONS = frozenset(
+    {_CONFIGURATION, "Command", "EnvironmentVariable", "FindPackageShare", "PathJoinSubstitution", "PythonExpression"}
+)
+"""The classes of substitutions that launch files often use."""
 _CONFIGURATIONS = "launch_configurations"
 """The attribute of a launch context with the values of the arguments."""
 _TEXT_METHODS = frozenset({"lower", "strip", "upper"})
@@ -48,11 +52,11 @@ def read_tests(python: PythonFile) -> dict[str, str]:
     Tests that depend on anything else than arguments, and those that have several meanings, are left out.
     """
     tests: dict[str, str | None] = {}
-    for function, node in _walk(python.tree, None):
+    for function, node in walk_functions(python.tree, None):
         if isinstance(node, (ast.If, ast.IfExp)):
             source = unparse_on_one_line(node.test)
             try:
-                value = f"$(eval {ast.unparse(_Reader(python, function).read_test(node.test))})"
+                value = f"$(eval {ast.unparse(ArgumentReader(python, function).read_test(node.test))})"
             except _UnknownTestError:
                 value = None
             tests[source] = value if tests.get(source, value) == value else None
@@ -61,8 +65,8 @@ def read_tests(python: PythonFile) -> dict[str, str]:
 
 def report_object_tests(pair: FilePair) -> None:
     """Report the comparisons of substitutions with texts that only the new version of a launch file has."""
-    known = {test.source for test in _find_object_tests(_try_parse(pair, is_old=True))}
-    for test in _find_object_tests(_try_parse(pair)):
+    known = {test.source for test in _find_object_tests(try_parse_version(pair, is_old=True))}
+    for test in _find_object_tests(try_parse_version(pair)):
         if test.source not in known:
             text = phrase(
                 "`{test}` compares the object LaunchConfiguration('{name}') with a text, instead of its value",
@@ -73,7 +77,8 @@ def report_object_tests(pair: FilePair) -> None:
             pair.add(text, pair.location(test.span), reason)
 
 
-def _try_parse(pair: FilePair, *, is_old: bool = False) -> PythonFile | None:
+def try_parse_version(pair: FilePair, *, is_old: bool = False) -> PythonFile | None:
+    """Return a version of a Python launch file, or None if it cannot be parsed."""
     source = try_read_source(pair.old_file if is_old else pair.new_file)
     try:
         return None if source is None else LaunchPythonFile(source)
@@ -82,11 +87,11 @@ def _try_parse(pair: FilePair, *, is_old: bool = False) -> PythonFile | None:
 
 
 def _find_object_tests(python: PythonFile | None) -> Iterator[_ObjectTest]:
-    for function, node in _walk(python.tree, None) if python is not None else ():
+    for function, node in walk_functions(python.tree, None) if python is not None else ():
         operator = node.ops[0] if isinstance(node, ast.Compare) and len(node.ops) == 1 else None
         if python is None or not isinstance(node, ast.Compare) or operator is None:
             continue
-        reader = _Reader(python, function)
+        reader = ArgumentReader(python, function)
         for item, other in ((node.left, node.comparators[0]), (node.comparators[0], node.left)):
             name = reader.find_object(item)
             is_membership = isinstance(operator, (ast.In, ast.NotIn))
@@ -101,14 +106,14 @@ def _find_object_tests(python: PythonFile | None) -> Iterator[_ObjectTest]:
                 yield _ObjectTest(source, name, isinstance(operator, _INEQUALITIES), python.span(node))
 
 
-def _walk(node: ast.AST, function: _Function | None) -> Iterator[tuple[_Function | None, ast.AST]]:
+def walk_functions(node: ast.AST, function: _Function | None) -> Iterator[tuple[_Function | None, ast.AST]]:
     """Yield the nodes below a node, each with the innermost function around it."""
     for child in ast.iter_child_nodes(node):
         yield function, child
-        yield from _walk(child, child if isinstance(child, _Function) else function)
+        yield from walk_functions(child, child if isinstance(child, _Function) else function)
 
 
-class _Reader:
+class ArgumentReader:
     """A reader of the tests of a function.
 
     Args:
@@ -190,6 +195,14 @@ class _Reader:
         name = value.args[0] if value.args else argument_of(value, "variable_name")
         is_name = isinstance(name, ast.Constant) and isinstance(name.value, str)
         return name.value if is_name and isinstance(name, ast.Constant) and isinstance(name.value, str) else None
+
+    def find_substitution(self, node: ast.expr) -> ast.Call | None:
+        """Return the call that makes the substitution which an expression is; None for other expressions."""
+        value = self._arguments.get(node.id) if isinstance(node, ast.Name) and node.id in self._names else None
+        if value is None and not (isinstance(node, ast.Name) and node.id in self._names):
+            value = self._python.resolved(node)
+        is_call = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in SUBSTITUTIONS
+        return value if is_call and isinstance(value, ast.Call) else None
 
     def is_text(self, node: ast.expr, *, is_list: bool = False) -> bool:
         """Return whether an expression is a literal text, or a list of them."""

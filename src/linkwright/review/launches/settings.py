@@ -18,7 +18,7 @@ from linkwright.review.launches.effects import explain_argument_removal, find_se
 from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
 from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
-from linkwright.review.launches.lost_values import explain_enabled_namespace, explain_lost_frames
+from linkwright.review.launches.lost_values import explain_enabled_namespace, explain_lost_frames, make_frames_reason
 from linkwright.review.launches.moved_parameters import follow_moved_parameters
 from linkwright.review.launches.outlines import (
     CONDITION,
@@ -344,8 +344,10 @@ def _group_settings(
         prefix = next((word for word in (PARAMETER, REMAPPING) if setting.name.startswith(word)), "")
         if is_include and setting.name not in (CONDITION, NAMESPACE_OF_INCLUDED):
             prefix = _PASSED_ARGUMENTS
-        is_single = not prefix or (setting.old is not None and setting.new is not None)
-        key = setting.name if is_single else (prefix, setting.new is None, setting.reason is None)
+        has_both = setting.old is not None and setting.new is not None
+        has_lost_frames = setting.reason is not None and setting.reason.template == make_frames_reason("").template
+        is_single = not prefix or (has_both and not has_lost_frames)
+        key = setting.name if is_single else (prefix, has_both, setting.new is None, setting.reason is None)
         groups.setdefault(key, []).append(setting)
     for group in groups.values():
         if len(group) < _MIN_GROUP_SIZE:
@@ -357,6 +359,9 @@ def _group_settings(
 def _format_group(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
     """Return several added or removed settings of an action as one change."""
     is_remapping, is_added = group[0].name.startswith(REMAPPING), group[0].new is not None
+    if group[0].old is not None and group[0].new is not None:
+        changes = [str(setting.text).removeprefix("parameter ") for setting in group]
+        return phrase("parameters {items}", items=joined_first(changes, MAX_NAMES))
     items = joined_first([_format_setting(setting) for setting in group], MAX_NAMES)
     if is_include:
         added, removed = (
@@ -387,7 +392,7 @@ def _format_setting(setting: _Setting) -> str:
 def _join_reasons(group: Sequence[_Setting]) -> Phrase | None:
     """Return one reason for a group of settings, with all names that it breaks."""
     reasons = [setting.reason for setting in group if setting.reason is not None]
-    if len(reasons) < 2 or any(reason.arguments.keys() != {"name"} for reason in reasons):
+    if len(set(map(str, reasons))) < 2 or any(reason.arguments.keys() != {"name"} for reason in reasons):
         return reasons[0] if reasons else None
     certain = [reason for reason in reasons if reason.template == name_reason("").template]
     names = list(dict.fromkeys(str(reason.arguments["name"]) for reason in certain or reasons))

@@ -12,6 +12,8 @@ from linkwright.packages.readers.python_values import PythonFile, argument_of, c
 from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
 from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, with_condition
+from linkwright.review.launches.python_tests import SUBSTITUTIONS
+from linkwright.review.list_changes import EMPTY
 
 _MAX_DEPTH = 30
 _MAX_CHARACTERS = 10_000
@@ -261,9 +263,8 @@ class ExpressionTexts:
             if function in _ARGUMENT_CONDITIONS and arguments:
                 return f"{_ARGUMENT_CONDITIONS[function]} {self.text(arguments[0])}"
             if function in _COMPARISON_CONDITIONS and len(arguments) > 1:
-                return (
-                    f"if $(var {self.text(arguments[0])}) {_COMPARISON_CONDITIONS[function]} {self.text(arguments[1])}"
-                )
+                right = self.text(arguments[1]) or EMPTY
+                return f"if $(var {self.text(arguments[0])}) {_COMPARISON_CONDITIONS[function]} {right}"
         return f"if {self.text(node)}"
 
     def format_parameter(self, node: ast.expr) -> str:
@@ -386,7 +387,7 @@ class ExpressionTexts:
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
             return f"{part(node.left)}/{part(node.right)}"
         if isinstance(node, ast.JoinedStr):
-            return "".join(part(item.value if isinstance(item, ast.FormattedValue) else item) for item in node.values)
+            return "".join(self._format_text_part(item, part) for item in node.values)
         if isinstance(node, ast.Subscript):
             if self._is_configurations(node.value):
                 return f"$(var {part(node.slice)})"
@@ -401,6 +402,15 @@ class ExpressionTexts:
         if isinstance(node, ast.Attribute):
             return f"{part(node.value)}.{node.attr}"
         return unparse_on_one_line(node)
+
+    def _format_text_part(self, item: ast.expr, part: _Formatter) -> str:
+        """Return a part of a formatted text. A substitution in it is an object, which has no value there."""
+        if not isinstance(item, ast.FormattedValue):
+            return part(item)
+        is_bound = isinstance(item.value, ast.Name) and item.value.id in self._bindings
+        value = item.value if is_bound else self._python.resolved(item.value)
+        is_object = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in SUBSTITUTIONS
+        return unparse_on_one_line(value) if is_object else part(item.value)
 
     def is_unknown_item(self, node: ast.Subscript) -> bool:
         """Return whether an expression is an item of the result of an unknown function that has a name.
@@ -454,7 +464,8 @@ class ExpressionTexts:
         if function == "perform_substitution":
             return part(first)
         if function in _COMPARISON_SUBSTITUTIONS and len(arguments) > 1:
-            return f"{part(first)} {_COMPARISON_SUBSTITUTIONS[function]} {part(arguments[1])}"
+            left, right = (part(argument) or EMPTY for argument in arguments[:2])
+            return f"{left} {_COMPARISON_SUBSTITUTIONS[function]} {right}"
         if function == "FindExecutable":
             return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):

@@ -15,6 +15,7 @@ from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.launches.missing_programs import RepositoryPackage, find_packages
 from linkwright.review.launches.script_options import find_refused_options
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
+from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.users.installed_readers import find_named_paths
 from linkwright.review.versions import Version, Versions
 
@@ -24,12 +25,14 @@ LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch.xml", "_launch.xml", ".l
 
 _COMMENT = re.compile(r"#[^\n]*")
 _WORD = re.compile(r"[\w.-]+")
+_FILE_USE = re.compile(r"\b(?:exists|isfile|is_file|isdir|is_dir|open|write_text|mkdir|makedirs|glob|listdir)\s*\(")
+"""A call with which a launch file checks whether a file exists, or makes one."""
 
 
 def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield launch files with paths to missing files or refused options, and the changes.
 
-    A missing file exists only in the old version, or a changed launch file in XML or YAML names it for the first time.
+    A missing file exists only in the old version, or a changed launch file names it for the first time.
     So is a file that the build file does not install, although it installs the launch file. Both are not breaking in an
     added launch file, which has no users yet.
     A script does not accept a refused option.
@@ -45,7 +48,9 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
         if not is_user and path not in changed:
             continue
         source = SourceText(str(versions.new.file(path)), text)
-        known = _list_known_paths(versions.old, changed.get(path, path), renamed) if path in changed else None
+        known = None
+        if path in changed and not _may_make_files(text, path):
+            known = _list_known_paths(versions.old, changed[path], renamed)
         reported: set[tuple[str, str]] = set()
         for package, subpath, span in find_share_paths(source, path):
             if (package, subpath) in reported:
@@ -53,28 +58,29 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
             reported.add((package, subpath))
             if is_user and _is_lost(versions, path, package, subpath, lost):
                 yield path, _make_change(path, package, subpath, span, is_lost=True)
-            elif known is not None and (package, subpath) not in known:
+            elif known is not None and (package, subpath) not in known and "*" not in subpath:
                 change = _explain_missing(versions.new, path, package, subpath, span)
                 if change is not None:
                     is_added = changed[path] is None  # the file has no users yet
                     yield path, replace(change, effect=Effect.CHANGED, reason=None) if is_added else change
 
 
-def _list_known_paths(version: Version, path: str | None, renamed: PackageNames) -> set[tuple[str, str]] | None:
-    """Return the paths that the old version of a launch file names; None for a file in Python.
-
-    They have the new names of renamed packages.
-    The check of packages (LW842) finds the missing files that Python files name.
-    """
-    if (path or "").endswith(".py"):
-        return None
+def _list_known_paths(version: Version, path: str | None, renamed: PackageNames) -> set[tuple[str, str]]:
+    """Return the paths that the old version of a launch file names, with the new names of renamed packages."""
     source = SourceText(str(version.file(path or "")), version.text(path) if path else "")
     paths = {(package, subpath) for package, subpath, _ in find_share_paths(source, path or "")}
-    return paths | {
-        (renamed.translate_package(package), text)
-        for package, subpath in paths
-        for text in (subpath, renamed.rename_derived(subpath))
-    }
+    for package, subpath in tuple(paths):
+        new_package = renamed.translate_package(package)
+        paths.add((new_package, subpath))
+        share = version.share_of(package, version.file(path or "").parent)
+        if share is None or not (share / subpath).exists():  # a file that was there must be renamed, too
+            paths.add((new_package, renamed.rename_derived(subpath)))
+    return paths
+
+
+def _may_make_files(text: str, path: str) -> bool:
+    """Return whether a launch file in Python checks which files exist, or makes files."""
+    return path.endswith(PYTHON_SUFFIX) and _FILE_USE.search(text) is not None
 
 
 def find_share_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, Span]]:
@@ -82,7 +88,7 @@ def find_share_paths(source: SourceText, path: str) -> Iterator[tuple[str, str, 
 
     Each is given as the package, the path in it, and the location in the launch file.
     """
-    if path.endswith(".py"):
+    if path.endswith(PYTHON_SUFFIX):
         for item in read_launch_file(source, path).paths:
             yield item.package, item.path, item.span
         return
@@ -125,7 +131,9 @@ def _is_missing(version: Version, package: str, subpath: str) -> bool:
     if owner is None or share is None or (share / subpath).exists() or ".." in PurePosixPath(subpath).parts:
         return False
     path = PurePosixPath(owner.folder) / subpath
-    is_unknown = version.commit is not None and bool(version.commit.removed_links or version.commit.missing_files)
+    commit = version.commit
+    unknown = set() if commit is None else {*commit.removed_links, *commit.missing_files}
+    is_unknown = any(part.as_posix() in unknown for part in (path, *path.parents))
     return (
         not owner.may_generate
         and owner.facts is not None
