@@ -7,8 +7,22 @@ from pathlib import Path
 
 from tests.places import REPOSITORY
 
-_SETTINGS = REPOSITORY / "pyproject.toml"
-"""Processes in other folders would not find the settings, and would also measure the learner's programs."""
+_SETTINGS = REPOSITORY / "tests" / "measured_processes.toml"
+_MEASURED_FILES = str(REPOSITORY / "src" / "linkwright" / "*")
+"""Only these files, so that the learner's programs are not measured."""
+
+
+_RUN_MEASURED = """\
+import os, sys
+from coverage import Coverage
+from coverage.cmdline import main
+os.register_at_fork(before=lambda: Coverage.current() and Coverage.current().save())
+sys.exit(main())
+"""
+"""The program ``coverage``, which saves what it has measured before each fork.
+
+Otherwise each forked process saves all the lines that its server has run, half a megabyte, at its own end.
+"""
 
 
 def _data_file() -> Path | None:
@@ -26,7 +40,8 @@ def coverage_options() -> list[str]:
     data_file = _data_file()
     if data_file is None:
         return []
-    return ["-m", "coverage", "run", "--parallel-mode", f"--data-file={data_file}", f"--rcfile={_SETTINGS}"]
+    settings = [f"--data-file={data_file}", f"--rcfile={_SETTINGS}", f"--include={_MEASURED_FILES}"]
+    return ["-c", _RUN_MEASURED, "run", "--parallel-mode", *settings]
 
 
 def measured_program(program: str, part: str) -> str:
@@ -37,6 +52,8 @@ def measured_program(program: str, part: str) -> str:
     data_file = _data_file()
     if data_file is None:
         return program
-    options = f"data_file={str(data_file)!r}, data_suffix=True, config_file={str(_SETTINGS)!r}"
+    options = (
+        f"data_file={str(data_file)!r}, data_suffix=True, config_file={str(_SETTINGS)!r}, include=[{_MEASURED_FILES!r}]"
+    )
     measured = f"import coverage; c = coverage.Coverage({options}); c.start(); {part}; c.stop(); c.save()"
     return program.replace(part, measured)

@@ -20,6 +20,7 @@ import yaml
 from tests.places import REPOSITORY
 
 TEMPLATES = REPOSITORY / "packaging" / "ci"
+PROGRAM = Path(__file__).with_name("program.py")
 BASH = ("bash", "--noprofile", "--norc", "-eo", "pipefail")
 """The command with which a runner starts ``shell: bash``."""
 
@@ -72,7 +73,7 @@ class Runner:
         self.installed.touch()
         self.without_page = self.temporary / "without_page.txt"
         environment = f'mkdir -p "$4/bin"; ln -s {sys.executable} "$4/bin/real"'
-        linkwright = f'printf \'#!/bin/bash\\nexec {sys.executable} -I -m linkwright "$@"\\n\' > "$4/bin/linkwright"'
+        linkwright = f'printf \'#!/bin/bash\\nexec {sys.executable} -I {PROGRAM} "$@"\\n\' > "$4/bin/linkwright"'
         note = f'echo "${{LINKWRIGHT_WITHOUT_PAGE:-}}" > {self.without_page}\\n'
         pip = f'printf \'#!/bin/bash\\nprintf "%%s\\\\n" "$@" >> {self.installed}\\n{note}\' > "$4/bin/python"'
         script = (
