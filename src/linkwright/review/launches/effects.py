@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.breaking import name_reason, possible_name_reason
+from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.files.parameter_names import (
     find_switch_reason,
@@ -21,7 +21,13 @@ from linkwright.review.files.parameter_names import (
 )
 from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
 from linkwright.review.launches.conditions import evaluate_condition
-from linkwright.review.launches.matching import compute_name_similarity, find_loaded_class
+from linkwright.review.launches.matching import compute_name_similarity
+from linkwright.review.launches.name_effects import (
+    find_node_remapping_reason,
+    find_remapping_reason,
+    find_renaming_reason,
+    resolve_name,
+)
 from linkwright.review.launches.outlines import (
     CONDITION,
     NAMES_AS_REMAPPINGS,
@@ -36,10 +42,8 @@ from linkwright.review.launches.outlines import (
     without_condition,
 )
 from linkwright.review.launches.parameter_types import declares_type
-from linkwright.review.launches.sides import Side, find_old_side, is_new_name
 from linkwright.review.launches.simulated_hardware import find_hardware_reason
 from linkwright.review.launches.spawned_names import is_other_group
-from linkwright.review.launches.taken_names import is_taken_over
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names, format_title
 from linkwright.review.launches.topic_tools import find_forwarding_reason
 from linkwright.review.list_changes import list_items
@@ -59,7 +63,6 @@ _SPAWN_FILE_NAME = re.compile(r"spawn|create")
 _SPAWN_COMMAND = re.compile(r"(?:^|[\s,\[])(?:spawn|create)(?=[\s,\]]|$)")
 """A word in the arguments of a program with which it creates a robot."""
 _SHELL_SCRIPT = re.compile(r".*\.(sh|bash|zsh)")
-_NAME = re.compile(r"[~/\w]+")
 _NAME_SETTINGS = ("name", "exec_name", NAMESPACE, NAMESPACE_OF_INCLUDED, "remappings")
 _NAME_ARGUMENT = re.compile(
     r"(^|_)(namespace|ns|robot_name|tf_prefix|frame_prefix|prefix|frame|frame_id|topic|controller|controller_name)$"
@@ -76,8 +79,6 @@ _CALL_IN_NAME = re.compile(r"\w\(")
 """A call in a name, whose result is unknown."""
 _EXPRESSION = "$(eval "
 """The beginning of an expression, whose value is unknown."""
-_LOOP_VARIABLE = re.compile(r"\$\(eval [a-z_]\w*\)")
-"""The variable of a loop in a name, whose value is not empty."""
 _UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
 """A call, attribute or item of Python in a name, whose value is unknown."""
 _PUBLISHED_TOPIC = re.compile(
@@ -91,10 +92,6 @@ _GAZEBO_ARGUMENTS = ("gz_args", "ign_args")
 _RUN_OPTION = re.compile(r"(?:^|\s)-\w*r\w*(?=\s|$)")
 _FRAME_PREFIXES = (f"{PARAMETER}frame_prefix", f"{PARAMETER}tf_prefix")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
-_UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
-_ENABLED_CONDITION = re.compile(r" \((if (true|1)|unless (false|0))\)", re.IGNORECASE)
-_DISABLED_NAMESPACE = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
-"""A namespace that is pushed with a condition that does not hold."""
 _STANDARD_VARIABLES = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
 """The environment variables that every shell sets."""
 
@@ -131,7 +128,7 @@ def find_removal_reason(
     if evaluate_condition(_resolve_condition(entry, old)) is False:
         return None
     if entry.kind == "remapping":
-        return _find_remapping_reason(entry.name, entry.settings.get("to"), None, old, old)
+        return find_remapping_reason(entry.name, entry.settings.get("to"), None, old, old)
     if _is_spawner(entry):
         return None if _spawns_as_many(old, new) else phrase("the robot or model is no longer spawned")
     if entry.kind not in ("node", "include") or offers_nothing(entry):
@@ -208,7 +205,7 @@ def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: Launc
     if _find_resolved_served_names(entry, old) != _find_resolved_served_names(other, new):
         return False
     return all(
-        _resolve_name(entry.settings.get(setting), old) == _resolve_name(other.settings.get(setting), new)
+        resolve_name(entry.settings.get(setting), old) == resolve_name(other.settings.get(setting), new)
         for setting in ("name", NAMESPACE)
     )
 
@@ -261,9 +258,9 @@ def find_setting_reason(
     if entry.kind == "argument":
         return _find_argument_reason(entry, setting, old, new, old_outline, new_outline)
     if entry.kind == "remapping" and setting == "to":
-        return _find_remapping_reason(entry.name, old, new, old_outline, new_outline)
+        return find_remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
-        return _find_renaming_reason(old, new, old_outline, new_outline)
+        return find_renaming_reason(old, new, old_outline, new_outline)
     if entry.kind == "include" and setting in _GAZEBO_ARGUMENTS:
         return _find_pause_reason(old, new, old_outline, new_outline)
     if entry.kind == SERVER_PARAMETER and setting == "value":
@@ -280,13 +277,13 @@ def find_setting_reason(
         return None
     if setting.startswith(REMAPPING):
         source = without_condition(setting).removeprefix(REMAPPING)
-        return _find_node_remapping_reason(entry, source, old, new, old_outline, new_outline)
+        return find_node_remapping_reason(entry, source, old, new, old_outline, new_outline)
     if setting == NAMES_AS_REMAPPINGS:
         return phrase("the launch file fails") if new is not None and old is None else None
     if setting == "name" and None in (old, new) and _is_default_node_name(entry, old or new or ""):
         return None
     if setting in _NAME_SETTINGS:
-        return _find_renaming_reason(old, new, old_outline, new_outline)
+        return find_renaming_reason(old, new, old_outline, new_outline)
     forwarding = find_forwarding_reason(entry, setting, old, new, (old_outline, new_outline))
     if forwarding is not None:
         return forwarding
@@ -298,27 +295,6 @@ def find_setting_reason(
         is_unknown = any(_EXPRESSION in name for name in new_names)
         return _find_served_name_reason(entry, removed, new_outline) if removed and not is_unknown else None
     return _find_parameter_reason(entry, setting, old, new, old_outline, new_outline)
-
-
-def _find_node_remapping_reason(
-    entry: Entry,
-    source: str,
-    old: str | None,
-    new: str | None,
-    old_outline: LaunchOutline,
-    new_outline: LaunchOutline,
-) -> Phrase | None:
-    """Return the reason why a changed remapping of a node is breaking, or None if it is not."""
-    if is_new_name(entry.name, source, old_outline.root, new_outline.root):
-        return None
-    side = find_old_side(find_loaded_class(entry) or entry.name, source, old_outline.root, new_outline.root)
-    if side in (Side.USES, Side.LACKS) or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
-        return None
-    if old is not None and old_outline.resolve(old) in _find_remapping_targets(entry, new_outline):
-        return None  # the new file gives the name to a different topic of the node
-    if old is not None and is_taken_over(entry, old, old_outline, new_outline):
-        return None
-    return _find_remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
 
 
 def _find_pause_reason(
@@ -509,31 +485,6 @@ def _find_served_name_reason(entry: Entry, names: list[str], new: LaunchOutline)
     return phrase("the topics and services of {controllers} are missing", controllers=", ".join(names))
 
 
-def _find_renaming_reason(
-    old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
-) -> Phrase | None:
-    """Return the reason why a changed node name or namespace is breaking, or None."""
-    old_name, new_name = _resolve_name(old, old_outline), _resolve_name(new, new_outline)
-    if not old_name and _LOOP_VARIABLE.search(new_name):
-        return phrase("programs that use the names of the node, its topics or its services do not find them")
-    if (
-        _strip_known_prefix(old_name) == _strip_known_prefix(new_name)
-        or _UNKNOWN_NAME.search(new_name)
-        or _has_new_variable(old_name, new_name)
-    ):
-        return None
-    return phrase("programs that use the names of the node, its topics or its services do not find them")
-
-
-def _strip_known_prefix(name: str) -> str:
-    """Return the part of a name from its last unknown variable, or the whole name.
-
-    The value of the variable may begin with ``/``, which discards the prefix.
-    """
-    match = _UNKNOWN_NAMESPACE.search(name)
-    return name if match is None else match[1]
-
-
 def _is_default_node_name(entry: Entry, name: str) -> bool:
     """Return whether a name may be the default name of a node, judging by its program.
 
@@ -543,60 +494,3 @@ def _is_default_node_name(entry: Entry, name: str) -> bool:
         return True
     program = entry.name.rpartition("/")[2].rpartition("::")[2].removesuffix(".py")
     return compute_name_similarity(name, program) >= _MIN_SIMILARITY_OF_NAMES
-
-
-def _resolve_name(text: str | None, outline: LaunchOutline) -> str:
-    """Return a name with the defaults of the arguments; empty for None."""
-    resolved = outline.resolve(text or "").strip("/")
-    return _DISABLED_NAMESPACE.sub("", _ENABLED_CONDITION.sub("", resolved)).strip("/")
-
-
-def _find_remapping_reason(
-    source: str,
-    old: str | None,
-    new: str | None,
-    old_outline: LaunchOutline,
-    new_outline: LaunchOutline,
-    *,
-    is_known: bool = False,
-) -> Phrase | None:
-    """Return the reason why a changed remapping of a name is breaking.
-
-    The result is None if the resulting name is the same.
-
-    Args:
-        source: the name in the node.
-        old: the old name outside of it; None if it was the same.
-        new: the new name outside of it; None if it is the same.
-        old_outline: the outline of the old file.
-        new_outline: the outline of the new file.
-        is_known: whether the node certainly publishes or serves the name.
-    """
-    old_name = old_outline.resolve(source if old is None else old)
-    new_name = new_outline.resolve(source if new is None else new)
-    if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
-        return None
-    if _CALL_IN_NAME.search(new_name) or _has_new_variable(old_name, new_name):
-        return None  # the name may be the same
-    return name_reason(old_name) if is_known else possible_name_reason(old_name)
-
-
-def _has_new_variable(old: str, new: str) -> bool:
-    """Return whether a new name has an unknown variable that the old name lacks."""
-    return not set(_VARIABLE.findall(new)) <= set(_VARIABLE.findall(old))
-
-
-def _find_remapping_targets(entry: Entry, outline: LaunchOutline) -> set[str]:
-    """Return the names to which an action remaps others."""
-    settings = entry.settings.items()
-    return {outline.resolve(value) for name, value in settings if name.startswith(REMAPPING)}
-
-
-def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:
-    """Return whether arguments of nodes remap the names.
-
-    An example is ``--controller-ros-args`` of a spawner.
-    """
-    words = set(_NAME.findall(names))
-    arguments = " ".join(entry.settings.get("arguments", "") for entry in outline.entries)
-    return bool(words) and words <= set(_NAME.findall(arguments))

@@ -10,11 +10,9 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.review.breaking import names_reason
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.renamed_packages import find_renamed_packages
-from linkwright.review.sources.callbacks import pair_by_callback
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
 from linkwright.review.sources.conditions import ConditionChange, compare_conditions
-from linkwright.review.sources.cpp_members import has_class
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import (
     compare_computed,
@@ -32,7 +30,7 @@ from linkwright.review.sources.function_changes import (
     merge_function_changes,
 )
 from linkwright.review.sources.given_frames import find_given_frame, format_given
-from linkwright.review.sources.interface_patterns import INTERFACE_KINDS, find_claim_reason, select_interfaces
+from linkwright.review.sources.interface_patterns import find_claim_reason
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
 from linkwright.review.sources.name_patterns import can_make, ends_with_name, extract_pattern, lists_names
@@ -52,33 +50,26 @@ from linkwright.review.sources.other_nodes import (
     is_new_in_plugin,
 )
 from linkwright.review.sources.package_imports import (
-    drop_defined_imports,
-    is_installed_module,
     is_installed_package,
 )
+from linkwright.review.sources.paired_names import PairedNames
 from linkwright.review.sources.pairing import (
     compute_similarity,
     drop_replaceable,
     has_other_class,
     has_same_types,
     is_same_frame,
-    pair_similar,
     take_pairs,
 )
 from linkwright.review.sources.parameter_defaults import SUM, split_sum
 from linkwright.review.sources.parameter_scopes import find_scoped
-from linkwright.review.sources.parameter_uses import ParameterUses
-from linkwright.review.sources.python_attributes import select_attributes
-from linkwright.review.sources.python_bases import select_methods
 from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
-from linkwright.review.sources.renamed_classes import find_renamed_classes
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.type_variants import TypeVariants
 from linkwright.review.sources.unchanged_sources import make_user_reason
 from linkwright.review.sources.unmet_conditions import find_unmet_parameter
 from linkwright.review.sources.unreachable_modules import is_unreachable
-from linkwright.review.sources.whole_sources import WholeSourcePair
 from linkwright.review.versions import Versions
 
 _MAIN = "main"
@@ -109,7 +100,7 @@ def source_subjects(versions: Versions, changed_files: Sequence[ChangedFile]) ->
             yield Subject(SubjectKind.SOURCE, file.path, file.old_path, file.new_path, changes, problems=problems)
 
 
-class _SourcePair(WholeSourcePair):
+class _SourcePair(PairedNames):
     """Both versions of a changed source, whose names are compared."""
 
     def find_changes(self) -> Iterator[Change]:
@@ -183,7 +174,7 @@ class _SourcePair(WholeSourcePair):
         ]
         removed = [item for item in removed if not new_names.has_default(item)]
         added = [item for item in added if not old_names.has_default(item)]
-        removed, added = self._select_reported(kind, removed, added, old_names, new_names)
+        removed, added = self.select_reported(kind, removed, added, old_names, new_names)
         # a different source of the package still has these names, or already had them
         remaining_old = [
             item for item in only_old.values() if item not in removed and self.new.has_in_unchanged(item, path)
@@ -191,7 +182,7 @@ class _SourcePair(WholeSourcePair):
         existing_new = [
             item for item in only_new.values() if item not in added and self.old.has_in_unchanged(item, old_path)
         ]
-        pairs = self._pair_names(kind, [*removed, *remaining_old], [*added, *existing_new])
+        pairs = self.pair_names(kind, [*removed, *remaining_old], [*added, *existing_new])
         for old_item, new_item in pairs:
             is_harmless = old_item in remaining_old or is_same_frame(old_item, new_item)
             reason = None if is_harmless else self._find_rename_reason(old_item, new_item, old_names)
@@ -223,98 +214,6 @@ class _SourcePair(WholeSourcePair):
             has_both = self.file.old_path is not None and self.file.new_path is not None
             return has_both and is_installed_package(self.old.version, self.old.find_package(old_path), old_path)
         return True
-
-    def _select_reported(
-        self,
-        kind: NameKind,
-        removed: list[SourceName],
-        added: list[SourceName],
-        old_names: SourceNames,
-        new_names: SourceNames,
-    ) -> tuple[list[SourceName], list[SourceName]]:
-        """Return the removed and added names without those of classes that only one version has."""
-        if kind is NameKind.IMPORT:
-            return (
-                drop_defined_imports(removed, old_names, new_names, self.new.version.file(self.file.new_path or "")),
-                drop_defined_imports(added, new_names, old_names, self.old.version.file(self.file.old_path or "")),
-            )
-        if kind in INTERFACE_KINDS:
-            return select_interfaces(removed, new_names), select_interfaces(added, old_names)
-        is_python = self.file.path.endswith(PYTHON_SUFFIX)
-        if kind not in (NameKind.FUNCTION, NameKind.MEMBER):
-            return removed, added
-        if is_python and kind is NameKind.MEMBER:
-            old_path, path = self.file.old_path or self.file.path, self.file.path
-            packages = self.old.find_package(old_path) or "", self.new.find_package(path) or ""
-            return (
-                select_attributes(removed, old_names, new_names, self.old.version, packages[0]),
-                select_attributes(added, new_names, old_names, self.new.version, packages[1]),
-            )
-        if is_python:
-            path = self.file.old_path or self.file.path
-            is_installed = is_installed_module(self.old.version, self.old.find_package(path), path)
-            inherited = (old_names.inherited_names, new_names.inherited_names) if is_installed else ({}, {})
-            return select_methods(removed, *inherited), select_methods(added, *reversed(inherited))
-        old_classes, new_classes = (
-            {item.name for item in names.of_kind(NameKind.CLASS)} for names in (old_names, new_names)
-        )
-        common = old_classes & new_classes
-        return [item for item in removed if has_class(item, common)], [
-            item for item in added if has_class(item, common)
-        ]
-
-    def _pair_names(
-        self, kind: NameKind, old_items: Sequence[SourceName], new_items: Sequence[SourceName]
-    ) -> list[tuple[SourceName, SourceName]]:
-        """Return the pairs of an old and a new name of the same thing."""
-        if kind is NameKind.PARAMETER and old_items and new_items:
-            old_items = [item for item in old_items if not self.is_unread_parameter(item.name)]
-            return pair_similar(old_items, new_items, self._read_uses(old_items, new_items).differ)
-        if kind is NameKind.FUNCTION:
-            pairs = list(self._pair_by_code(old_items, new_items))
-        elif kind is NameKind.CLASS and not self.file.path.endswith(PYTHON_SUFFIX):
-            pairs = self._pair_renamed_classes(old_items, new_items)
-        else:
-            old_names, new_names = self.old.get_names(self.file.old_path), self.new.get_names(self.file.new_path)
-            pairs = pair_by_callback(old_items, new_items, old_names, new_names)
-        paired = [item for pair in pairs for item in pair]
-        unpaired_old, unpaired_new = (
-            [item for item in items if item not in paired] for items in (old_items, new_items)
-        )
-        return [*pairs, *pair_similar(unpaired_old, unpaired_new)]
-
-    def _read_uses(self, old_items: Sequence[SourceName], new_items: Sequence[SourceName]) -> ParameterUses:
-        return ParameterUses(*self._read_texts(), [item.name for item in old_items], [item.name for item in new_items])
-
-    def _read_texts(self) -> tuple[str, str]:
-        """Return the texts of both versions, empty for one that lacks the source."""
-        old_path, new_path = self.file.old_path, self.file.new_path
-        old_text = "" if old_path is None else self.old.version.text(old_path)
-        return old_text, "" if new_path is None else self.new.version.text(new_path)
-
-    def _pair_by_code(
-        self, removed: Sequence[SourceName], added: Sequence[SourceName]
-    ) -> Iterator[tuple[SourceName, SourceName]]:
-        """Yield the removed and added functions with equal arguments and code.
-
-        Functions with several matches are left out.
-        """
-        old, new = self.old.codes.get(self.file.old_path or ""), self.new.codes.get(self.file.new_path or "")
-        if old is None or new is None:
-            return
-        for item in removed:
-            body = old.get_body(item.name)
-            matching = [other for other in added if other.details == item.details and new.get_body(other.name) == body]
-            if body and len(matching) == 1 and sum(old.get_body(other.name) == body for other in removed) == 1:
-                yield item, matching[0]
-
-    def _pair_renamed_classes(
-        self, removed: Sequence[SourceName], added: Sequence[SourceName]
-    ) -> list[tuple[SourceName, SourceName]]:
-        """Return the removed and added classes that have the same methods or statements."""
-        old, new = self.old.codes.get(self.file.old_path or ""), self.new.codes.get(self.file.new_path or "")
-        renamed = {} if old is None or new is None or not (removed and added) else find_renamed_classes(old, new)
-        return [(item, other) for item in removed for other in added if renamed.get(item.name) == other.name]
 
     def _report_details(
         self, kind: NameKind, changed: Sequence[NameChange], old_names: SourceNames
@@ -379,7 +278,7 @@ class _SourcePair(WholeSourcePair):
         if added:
             text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
             reason = find_required_reason(added) if self.file.old_path is not None else None
-            reason = reason or find_claim_reason(added, self._read_texts()[0], self.new.get_names(self.file.new_path))
+            reason = reason or find_claim_reason(added, self.read_texts()[0], self.new.get_names(self.file.new_path))
             yield self.make_change(text, added[0].span, self.new, reason)
         new_names = self.new.get_names(self.file.new_path)
         non_public = new_names.non_public | new_names.hidden_classes
@@ -427,7 +326,7 @@ class _SourcePair(WholeSourcePair):
         if old_item.kind is NameKind.MESSAGE_FRAME:
             return find_message_frame_reason(old_item, names)
         if old_item.kind is NameKind.CLAIMED_INTERFACE:
-            return find_claim_reason([new_item], self._read_texts()[0], self.new.get_names(self.file.new_path))
+            return find_claim_reason([new_item], self.read_texts()[0], self.new.get_names(self.file.new_path))
         reason = self._find_removal_reason([old_item], names)
         is_scoped = old_item.name.startswith("/") != new_item.name.startswith("/")
         if reason is not None and is_scoped and old_item.name.strip("/") == new_item.name.strip("/"):
@@ -516,7 +415,7 @@ class _SourcePair(WholeSourcePair):
         self, removed: list[SourceName], old_names: SourceNames, new_names: SourceNames
     ) -> Iterator[Change]:
         """Yield a line about a frame that a parameter gives now. It is removed from the list."""
-        given = find_given_frame(removed, old_names, new_names, self._read_texts())
+        given = find_given_frame(removed, old_names, new_names, self.read_texts())
         if given is None:
             return
         item, default = removed.pop(), given.default
@@ -580,7 +479,7 @@ class _SourcePair(WholeSourcePair):
             return
         reason = phrase("the name is a pattern; programs that use one of the old names do not find it")
         is_lost = self._find_removal_reason([old], self.old.get_names(self.file.old_path)) is not None
-        is_listed = new.kind is NameKind.PARAMETER and lists_names(*patterns, self._read_texts()[1])
+        is_listed = new.kind is NameKind.PARAMETER and lists_names(*patterns, self.read_texts()[1])
         is_lost = is_lost and not is_listed
         yield self.make_change(format_rename(old, new), new.span, self.new, reason if is_lost else None)
 

@@ -1,0 +1,128 @@
+"""Decide whether another name of a node, or another remapping of its names, is breaking."""
+
+from __future__ import annotations
+
+import re
+
+from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.breaking import name_reason, possible_name_reason
+from linkwright.review.launches.matching import find_loaded_class
+from linkwright.review.launches.outlines import REMAPPING, Entry, LaunchOutline
+from linkwright.review.launches.sides import Side, find_old_side, is_new_name
+from linkwright.review.launches.taken_names import is_taken_over
+
+_NAME = re.compile(r"[~/\w]+")
+_CALL_IN_NAME = re.compile(r"\w\(")
+"""A call in a name, whose result is unknown."""
+_LOOP_VARIABLE = re.compile(r"\$\(eval [a-z_]\w*\)")
+"""The variable of a loop in a name, whose value is not empty."""
+_UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
+"""A call, attribute or item of Python in a name, whose value is unknown."""
+_VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
+_UNKNOWN_NAMESPACE = re.compile(r"(?:^|/)(\$\((?:var|arg) [^()]*\)[^$]*)$")
+_ENABLED_CONDITION = re.compile(r" \((if (true|1)|unless (false|0))\)", re.IGNORECASE)
+_DISABLED_NAMESPACE = re.compile(r"[^\s/]* \((if (false|0)|unless (true|1))\)", re.IGNORECASE)
+"""A namespace that is pushed with a condition that does not hold."""
+
+
+def find_node_remapping_reason(
+    entry: Entry,
+    source: str,
+    old: str | None,
+    new: str | None,
+    old_outline: LaunchOutline,
+    new_outline: LaunchOutline,
+) -> Phrase | None:
+    """Return the reason why a changed remapping of a node is breaking, or None if it is not."""
+    if is_new_name(entry.name, source, old_outline.root, new_outline.root):
+        return None
+    side = find_old_side(find_loaded_class(entry) or entry.name, source, old_outline.root, new_outline.root)
+    if side in (Side.USES, Side.LACKS) or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
+        return None
+    if old is not None and old_outline.resolve(old) in _find_remapping_targets(entry, new_outline):
+        return None  # the new file gives the name to a different topic of the node
+    if old is not None and is_taken_over(entry, old, old_outline, new_outline):
+        return None
+    return find_remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
+
+
+def find_remapping_reason(
+    source: str,
+    old: str | None,
+    new: str | None,
+    old_outline: LaunchOutline,
+    new_outline: LaunchOutline,
+    *,
+    is_known: bool = False,
+) -> Phrase | None:
+    """Return the reason why a changed remapping of a name is breaking.
+
+    The result is None if the resulting name is the same.
+
+    Args:
+        source: the name in the node.
+        old: the old name outside of it; None if it was the same.
+        new: the new name outside of it; None if it is the same.
+        old_outline: the outline of the old file.
+        new_outline: the outline of the new file.
+        is_known: whether the node certainly publishes or serves the name.
+    """
+    old_name = old_outline.resolve(source if old is None else old)
+    new_name = new_outline.resolve(source if new is None else new)
+    if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
+        return None
+    if _CALL_IN_NAME.search(new_name) or _has_new_variable(old_name, new_name):
+        return None  # the name may be the same
+    return name_reason(old_name) if is_known else possible_name_reason(old_name)
+
+
+def find_renaming_reason(
+    old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
+) -> Phrase | None:
+    """Return the reason why a changed node name or namespace is breaking, or None."""
+    old_name, new_name = resolve_name(old, old_outline), resolve_name(new, new_outline)
+    if not old_name and _LOOP_VARIABLE.search(new_name):
+        return phrase("programs that use the names of the node, its topics or its services do not find them")
+    if (
+        _strip_known_prefix(old_name) == _strip_known_prefix(new_name)
+        or _UNKNOWN_NAME.search(new_name)
+        or _has_new_variable(old_name, new_name)
+    ):
+        return None
+    return phrase("programs that use the names of the node, its topics or its services do not find them")
+
+
+def _strip_known_prefix(name: str) -> str:
+    """Return the part of a name from its last unknown variable, or the whole name.
+
+    The value of the variable may begin with ``/``, which discards the prefix.
+    """
+    match = _UNKNOWN_NAMESPACE.search(name)
+    return name if match is None else match[1]
+
+
+def resolve_name(text: str | None, outline: LaunchOutline) -> str:
+    """Return a name with the defaults of the arguments; empty for None."""
+    resolved = outline.resolve(text or "").strip("/")
+    return _DISABLED_NAMESPACE.sub("", _ENABLED_CONDITION.sub("", resolved)).strip("/")
+
+
+def _has_new_variable(old: str, new: str) -> bool:
+    """Return whether a new name has an unknown variable that the old name lacks."""
+    return not set(_VARIABLE.findall(new)) <= set(_VARIABLE.findall(old))
+
+
+def _find_remapping_targets(entry: Entry, outline: LaunchOutline) -> set[str]:
+    """Return the names to which an action remaps others."""
+    settings = entry.settings.items()
+    return {outline.resolve(value) for name, value in settings if name.startswith(REMAPPING)}
+
+
+def _are_remapped_elsewhere(names: str, outline: LaunchOutline) -> bool:
+    """Return whether arguments of nodes remap the names.
+
+    An example is ``--controller-ros-args`` of a spawner.
+    """
+    words = set(_NAME.findall(names))
+    arguments = " ".join(entry.settings.get("arguments", "") for entry in outline.entries)
+    return bool(words) and words <= set(_NAME.findall(arguments))
