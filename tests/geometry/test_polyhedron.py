@@ -116,3 +116,26 @@ def test_hull_of_sphere_points_uses_all_points():
 )
 def test_coplanar_points_have_no_hull(points):
     assert convex_hull(points) is None
+
+
+def make_turned_rings(count: int, rows: int, seed: int):
+    """Return rings of points with a common axis, rounded to 32 bits as in a mesh file."""
+    angles = np.arange(count) * 2.0 * np.pi / count
+    rings = [
+        np.stack([np.cos(angles), np.sin(angles), np.full(count, height)], axis=1)
+        for height in np.linspace(0.0, 1.0, rows)
+    ]
+    rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    return (0.03 * np.concatenate(rings) @ rotation.T + 0.1).astype(np.float32).astype(np.float64)
+
+
+@pytest.mark.parametrize(("count", "rows", "seed"), [(128, 20, 3), (128, 20, 4), (360, 20, 1)])
+def test_hull_of_nearly_coplanar_points_is_closed(count, rows, seed):
+    """Rounding makes the edge around the faces that a new point sees touch itself."""
+    points = make_turned_rings(count, rows, seed)
+    faces = convex_hull(points)
+    assert faces is not None
+    assert is_closed(faces)
+    assert len(faces) == 2 * len(np.unique(faces)) - 4
+    area = 0.5 * count * np.sin(2.0 * np.pi / count)
+    assert polyhedron_properties(points, faces).mass == pytest.approx(0.03**3 * area, rel=1e-5)

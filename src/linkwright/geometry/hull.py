@@ -2,7 +2,8 @@
 
 Source: Barber, Dobkin, Huhdanpaa: *The Quickhull Algorithm for Convex Hulls*, ACM TOMS 22, 1996. The algorithm starts
 from a tetrahedron. While a face has points outside it, the farthest of them replaces all faces that are visible from
-it.
+it. Rounding can make the edge around these faces touch itself. The hull is then computed again from points that are
+moved a little, as the option QJ of Qhull does.
 """
 
 from __future__ import annotations
@@ -18,6 +19,13 @@ from linkwright.geometry.polyhedron import Faces
 _TOLERANCE = 1e-9
 """The distance within which points count as on a face, as a fraction of the extent of all points."""
 
+_MAX_SHIFT = 1e-4
+"""The maximum distance by which points are moved, as a fraction of their extent."""
+_SHIFT_GROWTH = 10.0
+_MULTIPLIERS = np.array([7919, 104729, 1299709])
+_MODULUS = 15485863
+"""Prime numbers whose products are as good as random for moving points, and the same on every machine."""
+
 Indices = NDArray[np.int64]
 Triangle = tuple[int, int, int]
 
@@ -29,7 +37,8 @@ def convex_hull(points: Array) -> Faces | None:
         points: shape (points, 3).
 
     Returns:
-        Indices into the points, shape (faces, 3); None if the points are coplanar and there is no volume.
+        Indices into the points, shape (faces, 3); None if the points are coplanar, or so nearly that rounding hides the
+        volume.
     """
     if len(points) < 4:
         return None
@@ -37,7 +46,21 @@ def convex_hull(points: Array) -> Faces | None:
     if not (size > 0 and np.isfinite(size)):
         return None
     start = _find_tetrahedron(points, _TOLERANCE * size)
-    return None if start is None else _Hull(points, start, _TOLERANCE * size).grow()
+    if start is None:
+        return None
+    faces, shift = None, 0.0
+    while faces is None and shift <= _MAX_SHIFT:
+        faces = _Hull(_move(points, shift * size), start, _TOLERANCE * size).grow()
+        shift = max(shift, _TOLERANCE) * _SHIFT_GROWTH
+    return faces
+
+
+def _move(points: Array, distance: float) -> Array:
+    """Return points that are moved by up to a distance along each axis."""
+    if not distance:
+        return points
+    numbers = np.arange(1, len(points) + 1)[:, np.newaxis] * _MULTIPLIERS % _MODULUS
+    return points + distance * (2.0 * numbers / _MODULUS - 1.0)
 
 
 class _Hull:
@@ -60,18 +83,23 @@ class _Hull:
         a, b, c, d = start
         self._add_faces([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
 
-    def grow(self) -> Faces:
-        """Add points until none is outside the hull, and return the faces."""
+    def grow(self) -> Faces | None:
+        """Add points until none is outside the hull, and return the faces.
+
+        The result is None if rounding made the edge around the faces that a point sees touch itself.
+        """
         while self.outside_points:
             face, candidates = self.outside_points.popitem()
             normal, offset = self.planes[face]
             apex = int(candidates[np.argmax(self.points[candidates] @ normal - offset)])
             self.outside_points[face] = candidates
-            self._add_point(face, apex)
+            visible, horizon = self._find_visible(face, self.points[apex])
+            if not _is_ring(horizon):
+                return None
+            self._add_point(apex, visible, horizon)
         return np.array(list(self.faces.values()), dtype=np.int64)
 
-    def _add_point(self, face: int, apex: int) -> None:
-        visible, horizon = self._find_visible(face, self.points[apex])
+    def _add_point(self, apex: int, visible: set[int], horizon: list[tuple[int, int]]) -> None:
         freed_points = [self._remove_face(visible_face) for visible_face in visible]
         remaining = np.concatenate(freed_points)
         self._add_faces([(a, b, apex) for a, b in horizon], remaining[remaining != apex])
@@ -101,8 +129,7 @@ class _Hull:
 
     def _remove_face(self, face: int) -> Indices:
         for edge in _get_edges(self.faces.pop(face)):
-            if self.edges.get(edge) == face:
-                del self.edges[edge]
+            del self.edges[edge]
         del self.planes[face]
         return self.outside_points.pop(face, _NO_INDICES)
 
@@ -138,6 +165,17 @@ _NO_INDICES: Indices = np.empty(0, dtype=np.int64)
 def _get_edges(triangle: Triangle) -> Iterable[tuple[int, int]]:
     a, b, c = triangle
     return (a, b), (b, c), (c, a)
+
+
+def _is_ring(edges: list[tuple[int, int]]) -> bool:
+    """Return whether directed edges form one ring that visits each of its points once."""
+    following = dict(edges)
+    point, count = edges[0][0], 0
+    while count < len(edges) and point in following:
+        point, count = following[point], count + 1
+        if point == edges[0][0]:
+            break
+    return count == len(following) == len(edges)
 
 
 def _find_tetrahedron(points: Array, tolerance: float) -> tuple[int, int, int, int] | None:
