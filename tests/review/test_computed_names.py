@@ -125,7 +125,7 @@ def test_instance_is_no_name_of_a_node(repository, compare, call, expected):
     ],
 )
 def test_a_parameter_whose_name_an_expression_cannot_give_is_lost(repository, compare, expression, is_breaking):
-    text = "void Arm::f() {{ declare_parameter<double>({}, 1.0); }}\n"
+    text = "void Arm::f() {{ gain_ = declare_parameter<double>({}, 1.0); }}\n"
     repository.commit({**MANIFEST, "arm/a.cpp": text.format('"bridge.topic"')})
     repository.write({"arm/a.cpp": text.format(expression)})
     result = compare(repository)
@@ -134,7 +134,7 @@ def test_a_parameter_whose_name_an_expression_cannot_give_is_lost(repository, co
 
 
 def test_parameters_that_get_a_namespace_are_lost(repository, compare):
-    declare = 'declare_parameter<double>({}"{}", {});'
+    declare = 'limit += declare_parameter<double>({}"{}", {});'
     values = (("min_x", 1.0), ("max_x", 2.0))
     old = " ".join(declare.format("", name, value) for name, value in values)
     new = " ".join(declare.format("name + ", f".{name}", value) for name, value in values)

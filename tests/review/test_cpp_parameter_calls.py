@@ -37,7 +37,7 @@ LIST = """  std::vector<std::string> names = {"mass", "load"};
         (CHECK.replace("if (", "if (is_heavy && "), "parameters added: 'mass'", ""),
         (CHECK.replace("if (!", "if ("), "parameters added: 'mass'", ""),
         ("  if (is_heavy_) {\n" + CHECK + "  }\n", "parameters added: 'mass'", ""),
-        (TABLE, "parameters added: 'mass', 'load'", FAILS.format("mass, load")),
+        (TABLE, "parameters added: 'mass', 'load'", FAILS.format("mass', 'load")),
         (LIST, "parameters added: 'mass' (1.0), 'load' (1.0)", ""),
         ('  node->declare_parameter<double>("mass");\n', "parameters added: 'mass'", FAILS.format("mass")),
         ('  node->declare_parameter<double>("mass", 1.0);\n', "parameters added: 'mass' (1.0)", ""),

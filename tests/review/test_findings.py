@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.diagnostics import Diagnostic, Span, phrase
 from linkwright.review import open_versions
-from linkwright.review.folders import finding_with_package_uris
+from linkwright.review.folders import finding_without_folders
 from linkwright.review.unfixed_findings import drop_unfixed_findings
 from tests.repositories import ARM, MACRO, PACKAGE_XML
 from tests.review.conftest import breaking
@@ -180,10 +180,18 @@ def test_checks_that_stop_at_different_errors_find_nothing_new_in_unchanged_file
     assert finding_codes(compare(package, "HEAD~1..HEAD").new_findings) == ["PKG101", "LW848"]
 
 
-def test_share_folders_of_the_computer_become_uris():
-    message = phrase("there is no '{path}'", path="/home/ann/.cache/shares/1f/arm/meshes/arm.stl")
-    finding = finding_with_package_uris(Diagnostic("SDF162", message), {"arm": Path("/home/ann/.cache/shares/1f/arm")})
-    assert str(finding.message) == "there is no 'package://arm/meshes/arm.stl'"
+@pytest.mark.parametrize(
+    ("path", "expected"),
+    [
+        ("/home/ann/.cache/shares/1f/arm/meshes/arm.stl", "package://arm/meshes/arm.stl"),
+        ("/tmp/version/files/arm/meshes/arm.stl", "arm/meshes/arm.stl"),
+    ],
+)
+def test_folders_of_the_computer_are_left_out(path, expected):
+    finding = Diagnostic("SDF162", phrase("there is no '{path}'", path=path))
+    shares = {"arm": Path("/home/ann/.cache/shares/1f/arm")}
+    finding = finding_without_folders(finding, Path("/tmp/version/files"), shares)
+    assert str(finding.message) == f"there is no '{expected}'"
 
 
 def find_fixed(repository, code: str, path: str, message: str, added: Sequence[Diagnostic] = ()) -> list[str]:
@@ -251,3 +259,16 @@ def test_setup_with_a_syntax_error_hides_neither_new_nor_fixed_findings(reposito
     repository.commit({"arm/setup.py": SETUP})
     repository.commit({"arm/setup.py": SETUP.replace("driver:run", "driver:start")})
     assert finding_codes(compare(repository, "HEAD~1..HEAD").new_findings) == ["LW827"]
+
+
+def test_finding_about_a_mesh_by_its_path_is_neither_new_nor_fixed(package, compare, monkeypatch):
+    """The working tree and the other version are different folders."""
+    mesh = '<visual><geometry><mesh filename="file://$(find arm_description)/meshes/arm.stl"/></geometry></visual>'
+    text = ARM.replace('<link name="base_link"/>', f'<link name="base_link">{mesh}</link>')
+    pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:{}\nsize 12345\n"
+    package.commit({PATH: text, "arm_description/meshes/arm.stl": pointer.format("7e" * 32)})
+    monkeypatch.chdir(package.root)
+    package.write({PATH: text.replace("0.2", "0.3")})
+    result = compare(package)
+    assert [found.path for found in result.subjects] == [PATH]
+    assert (finding_codes(result.new_findings), finding_codes(result.fixed_findings)) == ([], [])

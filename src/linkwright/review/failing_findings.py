@@ -41,7 +41,7 @@ def mark_failures(
     """
     broken_before = {(finding.code, finding.span.file) for finding in fixed if finding.span is not None}
     refused_before = {
-        versions.old.package_of(finding.span.file)
+        versions.old.package_of(versions.old.relative(finding.span.file) or "")
         for finding in old_findings
         if finding.span is not None and _is_refused(finding)
     }

@@ -13,7 +13,7 @@ from linkwright.lint.finding import Finding
 from linkwright.lint.known_findings import count_keys, find_new_findings
 from linkwright.lint.targets import DESCRIPTION_SUFFIXES, Targets
 from linkwright.packages.manifest import MANIFEST
-from linkwright.review.folders import finding_with_package_uris, without_folder
+from linkwright.review.folders import finding_without_folders, without_folder
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version, Versions
 
@@ -53,7 +53,7 @@ def find_findings(version: Version, targets: Targets) -> Findings:
         files.update(path for file in (checked.path, *included) if (path := version.relative(file)) is not None)
 
     diagnostics, _ = version.checker().check(targets, [version.root], add_files)
-    findings = [finding_with_package_uris(finding, version.installed_shares) for finding in diagnostics]
+    findings = [finding_without_folders(finding, version.root, version.installed_shares) for finding in diagnostics]
     return Findings(findings, frozenset(files), frozenset(errors))
 
 

@@ -28,14 +28,16 @@ def without_folder(value: _Value, folder: Path) -> _Value:
     return _change_texts(value, change)
 
 
-def finding_with_package_uris(finding: Diagnostic, shares: Mapping[str, Path]) -> Diagnostic:
-    """Return a finding with URIs in place of paths in share folders.
+def finding_without_folders(finding: Diagnostic, folder: Path, shares: Mapping[str, Path]) -> Diagnostic:
+    """Return a finding whose texts have paths relative to a folder, and URIs in place of paths in share folders.
 
     Args:
         finding: the finding to change.
+        folder: the folder of a version.
         shares: the share folders outside the version, such as those that show installed files, by package.
     """
-    return _change_finding(finding, _make_uri_writer(shares))
+    write_uris = _make_uri_writer(shares)
+    return _change_finding(finding, lambda text: without_folder(write_uris(text), folder))
 
 
 def _make_uri_writer(shares: Mapping[str, Path]) -> Callable[[str], str]:
