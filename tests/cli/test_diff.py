@@ -128,6 +128,15 @@ def test_meshes_at_same_uri_are_compared_by_content(package, tmp_path, monkeypat
     )
     first, second = (sha256(content).hexdigest()[:8] for content in (b"solid", b"dilos"))
     assert (mesh["old"], mesh["new"], mesh["unit"]) == (first, second, "(SHA-256), both of 5 bytes")
+    pointer = f"version https://git-lfs.github.com/spec/v1\noid sha256:{sha256(b'mesh').hexdigest()}\nsize 4\n"
+    (package / "meshes/body.stl").write_text(pointer)
+    main(words)
+    (mesh,) = (
+        difference
+        for difference in json.loads(capsys.readouterr().out)["differences"]
+        if difference["subject"] == "link"
+    )
+    assert (mesh["old"], mesh["new"], mesh["unit"]) == ("5", "4", "bytes")
 
 
 @needs_git

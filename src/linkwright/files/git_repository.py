@@ -21,7 +21,8 @@ _PROGRAM_MODE = "100755"
 _PLAIN_MODE = "100644"
 _MAX_LFS_POINTER_BYTES = 1024
 _LFS_POINTER = lazy_pattern(
-    rb"version https://git-lfs\.github\.com/spec/v1\n(?:[^\n]+\n)*?oid sha256:(?P<hash>[0-9a-f]{64})\n"
+    rb"version https://git-lfs\.github\.com/spec/v1\n(?:[^\n]+\n)*?"
+    rb"oid sha256:(?P<hash>[0-9a-f]{64})\nsize (?P<size>\d+)"
 )
 _RAW = ("--raw", "-z", "--no-abbrev")
 _MAX_MISSING_FILES = 500
@@ -83,7 +84,7 @@ class GitRepository:
         subject: the name of the file or folder that the user named, for messages.
         hint: what the user can do if the folder is not in a repository.
         downloads_lfs: whether files of Git LFS are written with their contents, which may download them. Otherwise
-            their pointers are written; see `read_lfs_hash`.
+            their pointers are written; see `read_lfs_pointer`.
 
     Attributes:
         root: the root folder of the working tree.
@@ -340,8 +341,21 @@ def compute_file_hash(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def read_lfs_hash(path: Path) -> str | None:
-    """Return the SHA-256 hash in a pointer of Git LFS, or None for any other file.
+@dataclass(frozen=True)
+class LfsPointer:
+    """A pointer of Git LFS, which replaces a file that was not fetched.
+
+    Attributes:
+        hash: the SHA-256 hash of the file in hexadecimal.
+        size: the size of the file in bytes.
+    """
+
+    hash: str
+    size: int
+
+
+def read_lfs_pointer(path: Path) -> LfsPointer | None:
+    """Return the pointer of Git LFS in a file, or None for any other file.
 
     Source: the specification of Git LFS, docs/spec.md.
     """
@@ -351,7 +365,7 @@ def read_lfs_hash(path: Path) -> str | None:
     except OSError:
         return None
     match = _LFS_POINTER.match(start)
-    return match["hash"].decode() if match else None
+    return LfsPointer(match["hash"].decode(), int(match["size"])) if match else None
 
 
 def _pair_equal_files(changes: Iterable[_RawChange]) -> list[ChangedFile]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from linkwright.descriptions.comparison import has_same_bytes
 from linkwright.diagnostics import Phrase, counted, phrase
-from linkwright.files.git_repository import read_lfs_hash
+from linkwright.files.git_repository import read_lfs_pointer
 from linkwright.geometry.meshes import TriangleMesh, read_mesh
 from linkwright.review.changes import Figure
 from linkwright.review.drawings.scene_images import render_meshes
@@ -25,7 +25,7 @@ def compare_meshes(pair: FilePair) -> None:
     files = pair.old_file, pair.new_file
     if has_same_bytes(*files):
         return
-    sizes = [None if read_lfs_hash(file) else file.stat().st_size for file in files]
+    sizes = [None if read_lfs_pointer(file) else file.stat().st_size for file in files]
     if None not in sizes and sizes[0] != sizes[1]:
         pair.figures.append(Figure(phrase("size of the file"), str(sizes[0]), str(sizes[1]), "bytes"))
     meshes = pair.read(_read)
@@ -69,7 +69,7 @@ def mesh_contents(version: Version, path: str) -> Phrase | None:
 
 
 def _read(file: Path) -> TriangleMesh:
-    if read_lfs_hash(file):
+    if read_lfs_pointer(file):
         raise LimitError(phrase("the file is in Git LFS and is not downloaded"))
     if file.stat().st_size > _MAX_BYTES:
         raise LimitError(phrase("it is larger than {megabytes} MB", megabytes=_MAX_BYTES >> 20))
