@@ -22,6 +22,7 @@ _PLAIN_MODE = "100644"
 _MAX_LFS_POINTER_BYTES = 1024
 _LFS_POINTER = lazy_pattern(
     rb"version https://git-lfs\.github\.com/spec/v1\n(?:[^\n]+\n)*?oid sha256:(?P<hash>[0-9a-f]{64})\n"
+    rb"(?:size (?P<size>\d+)\n)?"
 )
 _RAW = ("--raw", "-z", "--no-abbrev")
 _MAX_MISSING_FILES = 500
@@ -345,13 +346,24 @@ def read_lfs_hash(path: Path) -> str | None:
 
     Source: the specification of Git LFS, docs/spec.md.
     """
+    return _read_lfs_pointer(path)[0]
+
+
+def read_lfs_size(path: Path) -> int | None:
+    """Return the size in a pointer of Git LFS in bytes, or None for any other file."""
+    return _read_lfs_pointer(path)[1]
+
+
+def _read_lfs_pointer(path: Path) -> tuple[str | None, int | None]:
+    """Return the hash and the size in a pointer of Git LFS, or None for values that it lacks."""
     try:
         with path.open("rb") as file:
-            start = file.read(_MAX_LFS_POINTER_BYTES)
+            match = _LFS_POINTER.match(file.read(_MAX_LFS_POINTER_BYTES))
     except OSError:
-        return None
-    match = _LFS_POINTER.match(start)
-    return match["hash"].decode() if match else None
+        match = None
+    if match is None:
+        return None, None
+    return match["hash"].decode(), int(match["size"]) if match["size"] else None
 
 
 def _pair_equal_files(changes: Iterable[_RawChange]) -> list[ChangedFile]:

@@ -7,7 +7,7 @@ it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,13 @@ from numpy.typing import NDArray
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.polyhedron import Faces
 
-_TOLERANCE = 1e-9
-"""The distance within which points count as on a face, as a fraction of the extent of all points."""
+_TOLERANCES = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5)
+"""The distances within which points count as on a face, as fractions of the extent of all points.
+
+Where many points are nearly coplanar, rounding errors of the normals of narrow faces exceed the smallest distance.
+"""
+_MAX_SHIFT = 1e-5
+"""The maximum distance by which points are moved where no tolerance suffices, as a fraction of the extent."""
 
 Indices = NDArray[np.int64]
 Triangle = tuple[int, int, int]
@@ -29,15 +34,23 @@ def convex_hull(points: Array) -> Faces | None:
         points: shape (points, 3).
 
     Returns:
-        Indices into the points, shape (faces, 3); None if the points are coplanar and there is no volume.
+        Indices into the points, shape (faces, 3); None if the points are coplanar and there is no volume, or if
+        rounding errors prevent a closed hull.
     """
     if len(points) < 4:
         return None
     size = float(np.ptp(points, axis=0).max())
     if not (size > 0 and np.isfinite(size)):
         return None
-    start = _find_tetrahedron(points, _TOLERANCE * size)
-    return None if start is None else _Hull(points, start, _TOLERANCE * size).grow()
+    start = _find_tetrahedron(points, _TOLERANCES[0] * size)
+    if start is None:
+        return None
+    for tolerance in _TOLERANCES:
+        faces = _Hull(points, start, tolerance * size).grow()
+        if faces is not None:
+            return faces
+    shifts = np.random.default_rng(0).uniform(-_MAX_SHIFT * size, _MAX_SHIFT * size, points.shape)
+    return _Hull(points + shifts, start, _TOLERANCES[0] * size).grow()
 
 
 class _Hull:
@@ -60,21 +73,29 @@ class _Hull:
         a, b, c, d = start
         self._add_faces([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
 
-    def grow(self) -> Faces:
-        """Add points until none is outside the hull, and return the faces."""
+    def grow(self) -> Faces | None:
+        """Add points until none is outside the hull, and return the faces.
+
+        The result is None if the edges around the faces that are visible from a point are not one closed line.
+        """
         while self.outside_points:
             face, candidates = self.outside_points.popitem()
             normal, offset = self.planes[face]
             apex = int(candidates[np.argmax(self.points[candidates] @ normal - offset)])
             self.outside_points[face] = candidates
-            self._add_point(face, apex)
+            if not self._add_point(face, apex):
+                return None
         return np.array(list(self.faces.values()), dtype=np.int64)
 
-    def _add_point(self, face: int, apex: int) -> None:
+    def _add_point(self, face: int, apex: int) -> bool:
+        """Replace the faces that are visible from a point, and return whether the hull is still closed."""
         visible, horizon = self._find_visible(face, self.points[apex])
+        if not _is_closed_line(horizon):
+            return False
         freed_points = [self._remove_face(visible_face) for visible_face in visible]
         remaining = np.concatenate(freed_points)
         self._add_faces([(a, b, apex) for a, b in horizon], remaining[remaining != apex])
+        return True
 
     def _find_visible(self, face: int, point: Array) -> tuple[set[int], list[tuple[int, int]]]:
         """Return the faces that are visible from a point, and the edges around them.
@@ -133,6 +154,19 @@ class _Hull:
 
 
 _NO_INDICES: Indices = np.empty(0, dtype=np.int64)
+
+
+def _is_closed_line(edges: Sequence[tuple[int, int]]) -> bool:
+    """Return whether edges are one line that ends where it starts, and that visits each point once."""
+    next_points = dict(edges)
+    if len(next_points) < len(edges):
+        return False
+    start = point = edges[0][0]
+    for _ in range(len(edges) - 1):
+        point = next_points.get(point, start)
+        if point == start:
+            return False
+    return next_points.get(point) == start
 
 
 def _get_edges(triangle: Triangle) -> Iterable[tuple[int, int]]:

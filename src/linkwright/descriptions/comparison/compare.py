@@ -19,12 +19,11 @@ from linkwright.descriptions.comparison.facts import (
     nearest,
     visual_blocks,
 )
-from linkwright.descriptions.comparison.file_contents import content_hash, has_same_bytes
+from linkwright.descriptions.comparison.file_contents import content_hash, content_size, has_same_bytes
 from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, find_renamed_hardware
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.descriptions.comparison.renames import RenameSearch
 from linkwright.diagnostics import LinkwrightError
-from linkwright.files.git_repository import compute_file_hash
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import TypeVar
 from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual
@@ -337,10 +336,11 @@ def _find_mesh_elements(shapes: Sequence[Visual | Collision]) -> dict[str, Eleme
 def _compare_contents(old: Path, new: Path) -> tuple[str, str, str]:
     """Return the old value, the new value and the unit of the difference between two files.
 
-    The values are the sizes or, if these are equal, the beginnings of the hashes.
+    The values are the sizes or, if these are equal, the beginnings of the hashes. For Git LFS pointers, they are those
+    of the files that the pointers replace.
     """
-    sizes = [path.stat().st_size for path in (old, new)]
+    sizes = [content_size(path) for path in (old, new)]
     if sizes[0] != sizes[1]:
         return str(sizes[0]), str(sizes[1]), "bytes"
-    first, second = (compute_file_hash(path)[:8] for path in (old, new))
+    first, second = (content_hash(path)[:8] for path in (old, new))
     return first, second, f"(SHA-256), both of {sizes[0]} bytes"

@@ -12,11 +12,12 @@ from linkwright.diagnostics import Phrase, joined, phrase, term
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.argument_sets import find_distinct_arguments
 from linkwright.review.breaking import find_breaking_reason, frame_reason, message_frame_reason
-from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.changes import Change, Effect, Location, Problem
 from linkwright.review.controller_files import find_controller_file_reason
 from linkwright.review.drawings.images import render_collisions, render_views
 from linkwright.review.drawings.scenes import build_robot_scene
 from linkwright.review.element_values import format_own_content
+from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import find_disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
@@ -75,25 +76,44 @@ def compare_descriptions(pair: FilePair) -> None:
             groups.setdefault(names.make_key(change), _Group(change)).add(change, case.name, names)
         if case.partial is not None and case.partial.has_stand_ins:
             continue  # where the links are is unknown
-        if pair.drawings.images and not pair.images:
-            pair.images += render_views(case.models, case.old.robot, case.new.robot, comparison, frames)
-            pair.images += render_collisions(case.models, case.old.robot, case.new.robot, comparison, frames)
-            drawn_case = case.name if pair.images else ""
-            if pair.images and pair.drawings.scenes:
-                roots = pair.versions.old.root, pair.versions.new.root
-                pair.scene = build_robot_scene(case.models, case.old, case.new, roots)
-        if len(pair.cases) == 1 and case.partial is None:
-            old = RobotMeasures(case.old.robot, case.models.old, UNMOVED, frames.old)
-            old_joints = {name: old_name for old_name, name in comparison.joints.items()}
-            new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new, old_joints)
-            pair.figures += compare_figures(old, new)
-            if may_change_collisions(comparison.differences):
-                disabled = find_disabled_collisions(pair.versions.new.root)
-                collisions = list(compare_collisions(old, new, comparison.links, disabled))
+        try:
+            if _draw(pair, comparison, frames, case):
+                drawn_case = case.name
+            if len(pair.cases) == 1 and case.partial is None:
+                collisions += _measure(pair, comparison, frames, case)
+        except Exception as error:  # noqa: BLE001 - any error; the changes are still reported
+            text = phrase("a part of the comparison is missing: {reason}", reason=make_problem(error).text)
+            pair.problems.append(Problem(text, is_bug=True))
     pair.changes += merge_changes(group.change(pair.cases) for group in _merge_groups(groups.values()))
     pair.changes += collisions
     if len(set(pair.cases)) > 1:
         _name_arguments(pair, drawn_case)
+
+
+def _draw(pair: FilePair, comparison: Comparison, frames: SharedFrames, case: Case) -> bool:
+    """Draw both robots, unless they were drawn with other arguments, and return whether they are drawn."""
+    old, new = case.old.robot, case.new.robot
+    if old is None or new is None or not pair.drawings.images or pair.images:
+        return False
+    pair.images += render_views(case.models, old, new, comparison, frames)
+    pair.images += render_collisions(case.models, old, new, comparison, frames)
+    if pair.images and pair.drawings.scenes:
+        roots = pair.versions.old.root, pair.versions.new.root
+        pair.scene = build_robot_scene(case.models, case.old, case.new, roots)
+    return bool(pair.images)
+
+
+def _measure(pair: FilePair, comparison: Comparison, frames: SharedFrames, case: Case) -> Iterator[Change]:
+    """Compare the figures of both robots, and yield the links that newly collide."""
+    if case.old.robot is None or case.new.robot is None:
+        return
+    old = RobotMeasures(case.old.robot, case.models.old, UNMOVED, frames.old)
+    old_joints = {name: old_name for old_name, name in comparison.joints.items()}
+    new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new, old_joints)
+    pair.figures += compare_figures(old, new)
+    if may_change_collisions(comparison.differences):
+        disabled = find_disabled_collisions(pair.versions.new.root)
+        yield from compare_collisions(old, new, comparison.links, disabled)
 
 
 def _name_arguments(pair: FilePair, drawn_case: str) -> None:
