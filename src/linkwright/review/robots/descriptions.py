@@ -45,7 +45,9 @@ from linkwright.review.robots.figures import RobotMeasures, compare_figures
 from linkwright.review.robots.joined_values import JoinedDifferences, join_value_differences
 from linkwright.review.robots.omitted_calls import find_lost_call_reason, find_passed_name_reason, find_title
 from linkwright.review.robots.parent_changes import ParentChanges
+from linkwright.review.robots.reversed_axes import find_reversal_reason
 from linkwright.review.robots.switched_parts import SwitchedParts
+from linkwright.review.robots.unused_references import UnusedReferences
 from linkwright.review.simulators import find_simulator_reason
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
@@ -190,6 +192,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
     switched_parts = SwitchedParts(pair, case)
     has_known_poses = partial is None or not partial.has_stand_ins
     parents = ParentChanges(comparison, new, frames if has_known_poses else None)
+    references = UnusedReferences(old if partial is None else None)
     unevaluated: dict[str, None] = {}
     for difference in join_value_differences(differences):
         if added_links.is_in_line_of_link(difference):
@@ -204,22 +207,26 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             continue
         if has_other_root and (difference.subject, difference.kind, difference.name) == ("link", "removed", old.root):
             continue
-        reason = (
-            (None if is_still_offered(difference, added_names) else find_breaking_reason(difference, old, new))
-            or find_missing_topics_reason(difference, added_names)
-            or _find_frame_reason(difference)
-            or find_default_topic_reason(difference, new.extensions)
-            or find_lost_call_reason(difference, comparison.differences)
-            or find_passed_name_reason(difference)
-            or find_controller_file_reason(difference, pair.versions)
-            or _find_simulator_reason(pair, difference)
-            or _find_expression_reason(difference)
-            or find_limits_reason(
-                difference.values if isinstance(difference, JoinedDifferences) else (difference,), new
+        reason = None
+        if references.find_name(difference) is None:
+            reason = (
+                (None if is_still_offered(difference, added_names) else find_breaking_reason(difference, old, new))
+                or find_missing_topics_reason(difference, added_names)
+                or _find_frame_reason(difference)
+                or find_default_topic_reason(difference, new.extensions)
+                or find_lost_call_reason(difference, comparison.differences)
+                or find_passed_name_reason(difference)
+                or find_controller_file_reason(difference, pair.versions)
+                or _find_simulator_reason(pair, difference)
+                or _find_expression_reason(pair, difference)
+                or find_reversal_reason(difference, old, new, frames if has_known_poses else None)
+                or find_limits_reason(
+                    difference.values if isinstance(difference, JoinedDifferences) else (difference,), new
+                )
             )
-        )
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         text = added_links.sentence(difference) or parents.sentence(difference) or format_difference(difference)
+        text = references.add_name(text, difference)
         if difference.subject == "link" and difference.kind == "renamed":
             motion = frames.motion(difference.old or "") if has_known_poses else None
             text = text if motion is None else add_motion(text, *motion)
@@ -261,11 +268,14 @@ def _find_frame_reason(difference: Difference) -> Phrase | None:
     return None if frame is None else message_frame_reason(frame)
 
 
-def _find_expression_reason(difference: Difference) -> Phrase | None:
+def _find_expression_reason(pair: FilePair, difference: Difference) -> Phrase | None:
     """Return why a new expression in the name of a mesh or texture is breaking, or None.
 
-    In a file that ends with ``.urdf``, only xacro evaluates it.
+    In a file that ends with ``.urdf``, only xacro evaluates it. A robot that includes the file is read by xacro.
     """
+    location = _find_difference_location(pair, difference)
+    if location is None or location.file != pair.new_path:
+        return None
     locations = difference.old_place, difference.new_place
     if difference.kind != "changed" or not difference.old or not difference.new or None in locations:
         return None
