@@ -56,7 +56,8 @@ def test_installed_folder_that_does_not_exist_is_breaking(package, compare, is_a
 
 @pytest.mark.parametrize("was_refused", [False, True])
 def test_description_that_urdfdom_refuses_is_one_breaking_change(package, compare, was_refused):
-    part = '<link name="lamp"><inertial><mass value="{}"/><inertia ixx="{}" iyy="1" izz="1"/></inertial></link></robot>'
+    rest = 'ixy="0" ixz="0" iyy="1" iyz="0" izz="1"'
+    part = f'<link name="lamp"><inertial><mass value="{{}}"/><inertia ixx="{{}}" {rest}/></inertial></link></robot>'
     joint = '<joint name="lamp_joint" type="fixed"><parent link="base_link"/><child link="lamp"/></joint>'
     old, new = part.format("1", "1 m" if was_refused else "1"), part.format("1 kg", "1.0-6")
     package.commit({ROBOT: ARM.replace("</robot>", joint + old)})
