@@ -128,15 +128,23 @@ def test_meshes_at_same_uri_are_compared_by_content(package, tmp_path, monkeypat
     )
     first, second = (sha256(content).hexdigest()[:8] for content in (b"solid", b"dilos"))
     assert (mesh["old"], mesh["new"], mesh["unit"]) == (first, second, "(SHA-256), both of 5 bytes")
-    pointer = f"version https://git-lfs.github.com/spec/v1\noid sha256:{sha256(b'mesh').hexdigest()}\nsize 4\n"
-    (package / "meshes/body.stl").write_text(pointer)
-    main(words)
-    (mesh,) = (
+
+
+def test_pointers_of_git_lfs_are_compared_by_the_files_they_replace(package, tmp_path, monkeypatch, capsys):
+    other = tmp_path / "before/arm"
+    shutil.copytree(package, other)
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    for folder, hash_of_file, size in ((other, "4" * 64, 37), (package, "5" * 64, 41)):
+        pointer = f"version https://git-lfs.github.com/spec/v1\noid sha256:{hash_of_file}\nsize {size}\n"
+        (folder / "meshes/body.stl").write_text(pointer)
+    main(["diff", *(str(folder / "urdf/arm.urdf.xacro") for folder in (other, package)), "--format", "json"])
+    meshes = [
         difference
         for difference in json.loads(capsys.readouterr().out)["differences"]
-        if difference["subject"] == "link"
-    )
-    assert (mesh["old"], mesh["new"], mesh["unit"]) == ("5", "4", "bytes")
+        if "mesh" in difference["property"]
+    ]
+    assert {(mesh["old"], mesh["new"], mesh["unit"]) for mesh in meshes} == {("37", "41", "bytes")}
 
 
 @needs_git

@@ -101,6 +101,20 @@ def test_hull_of_grid_is_its_box():
     assert polyhedron_properties(grid, faces).mass == pytest.approx(125.0)
 
 
+@pytest.mark.parametrize(("count", "noise", "seed"), [(128, 1e-8, 5), (256, 1e-7, 13), (512, 3e-9, 13)])
+def test_hull_of_nearly_coplanar_points_is_closed(count, noise, seed):
+    """Such points occur in meshes from CAD, which are rounded to single precision."""
+    random = np.random.default_rng(seed)
+    angles = np.linspace(0, 2 * np.pi, count, endpoint=False)
+    circle = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(count)])
+    rings = np.vstack([circle * radius + (0, 0, z) for z in (0, 1) for radius in (1, 0.99, 0.5)])
+    points = rings + random.uniform(-noise, noise, rings.shape)
+    faces = convex_hull(points)
+    assert faces is not None
+    assert is_closed(faces)
+    assert polyhedron_properties(points, faces).mass == pytest.approx(count / 2 * np.sin(2 * np.pi / count))
+
+
 def test_hull_of_sphere_points_uses_all_points():
     ball = trimesh.creation.icosphere(3)
     faces = convex_hull(np.asarray(ball.vertices))
@@ -130,7 +144,7 @@ def make_turned_rings(count: int, rows: int, seed: int):
 
 
 @pytest.mark.parametrize(("count", "rows", "seed"), [(128, 20, 3), (128, 20, 4), (360, 20, 1)])
-def test_hull_of_nearly_coplanar_points_is_closed(count, rows, seed):
+def test_hull_of_turned_rings_is_closed(count, rows, seed):
     """Rounding makes the edge around the faces that a new point sees touch itself."""
     points = make_turned_rings(count, rows, seed)
     faces = convex_hull(points)

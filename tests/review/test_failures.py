@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 
@@ -10,8 +11,9 @@ from linkwright.cli import main
 from linkwright.review.files import interfaces
 from linkwright.review.parts import comparing as parts
 from linkwright.review.reports import as_data, as_diagnostics, as_text
+from linkwright.review.robots import descriptions
 from linkwright.review.sources import changed_sources
-from tests.repositories import ARM
+from tests.repositories import ARM, MACRO
 from tests.review.conftest import breaking, sentences, subject
 
 PLACE = r"KeyError: 'broken' in "
@@ -152,3 +154,15 @@ def test_added_file_that_cannot_be_read_says_so(package, compare, path, text, re
     package.commit({path: text})
     (problem,) = subject(compare(package, "HEAD~1..HEAD"), path).problems
     assert str(problem.text).startswith(f"the file cannot be read: {reason}")
+
+
+def test_a_bug_in_collisions_leaves_the_changes_of_the_robot(package, compare, monkeypatch):
+    def fail(*_arguments):
+        raise KeyError("broken")
+
+    monkeypatch.setattr(descriptions, "compare_collisions", fail)
+    package.write({"arm_description/urdf/segment.xacro": MACRO.replace("length:=0.5", "length:=0.6")})
+    robot = subject(compare(package), "arm_description/urdf/arm.urdf.xacro")
+    assert "joint 'upper_joint': origin xyz 0 0 0.5 -> 0 0 0.6 m (moved by 0.1 m)" in sentences(robot)
+    (problem,) = robot.problems
+    assert re.match(rf"a part of the comparison is missing: .*{PLACE}", str(problem.text))

@@ -1,4 +1,4 @@
-"""Position limits of joints that are narrower, or gone, are breaking."""
+"""Position limits of joints that are narrower, or gone, are breaking; so are reversed axes."""
 
 from __future__ import annotations
 
@@ -95,3 +95,27 @@ def test_limits_of_joints_in_sdf(package, compare, limit, reasons):
     package.commit({SDF_PATH: SDF})
     package.write({SDF_PATH: SDF.replace("<upper>2<", f"<upper>{limit}<")})
     assert [str(change.reason) for _, change in compare(package).breaking_changes] == reasons
+
+
+AXIS = '<joint name="turn" type="revolute"><axis xyz="{}"/>'
+REVERSED = "the same position of 'turn' moves it in the opposite direction"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reasons"),
+    [
+        ("0 0 1", "0 0 -1", [REVERSED]),
+        ("0 0 2", "0 0 -1", [REVERSED]),
+        ("0 0 1", "0 1 0", []),
+        ("0 0 1", '0 0 -1"/><origin rpy="3.141592653589793 0 0', []),
+        ('0 0 1"/><mimic joint="lead', '0 0 -1"/><mimic joint="lead" multiplier="-1', []),
+    ],
+)
+def test_reversed_axis_is_breaking(repository, compare, old, new, reasons):
+    urdf = URDF.replace("</robot>", LEAD)
+    texts = [urdf.replace('<joint name="turn" type="revolute">', AXIS.format(axis)) for axis in (old, new)]
+    repository.commit({PATH: texts[0]})
+    repository.write({PATH: texts[1]})
+    changes = subject(compare(repository), PATH).changes
+    assert any("axis" in str(change.sentence) for change in changes)
+    assert [str(change.reason) for change in changes if change.reason] == reasons

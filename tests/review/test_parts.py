@@ -456,3 +456,34 @@ def test_second_call_of_a_macro_with_the_same_names_is_breaking(package, compare
     package.commit({ROBOT: ARM.replace("</robot>", first + "</robot>")})
     package.write({ROBOT: ARM.replace("</robot>", first + block % ("lidar", new) + "</robot>")})
     assert bool(breaking(compare(package))) == is_breaking
+
+
+CELL = """<robot name="cell" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:include filename="stand.xacro"/>
+  {}<xacro:stand/>
+</robot>
+"""
+STAND = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="stand" params="">
+  {}<link name="post"/><joint name="mount" type="fixed"><parent link="world"/><child link="post"/></joint>
+</xacro:macro></robot>
+"""
+WORLD = '<link name="world"/>'
+
+
+@pytest.mark.parametrize("is_moved_back", [False, True])
+def test_link_that_callers_make_instead_of_a_macro_is_breaking_for_other_callers(package, compare, is_moved_back):
+    folder = "arm_description/urdf"
+    cells = [
+        {f"{folder}/cell.urdf.xacro": CELL.format(inner), f"{folder}/stand.xacro": STAND.format(outer)}
+        for inner, outer in (("", WORLD), (WORLD, ""))
+    ]
+    old, new = reversed(cells) if is_moved_back else cells
+    package.commit(old)
+    package.write(new)
+    changes = [change for item in compare(package).subjects for change in item.changes if change.reason]
+    if is_moved_back:
+        assert changes == []
+        return
+    (change,) = changes
+    assert str(change.sentence) == f"macro 'stand': no longer makes 'world', but {folder}/cell.urdf.xacro does"
+    assert str(change.reason) == "other callers of the macro lack 'world' unless they make it"

@@ -50,6 +50,7 @@ def review_replacement(repository, replacement, *, files=FILES, with_images=Fals
 def test_expression_in_plain_urdf_is_breaking(repository, files):
     result = review_replacement(repository, ("package://w", "$(find w)"), files=files)
     assert [str(change.reason) for change in subject(result, PATH).changes] == [REASON]
+    assert len(result.breaking_changes) == 1
 
 
 def test_expression_in_xacro_is_not_breaking(repository, compare):
@@ -64,6 +65,19 @@ def test_expression_in_xacro_is_not_breaking(repository, compare):
     assert sentences(subject(result, path)) == [
         "link 'floor': visual geometry mesh package://w/meshes/base.stl -> mesh file://w/meshes/base.stl"
     ]
+
+
+SENSOR = '<gazebo reference="{}"><sensor name="s" type="imu"><topic>imu</topic></sensor></gazebo></robot>'
+
+
+@pytest.mark.parametrize(("reference", "is_breaking"), [("base", True), ("imu_link", False)])
+def test_removed_extension_for_unknown_link_is_not_breaking(repository, compare, reference, is_breaking):
+    repository.commit({**FILES, PATH: ARM.replace("</robot>", SENSOR.format(reference))})
+    repository.write({PATH: ARM})
+    (change,) = subject(compare(repository), PATH).changes
+    assert (change.reason is not None) == is_breaking
+    note = ", which had no effect, because 'imu_link' was neither a link nor a joint: sensor 's' ("
+    assert (note in str(change.sentence)) != is_breaking
 
 
 def test_robot_that_xacro_includes_is_compared_on_its_own(repository):

@@ -41,9 +41,11 @@ def mark_failures(
     """
     broken_before = {(finding.code, finding.span.file) for finding in fixed if finding.span is not None}
     refused_before = {
-        versions.old.package_of(versions.old.relative(finding.span.file) or "")
+        versions.old.package_of(path)
         for finding in old_findings
-        if finding.span is not None and _is_refused(finding)
+        if finding.span is not None
+        and _is_refused(finding)
+        and (path := versions.old.relative(finding.span.file)) is not None
     }
     refused = {subject.path for subject in subjects if subject.is_lost}
     old_paths = {file.new_path: file.old_path for file in versions.changed_files if file.new_path}

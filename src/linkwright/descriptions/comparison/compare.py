@@ -336,7 +336,8 @@ def _find_mesh_elements(shapes: Sequence[Visual | Collision]) -> dict[str, Eleme
 def _compare_contents(old: Path, new: Path) -> tuple[str, str, str]:
     """Return the old value, the new value and the unit of the difference between two files.
 
-    The values are the sizes or, if these are equal, the beginnings of the hashes.
+    The values are the sizes or, if these are equal, the beginnings of the hashes. For Git LFS pointers, they are those
+    of the files that the pointers replace.
     """
     sizes = [content_size(path) for path in (old, new)]
     if sizes[0] != sizes[1]:

@@ -23,6 +23,7 @@ from linkwright.review.parts.interface import (
 )
 from linkwright.review.parts.left_uses import find_left_uses
 from linkwright.review.parts.malformed_includes import includes_malformed_file
+from linkwright.review.parts.moved_to_callers import compare_moved_to_callers
 from linkwright.review.parts.name_substitution import CALL, ComparedContent
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, read_outline
 from linkwright.review.parts.part_pair import PartPair
@@ -182,6 +183,7 @@ class _Comparer:
         compare_arguments(pair, self._graphs)
         compare_properties(pair, self._graphs.new)
         compare_contents(pair, renamed)
+        compare_moved_to_callers(pair, self._graphs, renamed)
 
     def _read_outline(self, version: Version, path: str | None) -> Outline | Phrase | None:
         """Return the outline of a file, the reason why it cannot be read, or None for other files."""

@@ -12,11 +12,12 @@ from linkwright.diagnostics import Phrase, joined, phrase, term
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.argument_sets import find_distinct_arguments
 from linkwright.review.breaking import find_breaking_reason, frame_reason, message_frame_reason
-from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.changes import Change, Effect, Location, Problem
 from linkwright.review.controller_files import find_controller_file_reason
 from linkwright.review.drawings.images import render_collisions, render_views
 from linkwright.review.drawings.scenes import build_robot_scene
 from linkwright.review.element_values import format_own_content
+from linkwright.review.failures import make_problem
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import find_disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
@@ -44,7 +45,9 @@ from linkwright.review.robots.figures import RobotMeasures, compare_figures
 from linkwright.review.robots.joined_values import JoinedDifferences, join_value_differences
 from linkwright.review.robots.omitted_calls import find_lost_call_reason, find_passed_name_reason, find_title
 from linkwright.review.robots.parent_changes import ParentChanges
+from linkwright.review.robots.reversed_axes import find_reversal_reason
 from linkwright.review.robots.switched_parts import SwitchedParts
+from linkwright.review.robots.unused_references import UnusedReferences
 from linkwright.review.simulators import find_simulator_reason
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
@@ -75,25 +78,44 @@ def compare_descriptions(pair: FilePair) -> None:
             groups.setdefault(names.make_key(change), _Group(change)).add(change, case.name, names)
         if case.partial is not None and case.partial.has_stand_ins:
             continue  # where the links are is unknown
-        if pair.drawings.images and not pair.images:
-            pair.images += render_views(case.models, case.old.robot, case.new.robot, comparison, frames)
-            pair.images += render_collisions(case.models, case.old.robot, case.new.robot, comparison, frames)
-            drawn_case = case.name if pair.images else ""
-            if pair.images and pair.drawings.scenes:
-                roots = pair.versions.old.root, pair.versions.new.root
-                pair.scene = build_robot_scene(case.models, case.old, case.new, roots)
-        if len(pair.cases) == 1 and case.partial is None:
-            old = RobotMeasures(case.old.robot, case.models.old, UNMOVED, frames.old)
-            old_joints = {name: old_name for old_name, name in comparison.joints.items()}
-            new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new, old_joints)
-            pair.figures += compare_figures(old, new)
-            if may_change_collisions(comparison.differences):
-                disabled = find_disabled_collisions(pair.versions.new.root)
-                collisions = list(compare_collisions(old, new, comparison.links, disabled))
+        try:
+            if _draw(pair, comparison, frames, case):
+                drawn_case = case.name
+            if len(pair.cases) == 1 and case.partial is None:
+                collisions += _measure(pair, comparison, frames, case)
+        except Exception as error:  # noqa: BLE001 - any error; the changes are still reported
+            text = phrase("a part of the comparison is missing: {reason}", reason=make_problem(error).text)
+            pair.problems.append(Problem(text, is_bug=True))
     pair.changes += merge_changes(group.change(pair.cases) for group in _merge_groups(groups.values()))
     pair.changes += collisions
     if len(set(pair.cases)) > 1:
         _name_arguments(pair, drawn_case)
+
+
+def _draw(pair: FilePair, comparison: Comparison, frames: SharedFrames, case: Case) -> bool:
+    """Draw both robots, unless they were drawn with other arguments, and return whether they are drawn."""
+    old, new = case.old.robot, case.new.robot
+    if old is None or new is None or not pair.drawings.images or pair.images:
+        return False
+    pair.images += render_views(case.models, old, new, comparison, frames)
+    pair.images += render_collisions(case.models, old, new, comparison, frames)
+    if pair.images and pair.drawings.scenes:
+        roots = pair.versions.old.root, pair.versions.new.root
+        pair.scene = build_robot_scene(case.models, case.old, case.new, roots)
+    return bool(pair.images)
+
+
+def _measure(pair: FilePair, comparison: Comparison, frames: SharedFrames, case: Case) -> Iterator[Change]:
+    """Compare the figures of both robots, and yield the links that newly collide."""
+    if case.old.robot is None or case.new.robot is None:
+        return
+    old = RobotMeasures(case.old.robot, case.models.old, UNMOVED, frames.old)
+    old_joints = {name: old_name for old_name, name in comparison.joints.items()}
+    new = RobotMeasures(case.new.robot, case.models.new, frames.new_root, frames.new, old_joints)
+    pair.figures += compare_figures(old, new)
+    if may_change_collisions(comparison.differences):
+        disabled = find_disabled_collisions(pair.versions.new.root)
+        yield from compare_collisions(old, new, comparison.links, disabled)
 
 
 def _name_arguments(pair: FilePair, drawn_case: str) -> None:
@@ -170,6 +192,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
     switched_parts = SwitchedParts(pair, case)
     has_known_poses = partial is None or not partial.has_stand_ins
     parents = ParentChanges(comparison, new, frames if has_known_poses else None)
+    references = UnusedReferences(old if partial is None else None)
     unevaluated: dict[str, None] = {}
     for difference in join_value_differences(differences):
         if added_links.is_in_line_of_link(difference):
@@ -184,22 +207,26 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             continue
         if has_other_root and (difference.subject, difference.kind, difference.name) == ("link", "removed", old.root):
             continue
-        reason = (
-            (None if is_still_offered(difference, added_names) else find_breaking_reason(difference, old, new))
-            or find_missing_topics_reason(difference, added_names)
-            or _find_frame_reason(difference)
-            or find_default_topic_reason(difference, new.extensions)
-            or find_lost_call_reason(difference, comparison.differences)
-            or find_passed_name_reason(difference)
-            or find_controller_file_reason(difference, pair.versions)
-            or _find_simulator_reason(pair, difference)
-            or _find_expression_reason(difference)
-            or find_limits_reason(
-                difference.values if isinstance(difference, JoinedDifferences) else (difference,), new
+        reason = None
+        if references.find_name(difference) is None:
+            reason = (
+                (None if is_still_offered(difference, added_names) else find_breaking_reason(difference, old, new))
+                or find_missing_topics_reason(difference, added_names)
+                or _find_frame_reason(difference)
+                or find_default_topic_reason(difference, new.extensions)
+                or find_lost_call_reason(difference, comparison.differences)
+                or find_passed_name_reason(difference)
+                or find_controller_file_reason(difference, pair.versions)
+                or _find_simulator_reason(pair, difference)
+                or _find_expression_reason(pair, difference)
+                or find_reversal_reason(difference, old, new, frames if has_known_poses else None)
+                or find_limits_reason(
+                    difference.values if isinstance(difference, JoinedDifferences) else (difference,), new
+                )
             )
-        )
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         text = added_links.sentence(difference) or parents.sentence(difference) or format_difference(difference)
+        text = references.add_name(text, difference)
         if difference.subject == "link" and difference.kind == "renamed":
             motion = frames.motion(difference.old or "") if has_known_poses else None
             text = text if motion is None else add_motion(text, *motion)
@@ -241,11 +268,14 @@ def _find_frame_reason(difference: Difference) -> Phrase | None:
     return None if frame is None else message_frame_reason(frame)
 
 
-def _find_expression_reason(difference: Difference) -> Phrase | None:
+def _find_expression_reason(pair: FilePair, difference: Difference) -> Phrase | None:
     """Return why a new expression in the name of a mesh or texture is breaking, or None.
 
-    In a file that ends with ``.urdf``, only xacro evaluates it.
+    In a file that ends with ``.urdf``, only xacro evaluates it. A robot that includes the file is read by xacro.
     """
+    location = _find_difference_location(pair, difference)
+    if location is None or location.file != pair.new_path:
+        return None
     locations = difference.old_place, difference.new_place
     if difference.kind != "changed" or not difference.old or not difference.new or None in locations:
         return None
