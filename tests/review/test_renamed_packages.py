@@ -191,7 +191,8 @@ def test_packages_without_common_files_are_removed_and_added(repository, compare
     repository.commit({"old/package.xml": manifest.format("old"), "old/config/a.yaml": "a: {ros__parameters: {x: 1}}"})
     files = {"arm/package.xml": manifest.format("arm"), "arm/config/b.yaml": "other:\n  ros__parameters:\n    y: [1]\n"}
     repository.commit({**files, "old/package.xml": None, "old/config/a.yaml": None})
-    assert "package removed" in breaking(compare(repository, "HEAD~1..HEAD"))
+    removed = "package removed with 2 files: parameter files 'config/a.yaml'"
+    assert breaking(compare(repository, "HEAD~1..HEAD")) == [removed]
 
 
 def test_packages_that_still_depend_on_the_old_name_of_a_package_are_named(repository, compare):
