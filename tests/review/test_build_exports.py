@@ -28,6 +28,52 @@ def test_only_an_export_that_others_may_use_is_breaking_when_it_is_gone(reposito
     assert breaking(compare(repository)) == expected
 
 
+FOLDER_EXPORT = "ament_export_include_directories({})\n"
+CATKIN_EXPORT = "find_package(catkin REQUIRED)\ncatkin_package(INCLUDE_DIRS {})\n"
+INSTALLED_FOLDER = "install(DIRECTORY include/ DESTINATION include)\n"
+
+
+@pytest.mark.parametrize(
+    ("export", "more", "is_breaking"),
+    [
+        (FOLDER_EXPORT.format("include"), "", False),  # installs nothing there
+        (FOLDER_EXPORT.format("msg"), INSTALLED_FOLDER, False),
+        (FOLDER_EXPORT.format("include"), INSTALLED_FOLDER, True),
+        (FOLDER_EXPORT.format("include"), "install(DIRECTORY ${{folders}} DESTINATION include)\n", True),
+        (FOLDER_EXPORT.format("${EIGEN3_INCLUDE_DIR}"), "", True),
+        (CATKIN_EXPORT.format("include"), "", True),  # users of the devel space find headers of the sources
+        (CATKIN_EXPORT.format("src"), "", False),
+    ],
+)
+def test_an_exported_folder_without_headers_is_not_breaking_when_it_is_gone(
+    repository, compare, export, more, is_breaking
+):
+    cmake = HEAD + more + "{}ament_package()\n"
+    files = {"arm/package.xml": MANIFEST, "arm/include/arm/arm.hpp": "int arm();\n", "arm/src/arm.cpp": "int i;\n"}
+    new = export.replace("INCLUDE_DIRS include", "").replace("INCLUDE_DIRS src", "") if "catkin" in export else ""
+    repository.commit({**files, "arm/CMakeLists.txt": cmake.format(export)})
+    repository.write({"arm/CMakeLists.txt": cmake.format(new)})
+    result = compare(repository)
+    removed = [text for text in breaking(result) if text.startswith("exported include folders removed")]
+    assert bool(removed) is is_breaking
+    assert any("exported include folders" in text for text in sentences(subject(result, "arm/CMakeLists.txt")))
+
+
+@pytest.mark.parametrize(
+    ("runtime", "left", "is_breaking"),
+    [("", "", False), ("", "add_message_files(FILES B.msg)\n", True), ("tf", "", True)],
+)
+def test_the_runtime_of_messages_leaves_with_the_last_message(repository, compare, runtime, left, is_breaking):
+    cmake = "project(arm)\nfind_package(catkin REQUIRED)\n{}catkin_package(CATKIN_DEPENDS roscpp {})\n"
+    old = cmake.format("add_message_files(FILES A.msg)\n" + left, f"message_runtime {runtime}")
+    messages = {"arm/msg/A.msg": "int32 a\n", "arm/msg/B.msg": "int32 b\n"}
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": old, **messages})
+    repository.commit({"arm/CMakeLists.txt": cmake.format(left, ""), "arm/msg/A.msg": None})
+    removed = [text for text in breaking(compare(repository, "HEAD~1..HEAD")) if "exported dependencies" in text]
+    assert bool(removed) is is_breaking
+    assert all("message_runtime" in text for text in removed) or runtime
+
+
 @pytest.mark.parametrize(("name", "is_breaking"), [("ament_cmake", False), ("catkin", False), ("rclcpp", True)])
 @pytest.mark.parametrize("new", ["<buildtool_depend>{}</buildtool_depend>", ""])
 def test_a_build_tool_that_is_no_depend_any_more_is_not_breaking(repository, compare, name, is_breaking, new):

@@ -114,7 +114,7 @@ OTHER_FILES = {
         (CATKIN, "roscpp tf)\nadd_mes", "roscpp)\nadd_mes", ["calls of find_package removed: 'tf'"], False),
         (CATKIN, "LIBRARIES core ", "", ["exported targets removed: 'core'"], True),
         (CATKIN, "DEPENDS roscpp tf", "DEPENDS roscpp", ["exported dependencies removed: 'tf'"], True),
-        (CATKIN, "INCLUDE_DIRS include", "", ["exported include folders removed: 'include'"], True),
+        (CATKIN, "INCLUDE_DIRS include", "", ["exported include folders removed: 'include'"], False),
         (CATKIN, "add_executable(driver src/driver.cpp)\n", "", ["built executables removed: 'driver'"], True),
         (CATKIN, "core ${catkin_LIBRARIES}", "${catkin_LIBRARIES}", ["'driver' no longer linked to 'core'"], False),
         (ROSBUILD, "executable(driver", "executable(drive",

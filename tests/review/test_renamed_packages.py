@@ -191,7 +191,8 @@ def test_packages_without_common_files_are_removed_and_added(repository, compare
     repository.commit({"old/package.xml": manifest.format("old"), "old/config/a.yaml": "a: {ros__parameters: {x: 1}}"})
     files = {"arm/package.xml": manifest.format("arm"), "arm/config/b.yaml": "other:\n  ros__parameters:\n    y: [1]\n"}
     repository.commit({**files, "old/package.xml": None, "old/config/a.yaml": None})
-    assert "package removed" in breaking(compare(repository, "HEAD~1..HEAD"))
+    removed = "package removed with 2 files: parameter files 'config/a.yaml'"
+    assert breaking(compare(repository, "HEAD~1..HEAD")) == [removed]
 
 
 def test_packages_that_still_depend_on_the_old_name_of_a_package_are_named(repository, compare):
@@ -265,3 +266,41 @@ def test_a_module_that_keeps_the_old_name_of_its_package_is_imported_as_before(r
     repository.commit({**own, **moved})
     result = compare(repository, "HEAD~1..HEAD")
     assert not any("import" in line for found in result.subjects for line in sentences(found))
+
+
+LAUNCH_CODE = """import os
+from launch import LaunchDescription
+from ament_index_python.packages import get_package_share_directory
+
+def generate_launch_description():
+    arm_tools = get_package_share_directory("arm_tools")
+    robot = Robot()
+    robot.set_file(os.path.join(arm_tools, "arm.xmacro"))
+    robot.make({0})
+    return LaunchDescription([])
+"""
+CPP_CODE = """#include <arm_tools/grip.hpp>
+int hold() {{
+  int force = arm_tools::kForce + {0};
+  return force;
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("path", "code", "value", "other"),
+    [
+        ("robot/launch/arm.launch.py", LAUNCH_CODE, "'red'", "other code: robot.make('red') -> robot.make('blue')"),
+        ("robot/src/hold.cpp", CPP_CODE, "1", "value in 'hold()': arm_gear::kForce + 1 -> arm_gear::kForce + 2"),
+    ],
+)
+def test_code_that_names_a_renamed_package_is_no_other_code(repository, compare, path, code, value, other):
+    repository.commit({**FILES, path: code.format(value)})
+    new = code.format(value).replace("arm_tools", "arm_gear")
+    repository.commit({**rename_package_files("arm_gear", "arm_gear"), path: new})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert [found.path for found in result.subjects if found.path == path] == []
+    repository.commit({path: code.format({"1": "2"}.get(value, "'blue'")).replace("arm_tools", "arm_gear")})
+    changed = compare(repository, "HEAD~2..HEAD")
+    assert len(sentences(subject(changed, path))) == 1
+    assert other.rpartition("-> ")[2].rpartition("+ ")[2] in sentences(subject(changed, path))[0]

@@ -71,3 +71,17 @@ def test_a_renamed_variable_with_another_value(review_source, path, old, new, ex
 def test_a_constant_that_a_function_newly_returns(review_source, old, new, expected):
     lines = review_source("arm/src/arm.cpp", PLAN.format(old), PLAN.format(new))
     assert [line for line in lines if "returns" in line] == expected
+
+
+@pytest.mark.parametrize(("text", "is_told"), [("eth_device", False), ("card", True)])
+def test_a_variable_with_the_name_of_its_parameter_is_renamed_with_it(repository, compare, text, is_told):
+    code = """int Arm::on_init() {{
+  std::string {0} = info_.hardware_parameters["{1}"];
+  return ec_init({0}.c_str());
+}}
+"""
+    repository.commit({**MANIFEST, "arm/src/arm.cpp": code.format("interface_name", "interface_name")})
+    repository.write({"arm/src/arm.cpp": code.format("eth_device", text)})
+    lines = [line for subject in compare(repository).subjects for line in sentences(subject)]
+    assert lines[0] == f'values in Arm::on_init: info_.hardware_parameters["interface_name" -> "{text}"]'
+    assert lines[1:] == (["code changed in 'Arm::on_init()'"] if is_told else [])

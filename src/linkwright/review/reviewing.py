@@ -74,6 +74,11 @@ from linkwright.review.notes import (
 from linkwright.review.other_files import find_file_states
 from linkwright.review.parts import compare_parts
 from linkwright.review.removed_headers import drop_told_headers
+from linkwright.review.removed_packages import (
+    find_removed_packages,
+    is_removed_with_package,
+    merge_removed_packages,
+)
 from linkwright.review.removed_programs import merge_removed_options
 from linkwright.review.renamed_findings import drop_renamed_findings
 from linkwright.review.renamed_folders import merge_renamed_folders
@@ -189,6 +194,8 @@ class _Reviewer:
         all_subjects, notes = remove_consequences(self._versions, all_subjects)
         all_subjects = self._add_users_of_lost_names(all_subjects)
         changed = {path for file in self._changed_files for path in (file.old_path, file.new_path)}
+        removed_packages = find_removed_packages(all_subjects)
+        all_subjects = merge_removed_packages(self._versions, all_subjects)
         all_subjects = merge_renamed_folders(self._versions, all_subjects)
         unreadable = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
         readable, equal_notes = group_equal_problems([subject for subject in all_subjects if subject not in unreadable])
@@ -196,7 +203,10 @@ class _Reviewer:
         reported |= {path for path in compared if not is_template(path)}
         reported |= self._maps.keys()
         other_files = [
-            file for file in self._changed_files if file.path in moved or not {file.old_path, file.new_path} & reported
+            file
+            for file in self._changed_files
+            if file.path in moved or not {file.old_path, file.new_path} & reported
+            if not is_removed_with_package(self._versions, removed_packages, file)
         ]
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
         added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)

@@ -14,7 +14,6 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_commands import compare_other_commands
 from linkwright.review.files.build_facts import (
     ANY_VERSION,
-    BUILD_TOOLS,
     BUILT_KINDS,
     INSTALLED_KINDS,
     WITHOUT_NOTHING,
@@ -27,6 +26,7 @@ from linkwright.review.files.build_facts import (
 from linkwright.review.files.cmake_branches import is_test_condition
 from linkwright.review.files.installed_files import compare_installed_files
 from linkwright.review.files.missing_sources import names_missing_file
+from linkwright.review.files.unused_exports import is_unused_export
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 
@@ -92,7 +92,11 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         missing = [fact for fact in removed if names_missing_file(pair.versions.old, pair.old_path, fact)]
         removed = [fact for fact in removed if fact not in missing]
         _report_missing(pair, missing)
-        unused = [fact for fact in removed if fact.name in private]
+        unused = [
+            fact
+            for fact in removed
+            if fact.name in private or is_unused_export(pair.versions.old, pair.old_path, old, new, fact)
+        ]
         _report_unpaired(pair, kind, unused, [], is_replaced=True)
         used = [fact for fact in removed if fact not in unused]
         _report_unpaired(pair, kind, used, added, is_replaced=_exports_folders_otherwise(kind, new))
@@ -188,8 +192,6 @@ def _report_unpaired(
     if removed:
         location = pair.location(removed[0].span, is_old=True)
         is_harmless = is_replaced or all(is_test_condition(fact.condition) for fact in removed)
-        if kind is FactKind.EXPORTED_DEPENDENCY:
-            is_harmless |= BUILD_TOOLS.issuperset(fact.name for fact in removed)
         reason = None if is_harmless else kind.reason
         pair.add(_format_facts(kind, removed, is_added=False), location, reason)
 

@@ -52,6 +52,7 @@ from linkwright.review.launches.outlines import (
 )
 from linkwright.review.launches.python_tests import report_object_tests
 from linkwright.review.launches.reading import read_outline
+from linkwright.review.launches.renamed_code import rename_packages_in_code
 from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
 from linkwright.review.launches.repeated_arguments import report_repeated_arguments
@@ -383,6 +384,7 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
 
     A statement that uses a name with a different value differs although its text is the same. The value is reported.
     """
+    old = rename_packages_in_code(pair.versions, old, new)
     if [part.text for part in old.code] == [part.text for part in new.code]:
         return
     equal = {name for name, source in old.scope_sources.items() if new.scope_sources.get(name) == source}

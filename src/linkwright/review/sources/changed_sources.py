@@ -76,6 +76,11 @@ class ChangedSources:
         sources = {path: try_read_source(self.version.file(path)) for path in self._names}
         return {path: read_code(source) for path, source in sources.items() if source is not None}
 
+    @property
+    def new_packages(self) -> Mapping[str, str]:
+        """The new names of the packages that are renamed after this version, by their old names."""
+        return self._new_packages
+
     def rename_type(self, full_type: str) -> str:
         """Return the type of messages with the new name of its package if that is renamed after this version."""
         package, separator, name = full_type.partition("/")

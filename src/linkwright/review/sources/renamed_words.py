@@ -12,6 +12,7 @@ from linkwright.review.sources.names import CPP_SUFFIXES
 
 _TOKEN = re.compile(r""""(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|\w+|[^\w\s]""")
 _LITERAL_OR_WORD = re.compile(r""""(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|\w+""")
+_QUOTES = "\"'"
 _NAME = re.compile(r"[a-z_]\w*")
 _DECLARING_ENDS = frozenset({"=", ";", "{", ",", ")", ":", "["})
 _TYPE_MARKS = frozenset({">", "&", "*"})
@@ -86,9 +87,18 @@ def _find_in_part(old: Sequence[str], new: Sequence[str], *, is_cpp: bool) -> It
     if len(old) != len(new):
         return
     places = [index for index in range(len(old)) if old[index] != new[index]]
+    variable = next(((old[index], new[index]) for index in places), None)
+    others = [index for index in places if (old[index], new[index]) != variable]
+    if variable is not None and all(_is_text_of(variable, old[index], new[index]) for index in others):
+        places = [index for index in places if index not in others]
     if all(_NAME.fullmatch(old[index]) and _NAME.fullmatch(new[index]) for index in places):
         is_defined = _is_declared if is_cpp else _is_assigned
         yield from ((old[index], new[index]) for index in places if is_defined(new, index))
+
+
+def _is_text_of(variable: tuple[str, str], old: str, new: str) -> bool:
+    """Return whether two literals are texts with the old and the new name of a variable."""
+    return old[0] in _QUOTES and new[0] in _QUOTES and (old[1:-1], new[1:-1]) == variable
 
 
 def _is_declared(tokens: Sequence[str], index: int) -> bool:

@@ -164,7 +164,8 @@ def _compare_code(
     if not before or not after:
         return
     renamed = drop_reported(find_renamed_classes(before, after), [str(change.sentence) for change in reported])
-    before = rename_words(rename_classes(before, renamed), after, new.find_renamed_words(old))
+    words = {**old.new_packages, **new.find_renamed_words(old)}
+    before = rename_words(rename_classes(before, renamed), after, words)
     before = old.rename_imports(before, after)
 
     def has_moved(name: str, code: Code) -> bool:

@@ -32,11 +32,15 @@ def find_old_dependencies(versions: Versions, changed_files: Sequence[ChangedFil
     new_names = {old: new for old, new in new_names.items() if old != new and old not in versions.new.shares}
     for path in versions.new.paths((MANIFEST, CMAKE_FILE)) if new_names else ():
         names = {name for name in new_names if name in versions.new.text(path)}
-        is_manifest = PurePosixPath(path).name == MANIFEST
-        find_uses = _find_in_manifest if is_manifest else _find_in_cmake_file
-        for name, location in find_uses(versions.new, path, names) if names else ():
-            text = _describe(name, new_names[name], is_manifest=is_manifest)
+        for name, location in find_dependencies(versions.new, path, names) if names else ():
+            text = _describe(name, new_names[name], is_manifest=PurePosixPath(path).name == MANIFEST)
             yield path, Change(text, Effect.BREAKING, phrase("no package of the repository has this name"), location)
+
+
+def find_dependencies(version: Version, path: str, names: Collection[str]) -> Iterator[_Use]:
+    """Yield the packages with the given names on which a manifest or ``CMakeLists.txt`` depends."""
+    find_uses = _find_in_manifest if PurePosixPath(path).name == MANIFEST else _find_in_cmake_file
+    return find_uses(version, path, names)
 
 
 def _describe(old: str, new: str, *, is_manifest: bool) -> Phrase:
