@@ -222,6 +222,24 @@ async def test_stream_without_images_ends_when_its_client_leaves():
         await gone(camera)
 
 
+@pytest.mark.parametrize("steps", range(6))
+def test_open_stream_ends_silently_with_the_program(caplog, steps):
+    async def run() -> None:
+        setup = Setup()
+        await eventually(lambda: any("Waiting For connections" in text for text in setup.texts()))
+        camera = setup.camera()
+        client = asyncio.create_task(setup.get_text("/stream?topic=/camera/image_raw"))
+        await eventually(lambda: camera.get_subscription_count() == 1)
+        setup.server.close()
+        for _ in range(steps):
+            await asyncio.sleep(0)
+        client.cancel()
+        await setup.graph.close()
+
+    asyncio.run(run())
+    assert [record for record in caplog.records if record.levelname == "ERROR"] == []
+
+
 async def test_last_image_is_sent_again_at_the_publish_rate():
     async with video_server(publish_rate=50.0) as setup:
         camera = setup.camera()

@@ -12,7 +12,7 @@ import asyncio
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from linkwright.bridge.video.frames import Frame
 from linkwright.bridge.video.pages import write_list, write_viewer
@@ -79,6 +79,7 @@ class WebVideoServer(SingleNode):
                 raise make_listen_error(self.DEFAULT_NAME, self._host, port, error, hint) from None
         self._gate = Gate(self._host, create_token())
         self._period_s = 1.0 / publish_rate_hz if publish_rate_hz > 0 else None
+        self._request_tasks: set[asyncio.Task[Any]] = set()
         self._runner: web.AppRunner | None = None
         self._server: asyncio.Server | None = None
         graph.publishers()  # starts the discovery of other processes
@@ -93,6 +94,8 @@ class WebVideoServer(SingleNode):
     def close(self) -> None:
         """Close the connections and the server."""
         self._server_task.cancel()
+        for task in self._request_tasks:  # aiohttp logs an error for those that last until the event loop ends
+            task.cancel()
         (self._server or self._listener).close()
         if self._runner is not None:
             self._cleanup_task = asyncio.get_running_loop().create_task(self._runner.cleanup())
@@ -146,6 +149,9 @@ class WebVideoServer(SingleNode):
         async def handle(request: web.Request) -> web.StreamResponse:
             if self._host == _LOOPBACK and not self._gate.accepts_host(request.host):
                 return self._refuse(f"this server does not answer to the name '{request.host[:200]}'", 403)
+            task = asyncio.current_task()
+            assert task is not None
+            self._request_tasks.add(task)
             if self._is_verbose:
                 self._node.get_logger().info(f"Handling Request: {request.path_qs}")
             try:
@@ -156,6 +162,8 @@ class WebVideoServer(SingleNode):
                 return self._refuse(str(error), 500)
             except ModuleNotFoundError:
                 return self._refuse(f"JPEG and PNG files need Pillow; {install_hint('image')}", 500)
+            finally:
+                self._request_tasks.discard(task)
 
         return handle
 
