@@ -101,6 +101,45 @@ async def test_calibration_of_another_size_is_not_published(harness, run_node, m
     assert (infos[0].width, list(infos[0].k)) == (WIDTH, [0.0] * 9)
 
 
+async def test_video_file_in_the_folder_of_devices_is_no_device(harness, run_node, movie, monkeypatch):
+    monkeypatch.setattr(video, "DEVICE_FOLDER", f"{movie.parent}/")
+    images, _ = await run_node(V4L2Camera, video_device=str(movie))
+    await harness.clock.advance(0.15)
+    assert [main_color(image) for image in images] == ["blue"]
+
+
+async def set_camera_info(harness, **fields):
+    """Call the service of usb_cam, and return the response."""
+    client = harness.node.create_client(get_service("sensor_msgs/srv/SetCameraInfo"), "/usb_cam/set_camera_info")
+    future = client.call_async(client.srv_type.Request(camera_info=INFO(**fields)))
+    await harness.graph.settle()
+    return future.result()
+
+
+async def test_calibration_is_stored_and_published_by_service(harness, run_node, movie, tmp_path):
+    path = tmp_path / "new" / "front.yaml"
+    parameters = {"camera_info_url": path.as_uri(), "camera_name": "front", "pixel_format": "mjpeg2rgb"}
+    _, infos = await run_node(UsbCam, video_device=str(movie), framerate=50.0, **parameters)
+    await harness.clock.advance(0.05)
+    matrices = {"k": [float(n) for n in range(9)], "r": [1.0] * 9, "p": [0.5] * 12, "d": [0.1, -0.2, 0.0, 0.0]}
+    response = await set_camera_info(harness, width=WIDTH, height=HEIGHT, distortion_model="fisheye", **matrices)
+    assert response.success
+    await harness.clock.advance(0.05)
+    assert (list(infos[0].k), list(infos[-1].k)) == ([0.0] * 9, matrices["k"])
+    name, stored = read_calibration(path)
+    assert (name, stored.width, stored.height, stored.distortion_model) == ("front", WIDTH, HEIGHT, "fisheye")
+    assert {field: list(getattr(stored, field)) for field in matrices} == matrices
+
+
+async def test_calibration_that_cannot_be_stored_gets_the_reason(harness, run_node, movie):
+    url = (movie / "front.yaml").as_uri()  # below a file
+    await run_node(UsbCam, video_device=str(movie), camera_info_url=url, pixel_format="mjpeg2rgb")
+    response = await set_camera_info(harness, width=WIDTH, height=HEIGHT)
+    assert not response.success
+    assert "Error storing camera calibration" in response.status_message
+    assert str(movie / "front.yaml") in response.status_message
+
+
 async def test_capture_stops_and_starts_by_service(harness, run_node, movie):
     images, _ = await run_node(UsbCam, video_device=str(movie), framerate=10.0, pixel_format="yuyv")
     client = harness.node.create_client(get_service("std_srvs/srv/SetBool"), "/set_capture")
@@ -177,7 +216,7 @@ async def test_device_is_read_in_a_thread_with_its_settings(harness, run_node, m
     import cv2
 
     monkeypatch.setattr(cv2, "VideoCapture", FakeDevice)
-    monkeypatch.setattr(video, "DEVICE_FOLDER", f"{movie.parent}/")
+    monkeypatch.setattr(video, "is_device", lambda path: path == str(movie))
     parameters = {"pixel_format": "mjpeg2rgb", "brightness": 10, "gain": 5, "image_width": 320, "image_height": 240}
     images, _ = await run_node(UsbCam, video_device=str(movie), **parameters)
     await eventually(lambda: images)

@@ -13,6 +13,7 @@ from ctypes.util import find_library
 from importlib import import_module
 from itertools import pairwise
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform, Vector3
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
+from linkwright.simulation.rendering.lens import Lens
 from linkwright.simulation.rendering.lights import PlacedLight, collect_lights
 from linkwright.simulation.rendering.renderer import Channels, Pixels, RenderedImage, compute_image_axes
 from linkwright.simulation.rendering.triangles import is_infinite_plane
@@ -85,6 +87,7 @@ class OpenGlRenderer:
                 getattr(self._visual_options, attribute)[:] = 0
         self._visual_options.geomgroup[VISUAL_GROUP] = 1
         self._mujoco_camera = mujoco.MjvCamera()
+        self._lenses: WeakKeyDictionary[Optics, Lens] = WeakKeyDictionary()
         self._revision = -1
         self._infinite_planes: frozenset[int] = frozenset()
         self._draw_context: Any = None
@@ -107,10 +110,11 @@ class OpenGlRenderer:
         geoms = self._draw_geoms(pinhole) if Channels.GEOMS in channels else None
         if optics.is_pinhole:
             return RenderedImage(color, depth, geoms)
+        lens = self._lenses.get(optics) or self._lenses.setdefault(optics, Lens(optics))
         return RenderedImage(
-            None if color is None else _resample_interpolated(color, optics),
-            None if depth is None else _resample_nearest(depth, optics),
-            None if geoms is None else _resample_nearest(geoms, optics),
+            None if color is None else lens.resample_colors(color),
+            None if depth is None else lens.resample_nearest(depth),
+            None if geoms is None else lens.resample_nearest(geoms),
         )
 
     def close(self) -> None:
@@ -359,24 +363,3 @@ def _import_context_class(backend: str) -> Any:
     finally:
         if previous_platform is None:  # child processes must not inherit the variable, which MuJoCo sets
             os.environ.pop("PYOPENGL_PLATFORM", None)
-
-
-def _resample_nearest(pixels: Pixels, optics: Optics) -> Pixels:
-    """Return a pinhole image as seen through the lens, with nearest-neighbor interpolation."""
-    column, row = optics.sources
-    column = np.clip(np.round(column).astype(int), 0, optics.pinhole.width - 1)
-    row = np.clip(np.round(row).astype(int), 0, optics.pinhole.height - 1)
-    samples: Pixels = pixels[row, column].reshape(optics.height, optics.width, *pixels.shape[2:])
-    return samples
-
-
-def _resample_interpolated(pixels: Pixels, optics: Optics) -> Pixels:
-    """Return a color image as seen through the lens, with bilinear interpolation."""
-    column = np.clip(optics.sources[0], 0, optics.pinhole.width - 1.001)
-    row = np.clip(optics.sources[1], 0, optics.pinhole.height - 1.001)
-    left, top = column.astype(int), row.astype(int)
-    x_fraction, y_fraction = (column - left)[:, None], (row - top)[:, None]
-    upper = pixels[top, left] * (1 - x_fraction) + pixels[top, left + 1] * x_fraction
-    lower = pixels[top + 1, left] * (1 - x_fraction) + pixels[top + 1, left + 1] * x_fraction
-    interpolated: Pixels = np.round(upper * (1 - y_fraction) + lower * y_fraction)
-    return interpolated.astype(np.uint8).reshape(optics.height, optics.width, 3)

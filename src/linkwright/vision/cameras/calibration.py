@@ -1,7 +1,7 @@
-"""Calibration files of cameras, as camera_calibration writes them and camera_info_manager reads them.
+"""Calibration files of cameras, as camera_calibration and camera_info_manager write and read them.
 
 Source: camera_info_manager and camera_calibration_parsers (URLs, default folder, YAML form). Deliberate difference:
-files in the INI form and ``flash://`` are not read.
+files in the INI form and ``flash://`` are not supported.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from typing import Any
 
 import yaml
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
+from linkwright.files.whole_files import write_whole_file
 from linkwright.messages import get_message
 from linkwright.packages import PackageFinder
 
@@ -68,6 +69,39 @@ def read_calibration(path: Path) -> tuple[str, Any]:
     message = phrase("calibration file '{path}' cannot be read: {reason}", path=str(path), reason=reason)
     hint = phrase("it is YAML as camera_calibration saves it, with image_width, camera_matrix and the like")
     raise LinkwrightError(Diagnostic("VISION114", message, hint=hint))
+
+
+def write_calibration(path: Path, camera: str, info: Any) -> None:
+    """Write a calibration file, and the folders that lack.
+
+    Args:
+        path: the file.
+        camera: the name of the camera.
+        info: the ``sensor_msgs/msg/CameraInfo``.
+
+    Raises:
+        LinkwrightError: VISION116, the file cannot be written.
+    """
+    content: dict[str, Any] = {"image_width": info.width, "image_height": info.height, "camera_name": camera}
+    content["distortion_model"] = info.distortion_model
+    content["distortion_coefficients"] = _make_matrix(1, info.d)
+    for name, (field, _) in _MATRICES.items():
+        content[name] = _make_matrix(3, getattr(info, field))
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole_file(path, yaml.safe_dump(content, default_flow_style=None, sort_keys=False))
+    except OSError as error:
+        message = phrase(
+            "calibration file '{path}' cannot be written: {reason}",
+            path=str(path),
+            reason=foreign(error.strerror or str(error)),
+        )
+        raise LinkwrightError(Diagnostic("VISION116", message)) from None
+
+
+def _make_matrix(rows: int, values: Any) -> dict[str, Any]:
+    numbers = [float(value) for value in values]
+    return {"rows": rows, "cols": len(numbers) // rows, "data": numbers}
 
 
 def _read_matrix(values: Any, name: str, count: int) -> list[float]:

@@ -23,6 +23,11 @@ _RETRY_PERIOD_S = 0.01
 _JOIN_TIMEOUT_S = 5.0
 
 
+def is_device(path: str) -> bool:
+    """Return whether a path is that of a device; a video file can also be below ``/dev``, in ``/dev/shm``."""
+    return Path(path).is_char_device()
+
+
 class VideoSource:
     """An open camera or video file.
 
@@ -43,7 +48,7 @@ class VideoSource:
     def __init__(self, path: str, size: tuple[int, int], pixel_format: str = "", rate_hz: float = 0.0) -> None:
         self._cv2: Any = load_opencv()
         self._path = path
-        self.is_file = not path.startswith(DEVICE_FOLDER)
+        self.is_file = not is_device(path)
         self._capture = self._open(size, pixel_format, rate_hz)
         self.rate_hz: float = self._capture.get(self._cv2.CAP_PROP_FPS)
         self._thread: threading.Thread | None = None

@@ -2,8 +2,8 @@
 
 Source: v4l2_camera and usb_cam for ROS 2 (parameters, defaults, topics, frames, texts). Deliberate differences:
 ``video_device`` can name a video file, which is repeated and paced by the node's clock; a pixel format that is not
-supported is replaced by ``rgb8``; images are published as raw images only; the service ``set_camera_info`` and the
-parameters for the device's controls in v4l2_camera are missing, whose camera has the name of its device file.
+supported is replaced by ``rgb8``; images are published as raw images only; the parameters for the device's controls in
+v4l2_camera are missing, whose camera has the name of its device file.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from linkwright.graph import Graph, Node
 from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import check_positive, invalid_value_error, log_unknown_parameters
-from linkwright.vision.cameras.calibration import locate_calibration, read_calibration
+from linkwright.vision.cameras.calibration import locate_calibration, read_calibration, write_calibration
 from linkwright.vision.cameras.video import Frame, VideoSource
 from linkwright.vision.detectors.library import load_opencv
 
@@ -150,8 +150,29 @@ class _VideoCamera(SingleNode, ABC):
         self._images.publish(image)
         self._infos.publish(info)
 
+    def _serve_info(self, url: str, camera: str) -> Any:
+        """Offer the service that stores a calibration, and return the camera_info of the calibration file or None.
+
+        The messages are those of camera_info_manager.
+        """
+
+        def store(request: Any, response: Any) -> Any:
+            self._info = request.camera_info
+            try:
+                path = locate_calibration(url, camera, os.environ)
+                self._node.get_logger().info(f"writing calibration data to {path}")
+                write_calibration(path, camera, self._info)
+            except LinkwrightError as error:
+                _log_error(self._node, error)
+                response.status_message = f"Error storing camera calibration: {error.diagnostics[0].message}"
+            else:
+                response.success = True
+            return response
+
+        self._node.create_service(get_service("sensor_msgs/srv/SetCameraInfo"), "~/set_camera_info", store)
+        return self._read_info(url, camera)
+
     def _read_info(self, url: str, camera: str) -> Any:
-        """Return the camera_info of the calibration file, or None, with the messages of camera_info_manager."""
         logger = self._node.get_logger()
         if not url:
             logger.info("using default calibration URL")
@@ -207,7 +228,7 @@ class V4L2Camera(_VideoCamera):
             _log_error(node, error)
             return
         rate_hz = 0.0 if interval == _DEFAULT_INTERVAL else interval[1] / interval[0]
-        self._publish_from(source, rate_hz, encoding, frame_id, self._read_info(url, Path(device).stem))
+        self._publish_from(source, rate_hz, encoding, frame_id, self._serve_info(url, Path(device).stem))
 
 
 class UsbCam(_VideoCamera):
@@ -259,7 +280,7 @@ class UsbCam(_VideoCamera):
             for name in source.set_controls(controls):
                 logger.warning(localized(phrase("the camera does not accept a value for {name}", name=name)))
         node.create_service(get_service("std_srvs/srv/SetBool"), "set_capture", self._set_capture)
-        self._publish_from(source, rate_hz, encoding, frame_id, self._read_info(url, camera))
+        self._publish_from(source, rate_hz, encoding, frame_id, self._serve_info(url, camera))
 
     def _set_capture(self, request: Any, response: Any) -> Any:
         self._is_capturing = request.data
