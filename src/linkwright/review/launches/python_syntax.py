@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator, Sequence
 
 from linkwright.packages.readers.python_values import called_name
 
@@ -14,15 +15,36 @@ _DEFAULT_VALUE_KEYWORDS = ("name", "value")
 
 
 def find_unused_values(tree: ast.AST) -> frozenset[int]:
-    """Return the identities of the values of unused names."""
+    """Return the identities of the values of unused names, and of values that a later assignment replaces unused."""
     nodes = list(ast.walk(tree))
-    used = {node.id for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)}
+    names = [node for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)]
+    used = {node.id for node in names}
     assignments = (node for node in nodes if isinstance(node, ast.Assign))
-    return frozenset(
+    unused = {
         id(node.value)
         for node in assignments
         if all(isinstance(target, ast.Name) and target.id not in used for target in node.targets)
-    )
+    }
+    return frozenset(unused | {id(value) for value in _find_replaced_values(nodes, names)})
+
+
+def _find_replaced_values(nodes: Sequence[ast.AST], names: Sequence[ast.Name]) -> Iterator[ast.expr]:
+    """Yield the values of names that get another value in the same block before they are used."""
+    lines: dict[str, list[int]] = {}
+    for name in names:
+        lines.setdefault(name.id, []).append(name.lineno)
+    for node in nodes:
+        body = getattr(node, "body", None)
+        last: dict[str, ast.Assign] = {}
+        for statement in body if isinstance(body, list) else ():
+            target = statement.targets[0] if isinstance(statement, ast.Assign) else None
+            if not isinstance(statement, ast.Assign) or not isinstance(target, ast.Name) or len(statement.targets) > 1:
+                continue
+            earlier = last.get(target.id)
+            end = statement.end_lineno or statement.lineno
+            if earlier is not None and not any(earlier.lineno <= line <= end for line in lines.get(target.id, ())):
+                yield earlier.value
+            last[target.id] = statement
 
 
 def find_name_and_value(call: ast.Call, function: str) -> tuple[ast.expr | None, ast.expr | None]:
