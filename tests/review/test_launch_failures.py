@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from tests.review.conftest import breaking
+
 LAUNCH = """from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
@@ -83,6 +85,19 @@ def test_a_new_argument_with_a_default_does_not_fail(repository, compare, defaul
     repository.write({"arm/launch/arm.launch.py": LAUNCH.replace(CHECK, CHECK + check).replace(ARGUMENT, argument)})
     changes = [change for _, change in compare(repository).breaking_changes]
     assert sum("exit" in str(change.sentence) for change in changes) == count
+
+
+def test_a_new_argument_whose_empty_value_is_replaced_does_not_fail(repository, compare):
+    check = """    arms = LaunchConfiguration('arms').perform(context)
+    if not arms:
+        arms = 'both'
+    if arms not in TABLE:
+        exit(arms)
+"""
+    argument = f'        DeclareLaunchArgument("arms", default_value=""),\n{ARGUMENT}'
+    repository.commit({"arm/launch/arm.launch.py": LAUNCH})
+    repository.write({"arm/launch/arm.launch.py": LAUNCH.replace(CHECK, CHECK + check).replace(ARGUMENT, argument)})
+    assert not breaking(compare(repository))
 
 
 HELPER = """def resolve(arms, name="both"):

@@ -56,3 +56,51 @@ def test_old_names_of_the_arguments_of_nodes_are_no_change(review_changes):
     node = 'ComposableNode(package="arm", node_plugin="arm::Driver", node_name="d", node_namespace="n")'
     text = COMMAND.replace("    return [\n", f"    return [\n        {node},\n")
     assert review_changes("arm.launch.py", text, node, node.replace("node_", "")) == ([], [])
+
+
+MESSAGES = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, ExecuteProcess, LogInfo, RegisterEventHandler
+from launch.event_handlers import OnProcessExit
+from launch.substitutions import LaunchConfiguration
+from other_package import state_publisher
+
+
+def generate_launch_description():
+    load = ExecuteProcess(cmd=["ros2", "control", "load_controller", "--set-state", "active", "state"])
+    left = ExecuteProcess(cmd=["ros2", "control", "load_controller", "--set-state", "active", "left"])
+    right = ExecuteProcess(cmd=["ros2", "control", "load_controller", "--set-state", "active", "right"])
+    publisher = state_publisher.load_node(name="arm")
+    return LaunchDescription([
+        load,
+        publisher,
+        RegisterEventHandler(OnProcessExit(target_action=load, on_exit=[right])),
+    ])
+"""
+LOG = '        LogInfo(msg=["port ", LaunchConfiguration("port")]),\n'
+HANDLER = "        RegisterEventHandler(OnProcessExit(target_action=load, on_exit=[left])),\n"
+
+
+def test_an_event_handler_is_told_by_the_commands_that_it_starts(repository, compare):
+    repository.commit({"arm/launch/arm.launch.py": MESSAGES})
+    before = "        RegisterEventHandler("
+    repository.write({"arm/launch/arm.launch.py": MESSAGES.replace(before, HANDLER + before)})
+    (launch,) = compare(repository).subjects
+    (change,) = [change for change in launch.changes if "event handler" in str(change.sentence)]
+    assert str(change.sentence).endswith("on_exit ['ros2 control load_controller ... left']")
+    assert change.location.line == MESSAGES[: MESSAGES.index(before)].count("\n") + 1
+
+
+def test_log_messages_are_actions(review_changes):
+    found, found_breaking = review_changes("arm.launch.py", MESSAGES, "        load,\n", f"        load,\n{LOG}")
+    assert (found, found_breaking) == (["log message added: port $(var port)"], [])
+
+
+def test_actions_of_other_packages_in_a_sum_of_lists_are_not_removed(repository, compare):
+    repository.commit({"arm/launch/arm.launch.py": MESSAGES})
+    new = MESSAGES.replace("    return LaunchDescription([\n", "    nodes: list = [\n")
+    new = new.replace(
+        "on_exit=[right])),\n    ])", "on_exit=[right])),\n    ]\n    return LaunchDescription([] + nodes)"
+    )
+    repository.write({"arm/launch/arm.launch.py": new})
+    assert new.count("nodes") == 2
+    assert compare(repository).subjects == []

@@ -149,3 +149,21 @@ def test_namespace_that_moves_between_an_included_and_an_including_file_changes_
     reasons = review_caller({PART: part, CALLER: outer}, {PART: inner, CALLER: caller}, PART)
     line = f"node 'lamp/driver': namespace left added; {CALLER} no longer sets it"
     assert reasons == {line: f"where the file is started without {CALLER}, {LOST_NAMES}"}
+
+
+def test_an_argument_of_the_including_file_is_not_that_of_the_included_one(repository, compare):
+    part = """<launch>
+<arg name="robot" default="door"/>
+<include file="$(find other)/$(arg robot).launch"/>
+</launch>
+"""
+    caller = """<launch>
+<arg name="robot"/>
+<include file="$(find arm)/launch/part.launch"><arg name="robot" value="robot/$(arg robot)"/></include>
+</launch>
+"""
+    repository.commit({**MANIFEST, "arm/launch/part.launch": part, "arm/launch/all.launch": caller})
+    repository.write({"arm/launch/all.launch": caller.replace('<arg name="robot" value="robot/$(arg robot)"/>', "")})
+    changes = subject(compare(repository), "arm/launch/all.launch").changes
+    reasons = " ".join(str(change.reason) for change in changes)
+    assert "'$(find other)/robot/$(robot of the including file).launch' no longer starts" in reasons

@@ -142,3 +142,32 @@ def test_topic_that_moves_to_another_node_stays_breaking(repository, compare):
     repository.write({PATH: format_sections({"/lidar": [], "/camera": ["width: 3", *old["/lidar"]]})})
     result = compare(repository)
     assert any("scan_topic" in text for text in breaking(result))
+
+
+POSES = """arm:
+  ros__parameters:
+    home:
+      - shoulder: 0.5
+      - elbow: 1.0
+    rate: 10
+"""
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        (POSES.replace("  - ", "  "), []),
+        (POSES.replace("  - ", "  ").replace("1.0", "2.0"), ["arm.ros__parameters.home.elbow 1.0 -> 2.0"]),
+        (
+            POSES.replace("  - ", "  ").replace("      elbow: 1.0\n", ""),
+            ["arm.ros__parameters.home[1].elbow 1.0 removed"],
+        ),
+    ],
+)
+def test_a_list_of_mappings_that_ros_2_cannot_read_is_not_missed(repository, compare, new, expected):
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: POSES})
+    repository.write({PATH: new})
+    result = compare(repository)
+    text, *others = sentences(subject(result, PATH))
+    assert text.startswith("lists of mappings, which no parameter of ROS 2 can be, became mappings: arm.")
+    assert (others, breaking(result)) == (expected, [])

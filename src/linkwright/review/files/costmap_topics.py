@@ -56,6 +56,23 @@ class CostmapTopics:
             and name not in _split(self._new[owner].text)
         )
 
+    def find_replaced_layers(self, parameter: str) -> set[str]:
+        """Return the layers that a list of a costmap no longer names, but whose topics other layers of it read.
+
+        Args:
+            parameter: the path of the list.
+        """
+        costmap, _, name = parameter.rpartition(".")
+        if name != "plugins" or parameter not in self._new or "costmap" not in costmap:
+            return set()
+        left = _split(self._new[parameter].text)
+        read = {topic for layer in left for topic in _find_layer_topics(self._new, _join(costmap, layer))}
+        topics = {layer: _find_layer_topics(self._old, _join(costmap, layer)) for layer in self._list_old(parameter)}
+        return {layer for layer, names in topics.items() if layer not in left and names and names <= read}
+
+    def _list_old(self, parameter: str) -> list[str]:
+        return _split(self._old[parameter].text) if parameter in self._old else []
+
     @cached_property
     def _new_topics(self) -> set[tuple[str, str]]:
         return {(costmap, topic) for _, costmap, topic in _list_topics(self._new)}
@@ -92,6 +109,11 @@ def _list_topics(values: Mapping[str, YamlValue]) -> Iterator[tuple[str, str, st
         for topic_name in list_items(value.text) if match is not None else ():
             if match is not None and topic_name not in ("", EMPTY):
                 yield name, match["costmap"] or "", topic_name.strip("/")
+
+
+def _find_layer_topics(values: Mapping[str, YamlValue], layer: str) -> set[str]:
+    """Return the topics that a layer reads."""
+    return {topic for owner, _, topic in _list_topics(values) if owner.startswith(f"{layer}.")}
 
 
 def _find_owner(values: Mapping[str, YamlValue], layer: str, source: str) -> str | None:

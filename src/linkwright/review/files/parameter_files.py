@@ -17,6 +17,11 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.bridges import compare_bridges, read_bridges
 from linkwright.review.files.generated_parameters import compare_generated_parameters, is_parameter_description
 from linkwright.review.files.key_readers import KeyReaders
+from linkwright.review.files.lists_of_mappings import (
+    drop_reasons_of_lists,
+    find_replaced_lists,
+    report_replaced_lists,
+)
 from linkwright.review.files.lost_groups import find_group_reason
 from linkwright.review.files.migrated_parameters import describe_migration, find_migrated_nodes, rename_migrated
 from linkwright.review.files.moved_nodes import find_node_move
@@ -137,6 +142,18 @@ def _find_changes(
 ) -> Iterator[ValueChange]:
     labels = find_item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
     old_values, new = ({} if root is None else collect_values(root, labels) for root in (old_root, new_root))
+    lists = find_replaced_lists(old_values, new)
+    report_replaced_lists(pair, lists, new)
+    old_values = {lists.get(path, path): value for path, value in old_values.items()}
+    yield from drop_reasons_of_lists(_compare_values(pair, old_values, new, read_names), lists)
+
+
+def _compare_values(
+    pair: FilePair,
+    old_values: dict[str, YamlValue],
+    new: dict[str, YamlValue],
+    read_names: Callable[[Mapping[str, YamlValue]], NameRule],
+) -> Iterator[ValueChange]:
     migrated = find_migrated_nodes(old_values, new)
     if migrated:
         pair.changes.append(describe_migration(migrated, new, pair.new_path))

@@ -136,7 +136,7 @@ class NameRules:
         if removed and is_offered:
             return names_reason(sorted(removed))
         if removed and _PLUGIN_LIST.search(parameter):
-            lost = removed - self._find_plugins(parameter)
+            lost = removed - self._find_plugins(parameter) - self._topics.find_replaced_layers(parameter)
             return _make_plugin_reason(lost) if lost else None
         if removed and old_value.is_list and _CONTROLLER_LIST.search(parameter):
             return make_controllers_reason(sorted(removed))

@@ -11,6 +11,8 @@ from linkwright.review.launches.outlines import FailingTest
 
 _EXIT_FUNCTIONS = ("sys.exit", "exit", "quit", "os._exit")
 """The calls that end the process."""
+_MAX_EXPRESSIONS = 20
+"""The maximum number of expressions that are followed to find the arguments of a test."""
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 
@@ -113,8 +115,12 @@ def _bind(node: ast.expr, call: Mapping[str, ast.expr]) -> ast.expr:
 
 def _find_arguments(python: PythonFile, test: ast.expr, call: Mapping[str, ast.expr]) -> frozenset[str]:
     """Return the arguments of the launch file whose values are tested in a call of the function around the test."""
-    names = [_bind(node, call) for node in ast.walk(test) if isinstance(node, ast.Name)]
-    expressions = [test, *map(python.resolved, names)]
+    expressions = [test]
+    for expression in expressions:
+        for name in (node for node in ast.walk(expression) if isinstance(node, ast.Name)):
+            value = python.resolved(_bind(name, call) if expression is test else name)
+            if len(expressions) < _MAX_EXPRESSIONS and all(value is not other for other in (name, *expressions)):
+                expressions.append(value)
     calls = [node for expression in expressions for node in ast.walk(expression) if isinstance(node, ast.Call)]
     return frozenset(
         str(node.args[0].value)

@@ -57,6 +57,7 @@ from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
 from linkwright.review.launches.repeated_arguments import report_repeated_arguments
 from linkwright.review.launches.settings import SettingChanges
+from linkwright.review.launches.simulated_controllers import is_simulated_controller_manager
 from linkwright.review.launches.starting_nodes import find_starting_node
 from linkwright.review.launches.titles import (
     format_added_entry,
@@ -252,6 +253,9 @@ def _report_unpaired_entries(
             continue
         if has_robot_with_frame(entry, old_included.outline, new_included, pair.versions.new):
             pair.add(phrase("{change}; the robot has the frame as a link", change=text), location)
+            continue
+        if is_simulated_controller_manager(entry, new_included, pair.versions.new):
+            pair.add(phrase("{change}; the simulated robot has a controller manager", change=text), location)
             continue
         if _is_unused_argument(pair, entry, old_included.outline):
             pair.add(phrase("{change}; the file did not use it", change=text), location)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -200,7 +200,10 @@ class IncludedActions:
         included_outline = None if included_file is None else self._read_outline(included_file)
         if included_file is None or included_outline is None:
             return None
-        passed_values = {name: outline.resolve(value) for name, value in entry.settings.items()}
+        passed_values = {
+            name: _name_callers_variables(outline.resolve(value), entry.settings)
+            for name, value in entry.settings.items()
+        }
         inherited_values = {} if outline.is_ros1 or included_outline.is_ros1 else outline.values
         return IncludedFile(included_file, included_outline.with_defaults({**inherited_values, **passed_values}))
 
@@ -295,6 +298,18 @@ class IncludedActions:
     def _is_unknown(self, include: Entry) -> bool:
         resolved = replace(include, name=self.outline.resolve(include.name))
         return self.find_included_file(resolved, self.file) is None
+
+
+def _name_callers_variables(value: str, passed: Collection[str]) -> str:
+    """Return a passed value in which unknown arguments of the including file differ from those of the included one.
+
+    Args:
+        value: the value.
+        passed: the names of the arguments that the included file gets.
+    """
+    return _USED_ARGUMENT.sub(
+        lambda match: f"$({match['name']} of the including file)" if match["name"] in passed else match[0], value
+    )
 
 
 def find_callers(version: Version, path: str, name: str) -> Iterator[tuple[LaunchOutline, Entry]]:

@@ -17,6 +17,12 @@ from linkwright.review.launches.outlines import (
     Entry,
     LaunchOutline,
 )
+from linkwright.review.launches.replaced_nodes import (
+    COMMON_PARAMETERS,
+    have_same_names,
+    match_lone_nodes,
+    register_same_class,
+)
 from linkwright.review.launches.titles import find_served_names
 
 MIN_SIMILARITY = 0.5
@@ -32,10 +38,8 @@ _MIN_SHARE_OF_COMMON_ARGUMENTS = 0.5
 """The number and the share of passed arguments that an include keeps if another file replaces the included one."""
 _SIMULATOR_FILE = re.compile(r"(?:^|[/_])(?:gazebo|gzserver|gz_sim|ign_gazebo|\w*world|empty)\.launch")
 """The launch files that, judging by their name, start a simulator."""
-_MIN_COMMON_PARAMETERS = 2
+_MINCOMMON_PARAMETERS = 2
 """The number of parameters and parameter files that a node keeps if another program replaces its program."""
-_COMMON_PARAMETERS = frozenset({"use_sim_time", "robot_description", "frame_id", "autostart", "node_names"})
-"""Parameters that many programs have."""
 _LOADED_NODELET = re.compile(r"(?:load|standalone) (\S+)")
 Match = tuple["Entry | None", "Entry | None"]
 """The old and the new action; None for a version that lacks the action."""
@@ -71,6 +75,10 @@ def find_replacements(
     for score, i, k in sorted(scores, key=lambda item: (-item[0], item[1], item[2])):
         if score and i not in pairs and k not in pairs.values():
             pairs[i] = k
+    pairs |= match_lone_nodes(
+        {i: entry for i, entry in enumerate(removed) if i not in pairs},
+        {k: entry for k, entry in enumerate(added) if k not in pairs.values()},
+    )
     pairs |= _match_lone_includes(
         {i: entry for i, entry in enumerate(removed) if i not in pairs},
         {k: entry for k, entry in enumerate(added) if k not in pairs.values()},
@@ -139,13 +147,13 @@ def _compute_replacement_score(
     old_file, new_file = (entry.name.rpartition("/")[2] for entry in (old, new))
     if old_package == new_package and old_file != new_file and new_names.get(old_file) == new_file:
         return 2.0 + similarity
-    if old_program == new_program:
+    if old_program == new_program or register_same_class(old.name, new.name):
         return 2.0 + similarity if similarity >= MIN_SIMILARITY or not (old.settings and new.settings) else 0.0
     name_similarity = compute_name_similarity(old_program.rpartition("::")[2], new_program.rpartition("::")[2])
     has_same_topics = old.settings == new.settings and any(key.startswith(REMAPPING) for key in old.settings)
     if old_package == new_package and has_same_topics and name_similarity >= MIN_SIMILARITY:
         return 1.0 + name_similarity
-    if _have_same_parameters(old, new):
+    if _have_same_parameters(old, new) or have_same_names(old, new):
         return 1.0 + similarity
     other_names = (old_package, new_package), (name or "", new.settings.get("name", ""))
     is_renamed = all(a == b or compute_name_similarity(a, b) >= _MIN_SIMILARITY_OF_PROGRAMS for a, b in other_names)
@@ -161,9 +169,9 @@ def _have_same_parameters(old: Entry, new: Entry) -> bool:
         {item for item in entry.settings.items() if item[0].startswith(("parameters", PARAMETER))}
         for entry in (old, new)
     ]
-    names = {name.removeprefix(PARAMETER) for name, _ in parameters[1]} - _COMMON_PARAMETERS
+    names = {name.removeprefix(PARAMETER) for name, _ in parameters[1]} - COMMON_PARAMETERS
     files = new.settings.get("parameters", "").count(".y")  # ".yaml" and ".yml"
-    return parameters[0] == parameters[1] and len(names) + max(files - 1, 0) >= _MIN_COMMON_PARAMETERS
+    return parameters[0] == parameters[1] and len(names) + max(files - 1, 0) >= _MINCOMMON_PARAMETERS
 
 
 def _have_same_namespace(old: Entry, new: Entry, outlines: tuple[LaunchOutline, LaunchOutline]) -> bool:

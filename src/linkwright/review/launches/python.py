@@ -10,6 +10,7 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.helpers import Function, HelperFunctions, find_parameter_defaults, find_program_guard
 from linkwright.review.launches.list_additions import find_added_items
 from linkwright.review.launches.literals import CoveredLiterals, Literals
+from linkwright.review.launches.log_messages import LOG_CLASS, read_log_message
 from linkwright.review.launches.names import is_chosen_value
 from linkwright.review.launches.node_settings import format_settings, split_choice, split_parameters, split_remappings
 from linkwright.review.launches.other_code import find_definitions, find_scope_sources, read_other_code
@@ -19,8 +20,15 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     Scope,
 )
+from linkwright.review.launches.python_syntax import (
+    ADD_METHODS,
+    find_added_action,
+    find_name_and_value,
+    find_unused_values,
+)
 from linkwright.review.launches.python_tests import read_tests
 from linkwright.review.launches.text import BoundExpression, ExpressionTexts, format_branches
+from linkwright.review.launches.titles import shorten_command
 
 _NODE_CLASSES = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer")
 _PROCESS_CLASSES = ("ExecuteProcess", "ExecuteLocal")
@@ -30,14 +38,10 @@ _ENVIRONMENT_CLASSES = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "
 _OTHER_ACTIONS = (*_ARGUMENT_CLASSES, "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
 ACTIONS = frozenset({*_NODE_CLASSES, *_PROCESS_CLASSES, *_ENVIRONMENT_CLASSES, *_OTHER_ACTIONS})
 """The classes whose calls make actions."""
-_VALUE_KEYWORDS = {"SetRemap": ("src", "dst")}
-_DEFAULT_VALUE_KEYWORDS = ("name", "value")
-"""The names of the arguments of the classes that set a value; the first item of each is what is set."""
 _HANDLER_CLASS = "RegisterEventHandler"
 _NAMESPACE_CLASSES = ("PushRosNamespace", "PushROSNamespace", "PushNamespace")
 _ACTION_LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
 """The objects whose first argument is a list of actions."""
-_ADD_METHODS = ("add_action", "add_entity")
 _LIST_METHODS = ("append", "extend", "insert")
 _EMPTY_SCOPE = Scope()
 _ALIASES = {f"node_{name}": name for name in ("executable", "plugin", "name", "namespace")}
@@ -117,7 +121,7 @@ class _Reader:
 
     def read_entries(self) -> Iterator[Entry]:
         """Yield the entries of the visited actions."""
-        unused = _find_unused_values(self.python.tree)
+        unused = find_unused_values(self.python.tree)
         for call, scope, texts in list(self.scopes.values()):
             self.texts = texts
             function = called_name(call).rpartition(".")[2]
@@ -131,6 +135,9 @@ class _Reader:
                 yield self._read_action(call, function, scope)
             elif self._is_helper(call):
                 yield from self._read_helper_entries(call, scope)
+            elif function == LOG_CLASS:
+                self.covered.add(id(call))
+                yield read_log_message(call, scope, texts, self.python.span(call))
             else:
                 self.covered.add(id(call))
                 yield self._read_foreign_action(call, scope)
@@ -256,21 +263,21 @@ class _Reader:
         holds = self.texts.evaluate_parameter(node.test)
         if holds is not None:
             for statement in node.body if holds else node.orelse:
-                scope = scope.with_namespace(self._find_pushed_namespace(_find_added_action(statement)))
+                scope = scope.with_namespace(self._find_pushed_namespace(find_added_action(statement)))
                 self.visit(statement, scope)
             return
         conditions = format_branches(node.test)
         for condition, body in zip(conditions, (node.body, node.orelse), strict=True):
             inner = scope.with_condition(condition)
             for statement in body:
-                inner = inner.with_namespace(self._find_pushed_namespace(_find_added_action(statement)))
+                inner = inner.with_namespace(self._find_pushed_namespace(find_added_action(statement)))
                 self.visit(statement, inner)
         if any(condition in inner.conditions for _, inner, _ in self.scopes.values() for condition in conditions):
             self.branches.add(id(node))
 
     def _visit_body(self, function: ast.FunctionDef, scope: Scope) -> None:
         for statement in function.body:
-            scope = scope.with_namespace(self._find_pushed_namespace(_find_added_action(statement)))
+            scope = scope.with_namespace(self._find_pushed_namespace(find_added_action(statement)))
             self.visit(statement, scope)
             if isinstance(statement, ast.If) and isinstance(statement.body[-1], ast.Return) and not statement.orelse:
                 holds = self.texts.evaluate_parameter(statement.test)
@@ -289,14 +296,14 @@ class _Reader:
         if function in _NAMESPACE_CLASSES:
             self.covered.add(id(call))
             return
-        if function in ACTIONS or function == _HANDLER_CLASS or self._is_helper(call):
+        if function in ACTIONS or function in (_HANDLER_CLASS, LOG_CLASS) or self._is_helper(call):
             self._add_call(call, scope)
         condition = next((keyword.value for keyword in call.keywords if keyword.arg == CONDITION), None)
         inner = scope.with_condition(self.texts.format_condition(condition))
         if function == "TimerAction":
             period = next((keyword.value for keyword in call.keywords if keyword.arg == "period"), None)
             inner = inner.with_condition(f"after {self.texts.text(period)} s")
-        if function in _ACTION_LISTS or function in _ADD_METHODS:
+        if function in _ACTION_LISTS or function in ADD_METHODS:
             for action in self._find_foreign_actions(call):
                 self._add_call(action, inner)
         children = [call.func, *call.args, *(item.value for item in call.keywords if item.arg != CONDITION)]
@@ -307,7 +314,7 @@ class _Reader:
 
     def _takes_actions(self, call: ast.Call, function: str) -> bool:
         """Return whether the actions in the arguments of a call are in the scope of the call."""
-        is_list = function in (*_ACTION_LISTS, *_ADD_METHODS, *_LIST_METHODS, _HANDLER_CLASS) or function in ACTIONS
+        is_list = function in (*_ACTION_LISTS, *ADD_METHODS, *_LIST_METHODS, _HANDLER_CLASS) or function in ACTIONS
         return is_list or self._is_helper(call)
 
     def _add_call(self, call: ast.Call, scope: Scope) -> None:
@@ -323,9 +330,8 @@ class _Reader:
             *call.args[:1],
             *(item.value for item in call.keywords if item.arg in ("actions", "initial_entities")),
         ]
-        for argument in map(self.python.resolved, arguments):
-            for item in argument.elts if isinstance(argument, (ast.List, ast.Tuple)) else [argument]:
-                action = self.python.resolved(item)
+        for argument in arguments:
+            for action in map(self.python.resolved, self._list_items(argument) or [argument]):
                 if isinstance(action, ast.Call) and self.helpers.is_foreign(self.python, action):
                     yield action
 
@@ -414,7 +420,7 @@ class _Reader:
             if keyword.arg is not None
         }
         extra = self.extra if any(keyword.arg is None for keyword in call.keywords) else {}
-        first_text, second_text = map(text, _find_name_and_value(call, function))
+        first_text, second_text = map(text, find_name_and_value(call, function))
         settings: dict[str, str] = {}
         if function in _ARGUMENT_CLASSES:
             kind, name = "argument", text(call.args[0] if call.args else keywords.get("name"))
@@ -480,18 +486,22 @@ class _Reader:
         settings = {key: self._format_short_name(item) for key, item in keywords.items()}
         return Entry("handler", name, scope.add_to_settings("handler", settings), self.python.span(call))
 
-    def _format_short_name(self, node: ast.expr) -> str:
+    def _format_short_name(self, node: ast.expr, *, is_item: bool = False) -> str:
         """Return the program of a node or the class of another action.
 
-        For a list, the result names each item.
+        For a list, the result names each item, and the commands of processes.
         """
         node = self.python.resolved(node)
         if isinstance(node, (ast.List, ast.Tuple)):
-            return f"[{', '.join(map(self._format_short_name, node.elts))}]"
+            return f"[{', '.join(self._format_short_name(item, is_item=True) for item in node.elts)}]"
         if not isinstance(node, ast.Call):
             return self.texts.text(node)
         function = called_name(node).rpartition(".")[2]
-        return self._read_action(node, function, _EMPTY_SCOPE).name if function in _NODE_CLASSES else function
+        if function in _NODE_CLASSES:
+            return self._read_action(node, function, _EMPTY_SCOPE).name
+        if function in _PROCESS_CLASSES and is_item:
+            return shorten_command(self._read_action(node, function, _EMPTY_SCOPE).name)
+        return function
 
     def _read_foreign_action(self, call: ast.Call, scope: Scope) -> Entry:
         keywords = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg is not None}
@@ -564,32 +574,3 @@ class _Reader:
         if "parameters" in others:
             parts |= split_choice(others.pop("parameters"), split_parameters)
         return {**format_settings(others), **parts}
-
-
-def _find_unused_values(tree: ast.AST) -> frozenset[int]:
-    """Return the identities of the values of unused names."""
-    nodes = list(ast.walk(tree))
-    used = {node.id for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)}
-    assignments = (node for node in nodes if isinstance(node, ast.Assign))
-    return frozenset(
-        id(node.value)
-        for node in assignments
-        if all(isinstance(target, ast.Name) and target.id not in used for target in node.targets)
-    )
-
-
-def _find_name_and_value(call: ast.Call, function: str) -> tuple[ast.expr | None, ast.expr | None]:
-    """Return the two arguments of a call that sets a value, which may be keywords in any order."""
-    keywords = {keyword.arg: keyword.value for keyword in call.keywords}
-    names = _VALUE_KEYWORDS.get(function, _DEFAULT_VALUE_KEYWORDS)
-    first, second = (
-        call.args[index] if len(call.args) > index else keywords.get(name) for index, name in enumerate(names)
-    )
-    return first, second
-
-
-def _find_added_action(statement: ast.stmt) -> ast.expr | None:
-    """Return the action that a statement adds to a launch description, or None."""
-    value = statement.value if isinstance(statement, ast.Expr) else None
-    is_addition = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in _ADD_METHODS
-    return value.args[0] if is_addition and isinstance(value, ast.Call) and value.args else None

@@ -13,6 +13,7 @@ from linkwright.review.launches.outlines import (
     CONDITION,
     DELETION,
     ENVIRONMENT,
+    LOG_MESSAGE,
     NAMESPACE,
     PROGRAM_KINDS,
     READING,
@@ -29,10 +30,11 @@ _WHOLE_SETTINGS = (CONDITION, "name", NAMESPACE, "default", "value", "arguments"
 """The beginnings of the names of settings that are always shown, because other programs depend on them."""
 _SETTING_ORDER = (*_WHOLE_SETTINGS, ENVIRONMENT, "parameter")
 """The beginnings of the names of settings in the order in which they are shown."""
-_VALUE_SETTINGS = ("to", "value", "appended value")
+_VALUE_SETTINGS = ("to", "value", "appended value", "text")
 """The settings that are the only value of an action."""
 _MAX_SETTING_CHARACTERS = 160
 _MAX_NAME_CHARACTERS = 160
+_MAX_COMMAND_WORDS = 4
 TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transform_publisher")
 _CHILD_FRAME = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
 _TRANSFORM_WORD_COUNTS = (8, 9)
@@ -78,11 +80,22 @@ def format_title(entry: Entry) -> Phrase:
         return _format_deletion_title(name)
     if entry.kind == "handler":
         return phrase("event handler {name}", name=name)
+    if entry.kind == LOG_MESSAGE:
+        return phrase("log message")
     if entry.kind == READING:
         return phrase("use of environment variable '{name}'", name=name)
     if entry.kind == "environment":
         return phrase("environment variable '{name}'", name=name)
     return phrase("action '{name}'", name=name)
+
+
+def shorten_command(text: str) -> str:
+    """Return the first words and the last word of a command, which is the text of a list or of a line."""
+    words = list_items(text) if text.startswith("[") else text.split()
+    words = [word.strip("'") for word in words if not word.startswith("-")]
+    if len(words) > _MAX_COMMAND_WORDS:
+        words = [*words[: _MAX_COMMAND_WORDS - 1], "...", words[-1]]
+    return f"'{shorten_middle(' '.join(words), _MAX_NAME_CHARACTERS)}'"
 
 
 def _format_deletion_title(name: str) -> Phrase:

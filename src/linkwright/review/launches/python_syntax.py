@@ -1,0 +1,64 @@
+"""Find parts of the syntax tree of a Python launch file."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+
+from linkwright.packages.readers.python_values import called_name
+
+ADD_METHODS = ("add_action", "add_entity")
+"""The methods that add an action to a launch description."""
+_VALUE_KEYWORDS = {"SetRemap": ("src", "dst")}
+_DEFAULT_VALUE_KEYWORDS = ("name", "value")
+"""The names of the arguments of the classes that set a value; the first item of each is what is set."""
+
+
+def find_unused_values(tree: ast.AST) -> frozenset[int]:
+    """Return the identities of the values of unused names, and of values that a later assignment replaces unused."""
+    nodes = list(ast.walk(tree))
+    names = [node for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)]
+    used = {node.id for node in names}
+    assignments = (node for node in nodes if isinstance(node, ast.Assign))
+    unused = {
+        id(node.value)
+        for node in assignments
+        if all(isinstance(target, ast.Name) and target.id not in used for target in node.targets)
+    }
+    return frozenset(unused | {id(value) for value in _find_replaced_values(nodes, names)})
+
+
+def _find_replaced_values(nodes: Sequence[ast.AST], names: Sequence[ast.Name]) -> Iterator[ast.expr]:
+    """Yield the values of names that get another value in the same block before they are used."""
+    lines: dict[str, list[int]] = {}
+    for name in names:
+        lines.setdefault(name.id, []).append(name.lineno)
+    for node in nodes:
+        body = getattr(node, "body", None)
+        last: dict[str, ast.Assign] = {}
+        for statement in body if isinstance(body, list) else ():
+            target = statement.targets[0] if isinstance(statement, ast.Assign) else None
+            if not isinstance(statement, ast.Assign) or not isinstance(target, ast.Name) or len(statement.targets) > 1:
+                continue
+            earlier = last.get(target.id)
+            end = statement.end_lineno or statement.lineno
+            if earlier is not None and not any(earlier.lineno <= line <= end for line in lines.get(target.id, ())):
+                yield earlier.value
+            last[target.id] = statement
+
+
+def find_name_and_value(call: ast.Call, function: str) -> tuple[ast.expr | None, ast.expr | None]:
+    """Return the two arguments of a call that sets a value, which may be keywords in any order."""
+    keywords = {keyword.arg: keyword.value for keyword in call.keywords}
+    names = _VALUE_KEYWORDS.get(function, _DEFAULT_VALUE_KEYWORDS)
+    first, second = (
+        call.args[index] if len(call.args) > index else keywords.get(name) for index, name in enumerate(names)
+    )
+    return first, second
+
+
+def find_added_action(statement: ast.stmt) -> ast.expr | None:
+    """Return the action that a statement adds to a launch description, or None."""
+    value = statement.value if isinstance(statement, ast.Expr) else None
+    is_addition = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in ADD_METHODS
+    return value.args[0] if is_addition and isinstance(value, ast.Call) and value.args else None
