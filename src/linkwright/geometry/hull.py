@@ -60,7 +60,8 @@ def _move(points: Array, distance: float) -> Array:
     if not distance:
         return points
     numbers = np.arange(1, len(points) + 1)[:, np.newaxis] * _MULTIPLIERS % _MODULUS
-    return points + distance * (2.0 * numbers / _MODULUS - 1.0)
+    shifts: Array = distance * (2.0 * numbers / _MODULUS - 1.0)
+    return points + shifts
 
 
 class _Hull:
