@@ -328,6 +328,13 @@ async def test_other_name_of_this_machine_is_refused():
         assert (status, "does not answer to the name 'example.org'" in text) == (403, True)
 
 
+async def test_head_request_of_a_stream_is_refused():
+    async with video_server() as setup, aiohttp.ClientSession() as session:
+        setup.camera()
+        async with session.head(f"{setup.server.address}stream?topic=/camera/image_raw") as response:
+            assert response.status == 405
+
+
 async def test_port_in_use_is_an_error():
     async with video_server() as setup:
         port = setup.server._listener.getsockname()[1]

@@ -122,7 +122,7 @@ class WebVideoServer(SingleNode):
             ("/stream_viewer", self._on_viewer),
             ("/snapshot", self._on_snapshot),
         ):
-            application.router.add_get(path, self._make_handler(handler))
+            application.router.add_get(path, self._make_handler(handler), allow_head=False)
         self._runner = web.AppRunner(
             application,
             handle_signals=False,
