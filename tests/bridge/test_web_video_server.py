@@ -328,12 +328,23 @@ async def test_other_name_of_this_machine_is_refused():
         assert (status, "does not answer to the name 'example.org'" in text) == (403, True)
 
 
-async def test_port_in_use_is_an_error():
+async def test_head_request_of_a_stream_is_refused():
+    async with video_server() as setup, aiohttp.ClientSession() as session:
+        setup.camera()
+        async with session.head(f"{setup.server.address}stream?topic=/camera/image_raw") as response:
+            assert response.status == 405
+
+
+async def test_port_in_use_and_address_of_another_machine_are_errors():
     async with video_server() as setup:
         port = setup.server._listener.getsockname()[1]
         with pytest.raises(LinkwrightError) as raised:
             WebVideoServer(setup.graph, NodeOptions(parameters={"port": port}))
         assert raised.value.diagnostics[0].code == "NODE702"
+        assert "another port" in str(raised.value.diagnostics[0].hint)
+        with pytest.raises(LinkwrightError) as raised:  # an address for documentation, which no machine has
+            WebVideoServer(setup.graph, NodeOptions(parameters={"port": 0, "address": "192.0.2.1"}))
+        assert "an address of this machine" in str(raised.value.diagnostics[0].hint)
 
 
 async def test_missing_stream_type_as_default_is_replaced_and_unknown_one_is_an_error():

@@ -9,6 +9,7 @@ maximum of an image; a snapshot can be a PNG; a request that cannot be answered 
 from __future__ import annotations
 
 import asyncio
+import errno
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -75,7 +76,9 @@ class WebVideoServer(SingleNode):
             try:
                 self._listener = open_listener(self._host, port)
             except OSError as error:
-                hint = phrase("choose another port with the parameter 'port'")
+                hint = phrase("choose an address of this machine with the parameter 'address'")
+                if error.errno == errno.EADDRINUSE:
+                    hint = phrase("choose another port with the parameter 'port'")
                 raise make_listen_error(self.DEFAULT_NAME, self._host, port, error, hint) from None
         self._gate = Gate(self._host, create_token())
         self._period_s = 1.0 / publish_rate_hz if publish_rate_hz > 0 else None
@@ -122,7 +125,7 @@ class WebVideoServer(SingleNode):
             ("/stream_viewer", self._on_viewer),
             ("/snapshot", self._on_snapshot),
         ):
-            application.router.add_get(path, self._make_handler(handler))
+            application.router.add_get(path, self._make_handler(handler), allow_head=False)
         self._runner = web.AppRunner(
             application,
             handle_signals=False,
