@@ -119,3 +119,31 @@ def test_moved_interfaces_break_programs_that_use_the_types(repository, compare)
     (change,) = subject(compare(repository), "parts/").changes
     assert str(change.sentence).endswith("msg/Load.msg, msg/Rate.msg, msg/State.msg")
     assert str(change.reason) == "programs that use the types do not build or start"
+
+
+@pytest.mark.parametrize("folders", [("config", "launch", "urdf"), ("config", "launch")])
+def test_folders_that_are_installed_in_another_folder_together_share_a_line(repository, compare, folders):
+    cmake = "project(arm)\nfind_package(ament_cmake)\ninstall(DIRECTORY {} DESTINATION {})\nament_package()\n"
+    files = {f"arm/{folder}/{name}.txt": name for folder in folders for name in ("a", "b")}
+    names = " ".join(folders)
+    old, new = "share/${PROJECT_NAME}", "share/${PROJECT_NAME}/{PROJECT_NAME}"
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake.format(names, old), **files})
+    repository.write({"arm/CMakeLists.txt": cmake.format(names, new)})
+    lines = breaking(compare(repository))
+    parts = ", ".join(f"'{folder}/' with 2 files" for folder in folders)
+    whole = f"installed in share/arm/{{PROJECT_NAME}} instead of share/arm: {parts}"
+    single = [
+        f"installed in share/arm/{{PROJECT_NAME}}/{folder} instead of share/arm/{folder}: 'a.txt', 'b.txt'"
+        for folder in folders
+    ]
+    assert lines == ([whole] if len(folders) > 2 else single)
+
+
+def test_a_folder_that_a_renamed_package_installs_as_before_is_not_new(repository, compare):
+    cmake = "project({0})\nfind_package(ament_cmake)\ninstall(DIRECTORY config DESTINATION share/${{PROJECT_NAME}})\n"
+    manifest = PACKAGE_XML.replace("arm_description", "{0}")
+    files = {"package.xml": manifest, "CMakeLists.txt": cmake, "config/a.txt": "a\nb\n"}
+    repository.commit({f"arm/{path}": text.format("arm") for path, text in files.items()})
+    repository.write({**{f"arm/{path}": text.format("gear") for path, text in files.items()}, "arm/config/c.txt": "c"})
+    assert sentences(subject(compare(repository), "arm/package.xml")) == ["package 'arm' renamed to 'gear'"]
+    assert not any("installed now" in line for found in compare(repository).subjects for line in sentences(found))

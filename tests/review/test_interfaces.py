@@ -222,3 +222,33 @@ def test_two_fields_or_constants_of_a_message_share_a_line(repository, compare):
         (1, False),
         (1, True),
     ]
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "is_named"),
+    [
+        ("arm/srv/Show.srv", "---\nSpec spec\n", True),
+        ("arm/msg/Specs.msg", "Spec[] specs\n", True),
+        ("arm/action/Show.action", "---\narm/Spec[<=3] spec\n---\n", True),
+        ("arm/msg/Specs.msg", "arm/msg/Spec spec  # ROS 2 accepts the longer form\n", True),
+        ("hand/msg/Specs.msg", "arm/Spec spec\n", True),
+        ("hand/msg/Specs.msg", "Spec spec\n", False),  # a type of the package hand
+        ("arm/msg/Specs.msg", "# Spec spec\nint32 a\nSpecial b\n", False),
+    ],
+)
+def test_types_that_contain_a_changed_message_are_named(repository, compare, path, text, is_named):
+    manifests = {f"{name}/package.xml": PACKAGE_XML.replace("arm_description", name) for name in ("arm", "hand")}
+    repository.commit({**manifests, "arm/msg/Spec.msg": "int32 a\n", path: text})
+    repository.write({"arm/msg/Spec.msg": "int32 a\nstring b\n"})
+    (change,) = subject(compare(repository), "arm/msg/Spec.msg").changes
+    name = path.rpartition("/")[2]
+    assert str(change.reason).endswith(f"; the same holds for the types that contain it: '{name}'") is is_named
+
+
+def test_types_that_contain_a_changed_message_in_another_one_are_named(repository, compare):
+    files = {"arm/msg/B.msg": "A a\n", "arm/msg/C.msg": "B b\nint32 c\n", "arm/srv/D.srv": "C c\n---\n"}
+    manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    repository.commit({**manifest, **files, "arm/msg/A.msg": "int32 a\n"})
+    repository.write({"arm/msg/A.msg": "int64 a\n", "arm/msg/C.msg": "B b\nint64 c\n"})
+    (change,) = subject(compare(repository), "arm/msg/A.msg").changes
+    assert str(change.reason).endswith("; the same holds for the types that contain it: 'B.msg', 'D.srv'")

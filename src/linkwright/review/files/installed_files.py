@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.changes import Change, Effect
+from linkwright.diagnostics import Phrase, counted, joined_first, phrase
+from linkwright.review.changes import MAX_NAMES, Change, Effect
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_facts import BuildFacts, find_own_include_text, list_names, summarize_files
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 
 _HEADERS = "include/"
+_MIN_FOLDERS = 3
+"""The minimum number of folders with the same change of their destination that share a line."""
 
 
 def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
@@ -82,8 +84,31 @@ def _keeps_include_text(source: str, old: Collection[str], new: Collection[str])
 
 
 def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence[str]]) -> None:
-    """Report installed files with a different destination, by their old and new folders."""
+    """Report installed files with a different destination, by their old and new folders.
+
+    Folders that are in another folder together, with the same paths in it, share a line.
+    """
+    groups: dict[tuple[str, str], dict[str, int]] = {}
+    for folders, names in moved.items():
+        old_base, new_base, inner = _split_moved_folder(*folders)
+        groups.setdefault((old_base, new_base), {})[inner] = len(names)
+    groups = {bases: counts for bases, counts in groups.items() if len(counts) >= _MIN_FOLDERS and all(bases)}
+    reason = phrase("programs that look for the files do not find them")
+    for (old_base, new_base), counts in groups.items():
+        items = [
+            counted("{folder} with {count} file", "{folder} with {count} files", count, folder=f"'{folder or '.'}/'")
+            for folder, count in counts.items()
+        ]
+        text = phrase(
+            "installed in {new} instead of {old}: {names}",
+            old=old_base,
+            new=new_base,
+            names=joined_first(items, MAX_NAMES),
+        )
+        pair.add(text, None, reason)
     for (old_folder, new_folder), names in moved.items():
+        if _split_moved_folder(old_folder, new_folder)[:2] in groups:
+            continue
         text = phrase(
             "installed in {new} instead of {old}: {names}", old=old_folder, new=new_folder, names=list_names(names)
         )
@@ -91,18 +116,30 @@ def _report_moved_files(pair: FilePair, moved: Mapping[tuple[str, str], Sequence
             text = phrase(
                 "installed under another name in {folder}: {names}", folder=old_folder, names=list_names(names)
             )
-        pair.add(text, None, phrase("programs that look for the files do not find them"))
+        pair.add(text, None, reason)
+
+
+def _split_moved_folder(old: str, new: str) -> tuple[str, str, str]:
+    """Return the parts of two paths before their common end, and this end."""
+    old_parts, new_parts = PurePosixPath(old).parts, PurePosixPath(new).parts
+    common = 0
+    while common < min(len(old_parts), len(new_parts)) and old_parts[-1 - common] == new_parts[-1 - common]:
+        common += 1
+    bases = ("/".join(parts[: len(parts) - common]) for parts in (old_parts, new_parts))
+    return next(bases), next(bases), "/".join(old_parts[len(old_parts) - common :])
 
 
 def _report_newly_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts, added: Sequence[str]) -> None:
     """Report newly installed folders, newly installed files of the old version, and files of other folders."""
+    names_of_packages = PackageNames(find_renamed_packages(pair.versions))
+    old_files = {names_of_packages.rename_derived(target): source for target, source in old.files.items()}
     read = {_get_folder(source) for source in old.files.values()}
     known = [name for name in added if _is_in_old_version(pair, old, new.files[name])]
     known += [name for name in added if name not in known and _get_folder(new.files[name]) not in read]
-    folders = [name for name in summarize_files(added, old.files) if name.endswith("/")]
-    names = list(dict.fromkeys([*folders, *summarize_files(known, old.files)]))
-    if names:
-        pair.add(phrase("installed now: {names}", names=list_names(names)), None)
+    folders = [name for name in summarize_files(added, old_files) if name.endswith("/")]
+    shown = list(dict.fromkeys([*folders, *summarize_files(known, old_files)]))
+    if shown:
+        pair.add(phrase("installed now: {names}", names=list_names(shown)), None)
 
 
 def _find_installed_source(pair: FilePair, old: BuildFacts, new: BuildFacts, source: str) -> str | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
 from linkwright.messages.definitions.idl import ENUMERATION, parse_idl_structures
@@ -16,6 +16,7 @@ from linkwright.packages import MANIFEST, enclosing_package
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
+from linkwright.review.files.containing_interfaces import find_containing_interfaces
 from linkwright.review.files.renamed_fields import find_renamed_constants, find_renamed_fields
 from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.files.unbuilt_interfaces import is_unbuilt
@@ -49,11 +50,25 @@ def compare_interfaces(pair: FilePair) -> None:
         _compare(pair, *definitions)
     if definitions is not None and is_foreign:
         _report_ros1_types(pair, *definitions)
+    _name_containing_interfaces(pair)
     was_unbuilt = is_unbuilt(pair.versions.old, pair.old_path)
     if not pair.is_lost and (is_foreign or was_unbuilt):
         pair.changes = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
     if pair.old_path != pair.new_path and not was_unbuilt and is_unbuilt(pair.versions.new, pair.new_path):
         pair.add(phrase("CMakeLists.txt does not build it"), Location(pair.new_path, 1, 1), _make_use_reason())
+
+
+def _name_containing_interfaces(pair: FilePair) -> None:
+    """Add the other types that change with this one, because they contain it, to the reasons of breaking changes."""
+    reason = _make_exchange_reason()
+    if all(change.reason != reason for change in pair.changes):
+        return
+    changed = {file.new_path for file in pair.versions.changed_files}
+    paths = [path for path in find_containing_interfaces(pair.versions.new, pair.new_path) if path not in changed]
+    if paths:
+        names = joined_first((f"'{PurePosixPath(path).name}'" for path in paths), MAX_NAMES)
+        more = phrase("{reason}; the same holds for the types that contain it: {names}", reason=reason, names=names)
+        pair.changes = [replace(change, reason=more) if change.reason == reason else change for change in pair.changes]
 
 
 def _read_ros1_definition(pair: FilePair) -> tuple[Mapping[str, Structure], Mapping[str, Structure]] | None:

@@ -37,6 +37,7 @@ from linkwright.review.files.parameter_names import (
 from linkwright.review.files.parameters_between_nodes import find_parameter_moves
 from linkwright.review.files.plugin_packages import PluginPackages
 from linkwright.review.files.renamed_parts import find_edit, find_renamed_parts, get_parent, rename_parts
+from linkwright.review.files.renamed_values import join_renamed_values
 from linkwright.review.files.replaced_classes import join_replaced_classes
 from linkwright.review.files.value_changes import ValueChange, merge_values
 from linkwright.review.files.yaml_includes import resolve_includes
@@ -81,7 +82,8 @@ def compare_parameter_files(pair: FilePair, read_names: Callable[[Mapping[str, Y
             compare_generated_parameters(pair, old, new)
             return
         old, new = resolve_includes(pair, old, new)
-    pair.changes += merge_values(join_replaced_classes(_find_changes(pair, old, new, read_names)))
+    changes, renamed = join_renamed_values(join_replaced_classes(_find_changes(pair, old, new, read_names)))
+    pair.changes += [*renamed, *merge_values(changes)]
 
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
