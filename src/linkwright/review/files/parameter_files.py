@@ -39,6 +39,7 @@ from linkwright.review.files.placeholders import find_renamed_placeholder, renam
 from linkwright.review.files.plugin_packages import PluginPackages
 from linkwright.review.files.renamed_parts import find_edit, find_renamed_parts, get_parent, rename_parts
 from linkwright.review.files.replaced_classes import join_replaced_classes
+from linkwright.review.files.unpublished_topics import find_unpublished_reason
 from linkwright.review.files.value_changes import ValueChange, merge_values
 from linkwright.review.files.yaml_includes import resolve_includes
 from linkwright.review.files.yaml_lists import find_item_labels
@@ -185,6 +186,7 @@ def _compare_values(
             reason = reason or readers.find_name_reason(name, old_value, value)
             reason = reason or plugins.find_change_reason(name, old_value, value)
             reason = reason or find_name_reason(name, old_value, value)
+            reason = reason or find_unpublished_reason(pair.versions, pair.new_path, name, old_value, value)
             yield ValueChange(name, "changed", value_texts, location, reason)
     moves = list(
         find_parameter_moves(

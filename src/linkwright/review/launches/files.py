@@ -58,6 +58,7 @@ from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
 from linkwright.review.launches.repeated_arguments import report_repeated_arguments
+from linkwright.review.launches.repeated_nodes import report_repeated_nodes
 from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.simulated_controllers import is_simulated_controller_manager
 from linkwright.review.launches.starting_nodes import find_starting_node
@@ -130,6 +131,7 @@ def compare_launch_files(pair: FilePair) -> None:
         if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
     ]
     report_repeated_arguments(pair, new)
+    report_repeated_nodes(pair, old, new)
     report_changed_kinds(pair, old, new)
     report_fixed_arguments(pair, old, new)
     report_unused_arguments(pair, old, included[1], [*paired_old, *(entry for entry, _ in replaced)], removed)
