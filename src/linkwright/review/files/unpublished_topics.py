@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.files.yaml_values import YamlValue
-from linkwright.review.versions import Versions
+from linkwright.review.versions import TEST_FOLDERS, Versions
 
 _INPUT = re.compile(r"(?:.*\.)?(?:(?:odom|imu|twist|pose)\d+|odom(?:etry)?_topic)")
 _CONTROLLER_TOPIC = re.compile(r"/?(?:[\w/]+/)?(?P<controller>\w*(?:controller|broadcaster))/\w+")
@@ -17,7 +18,7 @@ _SEARCHED_SUFFIXES = (*_CONFIGURATIONS, ".py", ".launch", ".xml", ".xacro", ".ur
 def find_unpublished_reason(versions: Versions, path: str, name: str, old: YamlValue, new: YamlValue) -> Phrase | None:
     """Return the reason why another input of a filter is breaking, or None if it is not.
 
-    A parameter file must have the old controller, and no other file may name the new one.
+    A parameter file must have the old controller, and no other file outside of tests may name the new one.
 
     Args:
         versions: both versions of the repository.
@@ -30,7 +31,11 @@ def find_unpublished_reason(versions: Versions, path: str, name: str, old: YamlV
     if _INPUT.fullmatch(name) is None or matches[0] is None or matches[1] is None:
         return None
     before, after = (match["controller"] for match in matches if match is not None)
-    others = [other for other in versions.new.paths(_SEARCHED_SUFFIXES) if other != path]
+    others = [
+        other
+        for other in versions.new.paths(_SEARCHED_SUFFIXES)
+        if other != path and TEST_FOLDERS.isdisjoint(PurePosixPath(other).parts)
+    ]
     key = re.compile(rf"^\s*{before}\s*:", re.MULTILINE)
     has_old = any(key.search(versions.new.text(other)) for other in others if other.endswith(_CONFIGURATIONS))
     word = re.compile(rf"(?<!\w){after}(?!\w)")
