@@ -1,84 +1,90 @@
-"""Files that look for the files of another package than before."""
+"""Changes in a review of launch files that look up packages, and of templates of parameter files."""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import breaking
+from tests.review.conftest import breaking, sentences, subject
 
-PYTHON = """import os
-from ament_index_python.packages import get_package_share_directory
-def find():
-    return os.path.join(get_package_share_directory('drivers'), 'config', 'a.yaml')
-"""
-LAUNCH = """from ament_index_python.packages import get_package_share_path
+PATH = "arm/launch/arm.launch.py"
+LAUNCH = """from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
-from launch_ros.actions import Node
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.conditions import IfCondition
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.substitutions import LaunchConfiguration
+from launch_ros.substitutions import FindPackageShare
+
 
 def generate_launch_description():
-    file = get_package_share_path('drivers') / 'a.yaml'
-    return LaunchDescription([Node(package='arm', executable='run', parameters=[file])])
+    {}
+    return LaunchDescription([
+        DeclareLaunchArgument("dock", default_value="false"),
+        {}
+    ])
 """
-XML = '<launch><node pkg="arm" exec="run"><param from="$(find-pkg-share drivers)/a.yaml"/></node></launch>\n'
-CPP = 'int main() { load(ament_index_cpp::get_package_share_directory("drivers") + "/a.yaml"); }\n'
-ROS1 = "import rospkg\nPATH = rospkg.RosPack().get_path('drivers')\n"
-EXPECTED = "looks for files of 'motors' instead of 'drivers', but package.xml does not name 'motors'"
-
-
-def run(repository, compare, path, text, *, dependencies=(), more=None, new="motors"):
-    """Return the breaking changes of a file that names another package."""
-    lines = "".join(f"<exec_depend>{name}</exec_depend>" for name in dependencies)
-    manifest = PACKAGE_XML.replace("arm_description", "arm").replace("</license>", f"</license>{lines}")
-    assert "drivers" in text
-    repository.commit({"arm/package.xml": manifest, f"arm/{path}": text, **(more or {})})
-    repository.write({f"arm/{path}": text.replace("drivers", new)})
-    return [line for line in breaking(compare(repository)) if "looks for" in line]
+INCLUDE = """IncludeLaunchDescription(
+            PythonLaunchDescriptionSource([{}, '/dock.launch.py']), condition=IfCondition(LaunchConfiguration('dock'))
+        )"""
 
 
 @pytest.mark.parametrize(
-    ("path", "text"),
+    ("folder", "statement", "is_breaking"),
     [
-        ("arm/find.py", PYTHON),
-        ("arm/find.py", ROS1),
-        ("launch/arm.launch.py", LAUNCH),
-        ("launch/arm.launch.xml", XML),
-        ("src/run.cpp", CPP),
+        ("get_package_share_directory('docking')", "", True),
+        ("folder", "folder = get_package_share_directory('docking')", True),
+        ("folder", "folder = '' if LAUNCH else get_package_share_directory('docking')", False),
+        ("FindPackageShare('docking')", "", False),
     ],
 )
-def test_package_on_which_the_own_one_does_not_depend_is_breaking(repository, compare, path, text):
-    assert run(repository, compare, path, text) == [EXPECTED]
-    repository.git("checkout", "--quiet", ".")
+def test_a_package_that_is_looked_up_in_any_case_must_be_named(repository, compare, folder, statement, is_breaking):
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: LAUNCH.format("", "")})
+    repository.write({PATH: LAUNCH.format(statement, INCLUDE.format(folder))})
+    result = compare(repository)
+    reasons = [str(change.reason) for change in subject(result, PATH).changes if change.reason is not None]
+    expected = ["package.xml does not name 'docking', without which the launch file fails"]
+    assert reasons == (expected if is_breaking else [])
+
+
+def test_a_call_of_another_package_that_is_returned_is_an_action(review_changes):
+    text = """from other_package import make_launch
+
+
+def generate_launch_description():
+    return make_launch(name="arm", rate=10)
+"""
+    found, found_breaking = review_changes("arm.launch.py", text, "rate=10", "rate=20")
+    assert (found, found_breaking) == (["action 'make_launch': rate 10 -> 20"], [])
+
+
+TEMPLATE = """${SIDE}_controller:
+  ros__parameters:
+    joints: ['${SIDE}_joint']
+    constraints:
+      ${SIDE}_joint: {goal: 0.02}
+      time: 1.0
+"""
 
 
 @pytest.mark.parametrize(
-    ("dependencies", "more", "new"),
-    [
-        (("motors",), {}, "motors"),
-        ((), {"motors/package.xml": PACKAGE_XML.replace("arm_description", "motors")}, "motors"),
-        ((), {}, "arm"),
-        ((), {}, "tf2_ros"),
-    ],
+    ("program", "is_renamed"), [("fill('ARM', 'left')\n", True), ("fill('SIDE', 'left')\n", False)]
 )
-def test_package_that_is_there_is_not_breaking(repository, compare, dependencies, more, new):
-    lines = run(repository, compare, "arm/find.py", PYTHON, dependencies=dependencies, more=more, new=new)
-    assert lines == []
+def test_a_placeholder_with_another_name_changes_no_parameter(repository, compare, program, is_renamed):
+    path = "arm/config/controllers.yaml"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: TEMPLATE, "arm/launch/fill.py": "fill('SIDE', 'left')\n"})
+    repository.write({path: TEMPLATE.replace("SIDE", "ARM").replace("1.0", "2.0"), "arm/launch/fill.py": program})
+    result = compare(repository)
+    found = sentences(subject(result, path))
+    renamed = ["placeholder 'SIDE' renamed to 'ARM'", "${ARM}_controller.ros__parameters.constraints.time 1.0 -> 2.0"]
+    assert (found == renamed) is is_renamed
+    assert bool(breaking(result)) is not is_renamed
 
 
-def test_added_package_is_not_another_one(repository, compare):
-    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/arm/find.py": PYTHON})
-    repository.write({"arm/arm/find.py": PYTHON + "PATH = get_package_share_directory('motors')\n"})
-    assert breaking(compare(repository)) == []
-
-
-def test_renamed_package_is_the_same_one(repository, compare):
-    manifest = PACKAGE_XML.replace("arm_description", "drivers")
-    repository.commit({"drivers/package.xml": manifest, "arm/package.xml": PACKAGE_XML, "arm/arm/find.py": PYTHON})
-    repository.write(
-        {
-            "drivers/package.xml": None,
-            "motors/package.xml": manifest.replace("drivers", "motors"),
-            "arm/arm/find.py": PYTHON.replace("drivers", "motors"),
-        }
-    )
-    assert not [line for line in breaking(compare(repository)) if "looks for" in line]
+def test_a_launch_file_that_only_the_new_version_can_read_is_shown(repository, compare):
+    text = LAUNCH.format("", "")
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: text.replace("])", "]")})
+    repository.write({PATH: text})
+    (sentence,) = sentences(subject(compare(repository), PATH))
+    assert sentence.startswith("can be read now; in the old version: line ")
+    assert sentence.endswith("; contents: argument 'dock' (default false)")

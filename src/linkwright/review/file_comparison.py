@@ -50,6 +50,8 @@ def compare_file(
         if old_path != new_path:
             pair.changes.append(_make_renaming_change(versions, rule, old_path, new_path))
         rule.compare(pair)
+        if pair.is_gained and rule.kind in _TESTED_KINDS:
+            _show_contents(pair, rule)
     except Exception as error:  # noqa: BLE001 - the other files are still compared
         pair.problems.append(make_problem(error))
     if is_test and not pair.is_lost:  # no other package uses its names
@@ -72,6 +74,15 @@ def compare_file(
         missing=tuple(pair.missing),
         is_lost=pair.is_lost,
     )
+
+
+def _show_contents(pair: FilePair, rule: KindRule) -> None:
+    """Append the contents of a file that only the new version can read to the last change, which tells this."""
+    change = pair.changes[-1]
+    contents = _find_contents(rule, pair.versions.new, pair.new_path)
+    if contents is not None:
+        text = phrase("{change}; contents: {items}", change=change.sentence, items=contents)
+        pair.changes[-1] = replace(change, sentence=text)
 
 
 def _describe_unpaired_file(
@@ -143,11 +154,16 @@ def _make_renaming_change(versions: Versions, rule: KindRule, old_path: str, new
 
 def _add_contents(rule: KindRule, text: Phrase, version: Version, path: str) -> Phrase:
     """Return the line about an added or removed file, with its contents if they are known."""
-    try:
-        contents = None if rule.contents is None else rule.contents(version, path)
-    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError, MemoryError):
-        contents = None
+    contents = _find_contents(rule, version, path)
     return text if contents is None else phrase("{change}: {items}", change=text, items=contents)
+
+
+def _find_contents(rule: KindRule, version: Version, path: str) -> Phrase | None:
+    """Return the contents of a file in one line, or None if they are unknown."""
+    try:
+        return None if rule.contents is None else rule.contents(version, path)
+    except (LinkwrightError, UnreadableFileError, OSError, ValueError, RecursionError, MemoryError):
+        return None
 
 
 def _describe_contents(

@@ -90,6 +90,7 @@ class FilePair:
         expanded: the elements of changed files that the expansions of the compared robots use.
         missing: the names of packages and files that were left out because a version does not find them.
         is_lost: whether the new version cannot be read, and the old version can.
+        is_gained: whether the old version cannot be read, and the new version can.
     """
 
     versions: Versions
@@ -105,6 +106,7 @@ class FilePair:
     expanded: set[ExpandedElement] = field(default_factory=set)
     missing: dict[str, None] = field(default_factory=dict)
     is_lost: bool = False
+    is_gained: bool = False
 
     @property
     def old_file(self) -> Path:
@@ -164,6 +166,7 @@ class FilePair:
         elif old is not None and not old.is_certain:
             self.add_unreadable(self.versions.old, old)
         elif old is not None:
+            self.is_gained = True
             text = phrase("can be read now; in the old version: {reason}", reason=old.text)
             location = Location(old.path or self.old_path, old.line, old.column, is_old=True) if old.line else None
             self.changes.append(Change(text, location=location, cases=cases))

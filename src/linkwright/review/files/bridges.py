@@ -16,7 +16,7 @@ from linkwright.review.list_changes import change_text
 
 _TOPIC_KEYS = ("ros_topic_name", "topic_name", "gz_topic_name", "ign_topic_name")
 _ROS_TYPE, _DIRECTION = "ros_type_name", "direction"
-_TRANSFORM_TOPICS = ("tf", "tf_static")
+TRANSFORM_TOPICS = ("tf", "tf_static")
 _TO_ROS = ("GZ_TO_ROS", "IGN_TO_ROS")
 _FROM_ROS = ("ROS_TO_GZ", "ROS_TO_IGN")
 
@@ -85,12 +85,12 @@ def compare_bridges(pair: FilePair, old: Sequence[Bridge], new: Sequence[Bridge]
     for bridge in unmatched_old:
         location = Location(pair.old_path, bridge.line, bridge.column, is_old=True)
         text = _append_contents(phrase("bridge '{topic}' removed", topic=bridge.topic), bridge)
-        pair.add(text, location, _find_removal_reason(bridge.topic))
+        pair.add(text, location, explain_lost_topic(bridge.topic))
 
 
-def _find_removal_reason(topic: str) -> Phrase:
+def explain_lost_topic(topic: str) -> Phrase:
     """Return the reason why it is breaking that a bridge no longer has a topic. Other nodes publish transforms, too."""
-    if topic.strip("/") in _TRANSFORM_TOPICS:
+    if topic.strip("/") in TRANSFORM_TOPICS:
         return phrase("the transforms of the simulator are no longer on '{topic}'", topic=topic)
     return name_reason(topic)
 
@@ -126,7 +126,7 @@ def _compare_settings(pair: FilePair, old: Bridge, new: Bridge) -> None:
     if old.topic != new.topic:
         line, column = new.positions[next(key for key in _TOPIC_KEYS if key in new.settings)]
         text = phrase("bridge '{old}' renamed to '{topic}'", old=old.topic, topic=new.topic)
-        pair.add(text, Location(pair.new_path, line, column), _find_removal_reason(old.topic))
+        pair.add(text, Location(pair.new_path, line, column), explain_lost_topic(old.topic))
     for name in dict.fromkeys([*new.settings, *old.settings]):
         before, after = old.settings.get(name), new.settings.get(name)
         is_name = name == next((key for key in _TOPIC_KEYS if key in new.settings), None)

@@ -35,10 +35,12 @@ from linkwright.review.files.parameter_names import (
     list_part_paths,
 )
 from linkwright.review.files.parameters_between_nodes import find_parameter_moves
+from linkwright.review.files.placeholders import find_renamed_placeholder, rename_placeholder
 from linkwright.review.files.plugin_packages import PluginPackages
 from linkwright.review.files.renamed_parts import find_edit, find_renamed_parts, get_parent, rename_parts
 from linkwright.review.files.renamed_values import join_renamed_values
 from linkwright.review.files.replaced_classes import join_replaced_classes
+from linkwright.review.files.unpublished_topics import find_unpublished_reason
 from linkwright.review.files.value_changes import ValueChange, merge_values
 from linkwright.review.files.yaml_includes import resolve_includes
 from linkwright.review.files.yaml_lists import find_item_labels
@@ -67,6 +69,10 @@ def compare_parameter_files(pair: FilePair, read_names: Callable[[Mapping[str, Y
     texts = pair.read(read_yaml_text)
     if texts is None:
         return
+    renamed = find_renamed_placeholder(*texts, pair.versions)
+    if renamed is not None:
+        texts = rename_placeholder(texts[0], *renamed), texts[1]
+        pair.add(phrase("placeholder '{old}' renamed to '{name}'", old=renamed[0], name=renamed[1]), None)
     bridges = pair.read(lambda file: read_bridges(texts[file == pair.new_file]) or [])
     if bridges is None:
         return
@@ -182,6 +188,7 @@ def _compare_values(
             reason = reason or readers.find_name_reason(name, old_value, value)
             reason = reason or plugins.find_change_reason(name, old_value, value)
             reason = reason or find_name_reason(name, old_value, value)
+            reason = reason or find_unpublished_reason(pair.versions, pair.new_path, name, old_value, value)
             yield ValueChange(name, "changed", value_texts, location, reason)
     moves = list(
         find_parameter_moves(

@@ -10,6 +10,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import find_addition_reason, offers_nothing
 from linkwright.review.launches.outlines import CONDITION, REMAPPING, Entry, LaunchOutline, without_condition
+from linkwright.review.launches.package_lookups import looks_up_package
 from linkwright.review.required_packages import is_undeclared_and_new
 
 _PROGRAM = re.compile(r"(?P<package>[a-z][a-z0-9_]*)/\S+")
@@ -46,12 +47,13 @@ def _is_read_without_declaration(name: str, outline: LaunchOutline) -> bool:
 def find_missing_package_reason(pair: FilePair, entry: Entry, outline: LaunchOutline) -> Phrase | None:
     """Return the reason why the package of an action is missing, or None if it is not certainly missing.
 
-    The action must start if callers pass no values.
+    The action must start if callers pass no values, or the launch file must look up the package in any case.
     """
     package = _find_package(entry, outline)
     if package is None or offers_nothing(entry):
         return None
-    if evaluate_condition(outline.resolve(entry.settings.get(CONDITION, ""))) is not True:
+    starts = evaluate_condition(outline.resolve(entry.settings.get(CONDITION, ""))) is True
+    if not starts and not (entry.kind == "include" and looks_up_package(pair.new_file, package)):
         return None
     if not is_undeclared_and_new(pair.versions, pair.new_path, package):
         return None

@@ -13,6 +13,8 @@ _COMMENT = re.compile(r"<!--.*?-->|^\s*#[^\n]*", re.DOTALL | re.MULTILINE)
 _COMPUTED_USE = re.compile(r"\bLaunchConfiguration\(\s*(?![\"'\s])|\blaunch_configurations\b(?!\[[\"'])")
 """A use of an argument whose name a Python file computes."""
 
+_DEFAULTED_ARGUMENT = re.compile(r"\bLaunchConfiguration\(\s*[\"'](?P<name>[\w./-]+)[\"']\s*,\s*default\s*=")
+
 
 def uses_argument(file: Path, name: str, entries: Sequence[Entry], *, is_declared: bool = True) -> bool:
     """Return whether a launch file may use an argument, apart from the files that it includes.
@@ -47,3 +49,8 @@ def is_used(name: str, entries: Sequence[Entry]) -> bool:
 def read_code(file: Path) -> str:
     """Return the text of a launch file without comments."""
     return _COMMENT.sub("", file.read_text("utf-8", errors="replace"))
+
+
+def find_defaulted_arguments(file: Path) -> frozenset[str]:
+    """Return the arguments that a Python launch file reads with a default of its own, also if it uses no such value."""
+    return frozenset(match["name"] for match in _DEFAULTED_ARGUMENT.finditer(read_code(file)))

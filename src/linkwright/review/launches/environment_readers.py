@@ -25,6 +25,11 @@ def find_reader(version: Version, name: str, excluded: str) -> str | None:
     return next((path for path in _find_readers_by_variable(version).get(name, ()) if path != excluded), None)
 
 
+def reads_variable(version: Version, name: str, path: str) -> bool:
+    """Return whether a file reads an environment variable."""
+    return path in _find_readers_by_variable(version).get(name, ())
+
+
 @lru_cache(maxsize=2)
 def _find_readers_by_variable(version: Version) -> Mapping[str, list[str]]:
     """Return the files that read environment variables, by the name of the variable.

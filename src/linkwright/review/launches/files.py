@@ -18,12 +18,15 @@ from linkwright.review.breaking import name_reason
 from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
+from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.added_nodes import explain_addition, find_missing_package_reason
 from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.argument_uses import uses_argument
+from linkwright.review.launches.bridged_topics import explain_lost_topics
 from linkwright.review.launches.effects import find_removal_reason
-from linkwright.review.launches.environment_readers import find_reader
+from linkwright.review.launches.environment_readers import find_reader, reads_variable
 from linkwright.review.launches.file_choices import FileChoices
+from linkwright.review.launches.fixed_arguments import report_fixed_arguments
 from linkwright.review.launches.imports import compare_imports
 from linkwright.review.launches.include_trees import (
     IncludeTree,
@@ -56,6 +59,7 @@ from linkwright.review.launches.renamed_code import rename_packages_in_code
 from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
 from linkwright.review.launches.repeated_arguments import report_repeated_arguments
+from linkwright.review.launches.repeated_nodes import report_repeated_nodes
 from linkwright.review.launches.settings import SettingChanges
 from linkwright.review.launches.simulated_controllers import is_simulated_controller_manager
 from linkwright.review.launches.starting_nodes import find_starting_node
@@ -128,7 +132,9 @@ def compare_launch_files(pair: FilePair) -> None:
         if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
     ]
     report_repeated_arguments(pair, new)
+    report_repeated_nodes(pair, old, new)
     report_changed_kinds(pair, old, new)
+    report_fixed_arguments(pair, old, new)
     report_unused_arguments(pair, old, included[1], [*paired_old, *(entry for entry, _ in replaced)], removed)
     if removed or added:
         _report_unpaired_entries(pair, removed, added, included, old_names)
@@ -239,7 +245,10 @@ def _report_unpaired_entries(
         text, location = format_removed_entry(written), pair.location(entry.span, is_old=True)
         reader = find_reader(pair.versions.new, entry.name, pair.new_path) if entry.kind == READING else None
         if reader is not None:
-            pair.add(phrase("{change}; {path} uses it", change=text, path=reader), location)
+            was_reader = reads_variable(pair.versions.old, entry.name, reader)
+            is_ignored = was_reader and not is_launch_file(reader) and not entry.name.startswith("ROS_")
+            ignored = phrase("the launch file ignores the value of '{name}'", name=entry.name) if is_ignored else None
+            pair.add(phrase("{change}; {path} uses it", change=text, path=reader), location, ignored)
             continue
         file = find_file_with_moved_action(entry, pair.versions, pair.old_path, is_removed=True)
         if file is not None:
@@ -272,6 +281,9 @@ def _report_unpaired_entries(
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         outlines = old_included.outline, new_included.outline
         reason = find_removal_reason(entry, *outlines, stops_nodes=stops_nodes) or explain_lost_value(entry, *outlines)
+        has_known_topics, topics_reason = explain_lost_topics(entry, *outlines)
+        if has_known_topics and file is None:
+            reason = topics_reason
         if reason is not None and lacks_program(pair.versions.old, entry):
             text, reason = phrase("{change}; its package never had the program", change=text), None
         _report_removed(pair, entry, text, reason, trees)

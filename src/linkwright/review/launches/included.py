@@ -13,7 +13,8 @@ from typing import NamedTuple
 from linkwright.diagnostics import LinkwrightError
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import is_launch_file
-from linkwright.review.launches.argument_uses import USED_ARGUMENT, uses_argument
+from linkwright.review.launches.argument_uses import USED_ARGUMENT, find_defaulted_arguments, uses_argument
+from linkwright.review.launches.bridged_topics import find_bridged_topics
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import offers_nothing
 from linkwright.review.launches.matching import get_launch_file_stem
@@ -37,9 +38,6 @@ _FILE_WITHOUT_NODES = re.compile(
     r"rviz|rqt|[^/]*gui[^/]*$|(^|[/_])(machines?|upload(_\w+)?|params?|parameters)[._]launch"
 )
 """The files that, judging by their name, start no programs for other programs."""
-_BRIDGE = re.compile(r"ros_(gz|ign)_bridge/parameter_bridge")
-_BRIDGED_TOPIC = re.compile(r"(?P<topic>[\w/]+)@[\w/.]+[\[@]")
-"""A topic that a bridge publishes. One that it only sends to Gazebo has a closing bracket."""
 _MoveKey = tuple[str, str, "str | None", tuple[str, ...]]
 """The kind, the name, the name of the node and the names that it serves."""
 _USED_ARGUMENT = re.compile(r"\$\((?:var|arg) (?P<name>[\w./-]+)\)")
@@ -98,9 +96,7 @@ class IncludedActions:
         """Return whether a bridge of Gazebo in the file or in its included files publishes a topic."""
         for outline in (self.outline, *self._included.values()):
             for entry in outline.entries if name else ():
-                arguments = outline.resolve(entry.settings.get("arguments", ""))
-                bridged = [match["topic"].strip("/") for match in _BRIDGED_TOPIC.finditer(arguments)]
-                if _BRIDGE.fullmatch(entry.name) and name.strip("/") in bridged:
+                if name.strip("/") in find_bridged_topics(entry, outline, is_remapped=False):
                     return True
         return False
 
@@ -217,7 +213,8 @@ class IncludedActions:
 
         Each comes with the first action that uses it, or that includes a file which does.
 
-        Arguments that a file of another package may declare, and actions that cannot be read, are left out.
+        Arguments that a file of another package may declare, and actions that cannot be read, are left out. Such a
+        file does not declare an argument for which the launch file has a default of its own elsewhere.
         """
         entries = self.outline.entries
         if self.outline.has_unknown_actions or any(
@@ -232,15 +229,15 @@ class IncludedActions:
             for entry in entries
             if entry.kind == "include" and not self.outline.is_ros1 and self.find_included_file(entry, file) is None
         ]
+        defaulted = find_defaulted_arguments(file) if unknown_include_lines else frozenset()
         undeclared: dict[str, Entry] = {}
         for entry in entries:
-            if unknown_include_lines and entry.span.line > min(unknown_include_lines):
-                continue
+            may_be_declared = bool(unknown_include_lines) and entry.span.line > min(unknown_include_lines)
             for text in (entry.name, *entry.settings.values()):
                 for match in _USED_ARGUMENT.finditer(text):
-                    if match["name"] not in declared:
+                    if match["name"] not in declared and not (may_be_declared and match["name"] not in defaulted):
                         undeclared.setdefault(match["name"], entry)
-            for name in sorted(self._find_missing_arguments(entry, depth) - declared):
+            for name in () if may_be_declared else sorted(self._find_missing_arguments(entry, depth) - declared):
                 undeclared.setdefault(name, entry)
         return undeclared
 

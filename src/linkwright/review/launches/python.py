@@ -6,6 +6,7 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.helpers import Function, HelperFunctions, find_parameter_defaults, find_program_guard
 from linkwright.review.launches.list_additions import find_added_items
@@ -279,6 +280,10 @@ class _Reader:
         for statement in function.body:
             scope = scope.with_namespace(self._find_pushed_namespace(find_added_action(statement)))
             self.visit(statement, scope)
+            if function.name == LAUNCH_FUNCTION and isinstance(statement, ast.Return) and statement.value is not None:
+                action = self.python.resolved(statement.value)
+                if isinstance(action, ast.Call) and self.helpers.is_foreign(self.python, action):
+                    self._add_call(action, scope)
             if isinstance(statement, ast.If) and isinstance(statement.body[-1], ast.Return) and not statement.orelse:
                 holds = self.texts.evaluate_parameter(statement.test)
                 if holds:

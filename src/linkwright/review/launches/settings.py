@@ -15,6 +15,7 @@ from linkwright.review.files.parameter_names import offers_frame
 from linkwright.review.launches.conditional_settings import SettingPair, find_changed_settings, keeps_meaning
 from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
+from linkwright.review.launches.fixed_arguments import fix_value
 from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
 from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
@@ -181,6 +182,8 @@ class SettingChanges:
             program = replace(new, name=new.name.lstrip("[").partition(",")[0].partition(" ")[0])
             self._collect(program, change_text("command", rename_in_text(old.name, self._old_names), new.name), None)
         settings = []
+        if old.kind == "argument" and "default" in old.settings and "default" not in new.settings:
+            old = fix_value(old) if "value" in new.settings else old
         pairs = list(find_changed_settings(old, new, self._old, self._new))
         for pair in follow_moved_parameters(pairs, self._new, self._pair.versions.new):
             if self._sets_default_name(new, pair.name, pair.old, pair.new):
