@@ -85,3 +85,25 @@ def test_collisions_of_a_mesh_that_the_old_version_lacks_are_unknown(solid, comp
     mesh = '<mesh filename="package://arm_description/meshes/missing.stl"/>'
     solid.commit({SEGMENT: SOLID_MACRO.replace('<box size="0.1 0.1 ${length - 0.02}"/>', mesh)})
     assert find_collisions(compare, solid, wide) == []
+
+
+FINGER = """<link name="f{0}"><collision><geometry><box size="{1} 0.1 0.1"/></geometry></collision></link>
+<joint name="j{0}" type="revolute"><parent link="palm"/><child link="f{0}"/><origin xyz="{0} 0 0"/>
+<axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+"""
+
+
+@pytest.mark.parametrize(("count", "lines"), [(5, 4), (6, 1)])
+def test_many_collisions_are_one_line(solid, compare, count, lines):
+    path = "arm_description/urdf/hand.urdf"
+    robots = [
+        f'<robot name="hand"><link name="palm"/>{"".join(FINGER.format(n, size) for n in range(count))}</robot>'
+        for size in (0.5, 1.5)
+    ]
+    solid.commit({path: robots[0]})
+    solid.write({path: robots[1]})
+    found = [text for text in sentences(subject(compare(solid), path)) if "collide" in text]
+    assert len(found) == lines
+    if lines == 1:
+        assert found[0].startswith("5 pairs of links newly collide in 300 configurations: 'f")
+        assert found[0].count("(at home)") == 5

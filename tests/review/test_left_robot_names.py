@@ -21,6 +21,12 @@ def generate_launch_description():
     return LaunchDescription([Node(package="driver", executable="driver", parameters=[{"frame_id": "camera"}])])
 """
 SEMANTIC = '<robot name="arm"><group name="g">{}</group></robot>\n'
+PART = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="sim" default="false"/>{call}
+  <xacro:if value="$(arg sim)"><gazebo reference="{reference}"><material>Red</material></gazebo>
+    <link name="mark"/><joint name="m" type="fixed"><parent link="upper"/><child link="mark"/></joint></xacro:if>
+</robot>
+"""
 FRAME = "names the frame 'camera', which 'arm/arm.urdf' no longer has"
 JOINT = "names the joint 'shoulder', which 'arm/arm.urdf' no longer has"
 
@@ -51,6 +57,10 @@ def find_users(repository, compare, files):
         ("a.srdf", SEMANTIC.format('<joint name="shoulder"/>'), 1, JOINT),
         ("a.srdf", SEMANTIC.format('<chain base_link="base_link" tip_link="camera"/>'), 1, FRAME),
         ("a.srdf", SEMANTIC.format('<!-- <joint name="shoulder"/> -->'), 0, ""),
+        ("a.xacro", PART.format(call="", reference="camera"), 3, FRAME),
+        ("a.xacro", PART.format(call="", reference="upper"), 0, ""),
+        ("a.xacro", PART.format(call="", reference="lens").replace("upper", "camera"), 4, FRAME),
+        ("a.xacro", PART.format(call='<xacro:sensor name="cam"/>', reference="camera"), 0, ""),
         ("test/a.yaml", "driver:\n  ros__parameters:\n    frame_id: camera\n", 0, ""),
     ],
 )

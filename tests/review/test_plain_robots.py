@@ -187,3 +187,20 @@ def test_mesh_named_by_its_file_differs_from_its_path(repository, compare):
     assert sentences(subject(compare(repository), path)) == [
         "link 'base': visual geometry mesh w/meshes/base.stl -> mesh file://w/meshes/base.stl"
     ]
+
+
+CONTROLLER = """<gazebo reference="{0}"><controller name="c"><frameName>base</frameName></controller>
+<sensor name="s" type="ray"><plugin name="p" filename="laser.so"><bodyName>base</bodyName></plugin></sensor></gazebo>
+</robot>"""
+
+
+def test_elements_that_still_name_a_renamed_link_are_breaking(repository, compare):
+    repository.commit({**FILES, PATH: ARM.replace("</robot>", CONTROLLER.format("base"))})
+    repository.write({PATH: ARM.replace("</robot>", CONTROLLER.format("foot")).replace('"base"', '"foot"')})
+    changes = {str(each.sentence): str(each.reason) for each in subject(compare(repository), PATH).changes}
+    lost = "the link 'base' no longer exists"
+    names = [sentence for sentence, reason in changes.items() if reason == lost]
+    assert names[0] == "extension 'gazebo foot': controller c frameName still names 'base'"
+    assert all("still names 'base' in <bodyName>" in name for name in names[1:])
+    assert len(names) > 1
+    assert not any("base -> base" in sentence for sentence in changes)

@@ -41,3 +41,34 @@ def test_name_that_a_caller_may_define_is_not_reported(package, compare):
     package.commit({PATH: (MACRO % ("", "", "")).replace("</robot>", caller)})
     package.write({PATH: (MACRO % ("", "", PART)).replace("</robot>", caller)})
     assert breaking(compare(package)) == []
+
+
+INCLUDE = '<xacro:include filename="modes.xacro"/>'
+ROBOT = """<robot name="cell" xmlns:xacro="http://www.ros.org/wiki/xacro">{}
+  <xacro:include filename="rail.xacro"/><xacro:rail/>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_breaking"),
+    [
+        (INCLUDE, "", True),
+        (PROPERTY, "", True),
+        (INCLUDE, PROPERTY, False),
+        (INCLUDE, '<xacro:include filename="$(find other_modes)/modes_of_rail.xacro"/>', False),
+        ("", "", False),
+    ],
+)
+def test_name_whose_definition_moved_to_the_robot_is_breaking_for_other_robots(package, compare, old, new, is_breaking):
+    robot, modes = "arm_description/urdf/cell.urdf.xacro", "arm_description/urdf/modes.xacro"
+    package.commit(
+        {
+            PATH: MACRO % (old, "", PART),
+            robot: ROBOT.format("" if old else INCLUDE),
+            modes: f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{PROPERTY}</robot>\n',
+        }
+    )
+    package.write({PATH: MACRO % (f"<!-- new -->{new}", "", PART), robot: ROBOT.format("" if new else INCLUDE)})
+    text = "no longer defines 'mode', which its macros use"
+    assert (text in breaking(compare(package))) is is_breaking

@@ -42,6 +42,13 @@ def test_calls_without_the_prefix_are_expanded(legacy, compare):
     assert breaking(result) == ["joint 'head_joint': limit upper 1.57079633 -> 1 rad"]
 
 
+def test_packages_of_rosbuild_do_not_need_the_prefix(legacy, compare):
+    manifest = '<package><description brief="legacy"/><license>BSD</license><depend package="xacro"/></package>'
+    legacy.commit({"legacy/package.xml": None, "legacy/manifest.xml": manifest})
+    legacy.write({PATH: ROBOT.replace("${pi / 2}", "2.0")})
+    assert sentences(subject(compare(legacy), PATH)) == ["joint 'head_joint': limit upper 1.57079633 -> 2 rad"]
+
+
 def test_added_prefix_is_the_only_change(legacy, compare):
     prefixed = ROBOT.replace("<property", "<xacro:property").replace('<part name="head', '<xacro:part name="head')
     legacy.write({PATH: prefixed})

@@ -14,6 +14,8 @@ from pathlib import Path
 from linkwright.loading.deferred import lazy_pattern
 
 MANIFEST = "package.xml"
+ROSBUILD_MANIFEST = "manifest.xml"
+"""The manifest of a package of rosbuild, the build system before catkin."""
 
 _COMMENT = lazy_pattern(r"<!--.*?-->", re.DOTALL)
 _NAME = lazy_pattern(r"<package\b[^>]*>.*?<name>\s*([^<\s]+)\s*</name>", re.DOTALL)

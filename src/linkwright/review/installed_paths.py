@@ -7,12 +7,11 @@ from functools import lru_cache
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.build_facts import BuildFacts, FactKind, find_own_include_text
 from linkwright.review.files.cmake_files import CMAKE_FILE, read_cmake_facts
-from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.files.setup_files import SETUP_FILE, read_setup_facts
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document

@@ -41,6 +41,12 @@ def find_left_names(
                 yield _make_change(reader, element, phrase("the joint '{name}' no longer exists", name=name), location)
 
 
+def is_searched_property(name: str) -> bool:
+    """Return whether `find_left_names` searches a property of an extension for names of links."""
+    words = name.split(" ")
+    return not _READER_TAGS.isdisjoint(words[:-1]) and LINK_TAG.search(words[-1]) is not None
+
+
 def _make_change(
     reader: Element, element: Element, reason: Phrase, location: Callable[[Span | None], Location | None]
 ) -> Change:

@@ -15,7 +15,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.affected import TextFiles, may_be_read
 from linkwright.lint.targets import Targets, find_included_robots, find_targets, is_plain_robot
-from linkwright.packages.manifest import MANIFEST, package_name
+from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.build_types import is_unused_cmake_file
 from linkwright.review.changes import (
@@ -36,7 +36,7 @@ from linkwright.review.files.gui_files import is_gui_file
 from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
 from linkwright.review.files.plugin_files import compare_plugin_files
-from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST, compare_rosbuild_manifests
+from linkwright.review.files.rosbuild_manifests import compare_rosbuild_manifests
 from linkwright.review.files.templates import is_template
 from linkwright.review.files.worlds import is_other_world
 from linkwright.review.findings import Findings, compare_findings, find_findings, find_findings_singly

@@ -68,8 +68,9 @@ def _add_prefixes(text: str, macros: Iterable[str]) -> str:
 
 
 def is_of_ros1(manifest: str) -> bool:
-    """Return whether the text of a manifest is that of a package of ROS 1."""
-    return "catkin" in manifest and "ament" not in manifest
+    """Return whether the text of a manifest is that of a package of ROS 1, with catkin or rosbuild."""
+    is_of_rosbuild = "<package" in manifest and "<name" not in manifest  # rosbuild takes the name of the folder
+    return is_of_rosbuild or ("catkin" in manifest and "ament" not in manifest)
 
 
 def compare_prefixes(

@@ -18,7 +18,7 @@ from linkwright.files.git_repository import SHALLOW_HINT, ChangedFile, GitReposi
 from linkwright.lint.checking import Checker
 from linkwright.lint.targets import find_targets
 from linkwright.packages import PackageFinder
-from linkwright.packages.manifest import MANIFEST, SKIPPED_FOLDERS, SourceScan, package_name
+from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, SKIPPED_FOLDERS, SourceScan, package_name
 from linkwright.packages.share_layout import find_share_of_sources
 from linkwright.review.build_folders import find_build_files
 from linkwright.review.unprefixed_calls import DESCRIPTION_SUFFIXES, find_macros, find_prefixed_texts, is_of_ros1
@@ -139,7 +139,8 @@ class Version:
     @cached_property
     def overlay(self) -> Overlay | None:
         """The descriptions of ROS 1 that call macros without the prefix, with the prefix; None if there are none."""
-        if not any(is_of_ros1(self.text(path)) for path in self.paths((MANIFEST,))):
+        manifests = (self.text(path) for path in self.paths((MANIFEST, ROSBUILD_MANIFEST)))
+        if not any(map(is_of_ros1, manifests)):
             return None
         prefixed = find_prefixed_texts({str(self.file(path)): self.text(path) for path in self._descriptions})
         return Overlay(prefixed) if prefixed else None

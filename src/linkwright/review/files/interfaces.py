@@ -13,12 +13,12 @@ from linkwright.messages.definitions.interfaces import Constant, Field, Structur
 from linkwright.messages.definitions.library import TrustedMessages, parse_source, read_source
 from linkwright.messages.definitions.parser import SECTIONS
 from linkwright.packages import MANIFEST, enclosing_package
+from linkwright.packages.manifest import ROSBUILD_MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES, Effect, Location
 from linkwright.review.file_pair import FilePair, LimitError
 from linkwright.review.files.containing_interfaces import find_containing_interfaces
 from linkwright.review.files.renamed_fields import find_renamed_constants, find_renamed_fields
-from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.files.unbuilt_interfaces import is_unbuilt
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document

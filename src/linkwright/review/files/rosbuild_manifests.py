@@ -7,14 +7,13 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.packages.manifest import MANIFEST
+from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 from linkwright.xmltree import Element
 
-ROSBUILD_MANIFEST = "manifest.xml"
 _FILES = (ROSBUILD_MANIFEST, "stack.xml")
 _ROOTS = ("package", "stack")
 _TEXT_TAGS = ("version", "license", "author", "url")

@@ -40,13 +40,19 @@ class IncludeGraph:
         The result is None if one of them may include a file that is not in the repository.
         """
         robots = self.find_robots_with(path)
+        if any(self.find_unknown_includes(robot) for robot in robots):
+            return None
         paths = {reachable for robot in robots for reachable in self._find_reachable(robot, self._included)}
-        has_unknown = any(
-            not inclusion.pattern and inclusion.name not in self._names
-            for reachable in paths
+        return [self._outlines[reachable] for reachable in sorted(paths)]
+
+    def find_unknown_includes(self, path: str) -> set[str]:
+        """Return the names of the files that a file may include, directly or indirectly, without those here."""
+        return {
+            inclusion.name
+            for reachable in self._find_reachable(path, self._included)
             for inclusion in self._outlines[reachable].inclusions
-        )
-        return None if has_unknown else [self._outlines[reachable] for reachable in sorted(paths)]
+            if not inclusion.pattern and inclusion.name not in self._names
+        }
 
     def find_files_with_macro(self, macro: str) -> list[str]:
         """Return the files that define a macro."""

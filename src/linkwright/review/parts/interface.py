@@ -13,7 +13,7 @@ from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.outline import MacroOutline, Outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.renamed_names import find_renamed_names
-from linkwright.review.parts.undefined_names import find_undefined_names
+from linkwright.review.parts.undefined_names import find_lost_definitions, find_undefined_names
 from linkwright.review.parts.unused_arguments import is_unused_argument
 from linkwright.xacro.macros import Parameter
 from linkwright.xmltree import Element
@@ -33,6 +33,11 @@ def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, 
             _report_undefined_names(pair, graphs.new, pair.old.macros[name], macro)
         elif name not in renamed.values() and not _declares_macro(graphs.old, pair.old_path, name):
             pair.add(phrase("macro '{name}' added", name=name), None, macro.element)
+    lost = find_lost_definitions(graphs, pair)
+    if lost:
+        text = phrase("no longer defines {names}, which its macros use", names=quoted_names(lost))
+        reason = phrase("calls of the macros fail unless the caller defines the names")
+        pair.add(text, pair.old.root, pair.new.root, reason)
     edits: dict[Hashable, list[str]] = {}
     for old_name, name in renamed.items():
         edits.setdefault(name_edit(old_name, name), []).append(old_name)

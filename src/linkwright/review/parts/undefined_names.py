@@ -1,15 +1,17 @@
-"""Find names that a macro newly uses although nothing defines them."""
+"""Find names that a macro newly uses although nothing defines them, and names whose definition is gone."""
 
 from __future__ import annotations
 
 import ast
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from linkwright.lint.xacro_names import mentions
-from linkwright.review.parts.include_graph import IncludeGraph
+from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.name_substitution import iterate_properties
-from linkwright.review.parts.outline import MACRO, MacroOutline
+from linkwright.review.parts.outline import MACRO, MacroOutline, Outline
+from linkwright.review.parts.part_pair import PartPair
 from linkwright.xacro.expressions.builtin_names import BARE_NAMES, MATHEMATICS
 from linkwright.xmltree import Element
 
@@ -42,6 +44,44 @@ def find_undefined_names(graph: IncludeGraph, path: str, old: MacroOutline, new:
         if any(element.tag == f"{_XACRO}{new.name}" for element in outline.root.walk()):
             return []
     return sorted(names)
+
+
+def find_lost_definitions(graphs: IncludeGraphs, pair: PartPair) -> list[str]:
+    """Return the names that macros of a file use, and that only the old version of the file or its includes define.
+
+    A robot of the repository may define them before it includes the file; robots of other repositories need not. If the
+    file newly includes one that is not in the repository, which may define names, nothing is found.
+
+    Args:
+        graphs: the includes of both versions.
+        pair: both versions of the file.
+    """
+    if pair.is_read(is_old=True) != pair.is_read(is_old=False):
+        return []  # what cannot be expanded any more is reported on its own
+    if graphs.new.find_unknown_includes(pair.new_path) - graphs.old.find_unknown_includes(pair.old_path):
+        return []
+    names: set[str] = set()
+    for name, macro in pair.new.macros.items():
+        old = pair.old.macros.get(name)
+        if old is not None:
+            used = _find_used_names(macro.element) & _find_mentioned_names(old.element)
+            names |= used - set(_find_parameters(macro.element)) - _KNOWN_NAMES
+    return sorted(
+        name
+        for name in names
+        if graphs.old.declares(pair.old_path, _Definition(name))
+        and not graphs.new.declares(pair.new_path, _Definition(name))
+    )
+
+
+@dataclass(frozen=True)
+class _Definition:
+    """Whether a file defines a property, or may define it under a computed name."""
+
+    name: str
+
+    def __call__(self, outline: Outline) -> bool:
+        return any(name == self.name or "$" in name for name, _ in iterate_properties(outline.root))
 
 
 def _find_mentioned_names(macro: Element) -> set[str]:

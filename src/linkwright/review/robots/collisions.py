@@ -6,7 +6,8 @@ fixed joints, are left out, because they touch at their connection.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.util import find_spec
 from itertools import chain
 from typing import Any
@@ -15,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.descriptions.comparison import Difference
-from linkwright.diagnostics import LinkwrightError, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, joined_first, phrase
 from linkwright.planning.robot_model import PlacedShape, add_shape
 from linkwright.planning.shapes import convert_collision
-from linkwright.review.changes import Change
+from linkwright.review.changes import MAX_NAMES, Change
 from linkwright.review.robots.figures import RobotMeasures
 from linkwright.simulation.library import load_mujoco
 from linkwright.urdf import Collision
@@ -29,6 +30,9 @@ _MIN_COLLIDING_SAMPLES = 3
 """The minimum number of colliding samples of a reported collision. Small changes affect a few samples."""
 _MIN_DEPTH_M = 1e-4
 """The minimum depth in m of a collision. Shapes that only touch do not collide."""
+
+_MAX_LINES = 4
+"""The maximum number of pairs that have a line each."""
 
 Array = NDArray[np.float64]
 Pair = tuple[str, str]
@@ -71,22 +75,72 @@ def compare_collisions(
         return
     old_counts = {frozenset(links.get(name, "") for name in pair): counts for pair, counts in counts_before.items()}
     known = {new_name for name, new_name in links.items() if name not in old_model.unreadable}
+    found = []
     for pair, (is_home, count) in new_counts.items():
         was_home, old_count = old_counts.get(frozenset(pair), (False, 0))
         if not known.issuperset(pair) or frozenset(pair) in disabled:
             continue
         if is_home and not was_home:
-            yield Change(phrase("links '{first}' and '{second}' collide at home", first=pair[0], second=pair[1]))
+            found.append(_NewCollision(pair, 1.0, is_home))
         elif count >= _MIN_COLLIDING_SAMPLES and not old_count and not was_home:
-            text = phrase(
+            found.append(_NewCollision(pair, count / _SAMPLES, is_home))
+    yield from _make_changes(found)
+
+
+@dataclass(frozen=True)
+class _NewCollision:
+    """Two links that collide only in the new version.
+
+    Attributes:
+        pair: the names of the links.
+        share: the share of the configurations in which they collide.
+        is_home: whether they collide at home.
+    """
+
+    pair: Pair
+    share: float
+    is_home: bool
+
+    @property
+    def change(self) -> Change:
+        """The change in a line of its own."""
+        first, second = self.pair
+        if self.is_home:
+            return Change(phrase("links '{first}' and '{second}' collide at home", first=first, second=second))
+        return Change(
+            phrase(
                 "links '{first}' and '{second}' can collide: in {share:.2g} % of {total} configurations, "
                 "in none before",
-                first=pair[0],
-                second=pair[1],
-                share=100.0 * count / _SAMPLES,
+                first=first,
+                second=second,
+                share=100.0 * self.share,
                 total=_SAMPLES,
             )
-            yield Change(text)
+        )
+
+    @property
+    def item(self) -> Phrase:
+        """The links and how often they collide, in a list."""
+        values: dict[str, object] = {"first": self.pair[0], "second": self.pair[1]}
+        if self.is_home:
+            return phrase("'{first}' and '{second}' (at home)", **values)
+        return phrase("'{first}' and '{second}' ({share:.2g} %)", **values, share=100.0 * self.share)
+
+
+def _make_changes(found: Sequence[_NewCollision]) -> Iterator[Change]:
+    """Yield the changes about links that newly collide, many of them in one line, the most frequent first."""
+    if len(found) <= _MAX_LINES:
+        yield from (collision.change for collision in found)
+        return
+    ordered = sorted(found, key=lambda collision: (collision.is_home, collision.share), reverse=True)
+    yield Change(
+        phrase(
+            "{count} pairs of links newly collide in {total} configurations: {pairs}",
+            count=len(found),
+            total=_SAMPLES,
+            pairs=joined_first([collision.item for collision in ordered], MAX_NAMES),
+        )
+    )
 
 
 class _CollisionModel:

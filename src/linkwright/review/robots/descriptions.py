@@ -22,7 +22,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import find_disabled_collisions
 from linkwright.review.frames import UNMOVED, SharedFrames
 from linkwright.review.joint_limits import find_limits_reason
-from linkwright.review.left_names import find_left_names
+from linkwright.review.left_names import find_left_names, is_searched_property
 from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.merging import merge_changes
 from linkwright.review.motions import add_motion, compute_angle
@@ -207,8 +207,12 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             continue
         if has_other_root and (difference.subject, difference.kind, difference.name) == ("link", "removed", old.root):
             continue
+        if partial is None and _names_lost_link(difference, old, new) and is_searched_property(difference.property):
+            continue  # `find_left_names` finds it
         reason = None
-        if references.find_name(difference) is None:
+        if _names_lost_link(difference, old, new):
+            reason = phrase("the link '{name}' no longer exists", name=difference.new or "")
+        elif references.find_name(difference) is None:
             reason = (
                 (None if is_still_offered(difference, added_names) else find_breaking_reason(difference, old, new))
                 or find_missing_topics_reason(difference, added_names)
@@ -227,6 +231,14 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         text = added_links.sentence(difference) or parents.sentence(difference) or format_difference(difference)
         text = references.add_name(text, difference)
+        if _names_lost_link(difference, old, new):
+            text = phrase(
+                "{subject} '{name}': {property} still names '{value}'",
+                subject=term(difference.subject),
+                name=difference.name,
+                property=difference.property,
+                value=difference.new or "",
+            )
         if difference.subject == "link" and difference.kind == "renamed":
             motion = frames.motion(difference.old or "") if has_known_poses else None
             text = text if motion is None else add_motion(text, *motion)
@@ -241,6 +253,15 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
     if partial is None:
         links, joints = old.links.keys() - new.links.keys(), old.joints.keys() - new.joints.keys()
         yield from find_left_names(new.extensions, links, joints, pair.location)
+
+
+def _names_lost_link(difference: Difference, old: Robot, new: Robot) -> bool:
+    """Return whether a value in an extension is the name of a renamed link, and did not follow the new name."""
+    return (
+        (difference.subject, difference.kind) == ("extension", "changed")
+        and difference.old == difference.new
+        and difference.new in old.links.keys() - new.links.keys()
+    )
 
 
 def _make_root_change(old: Robot, new: Robot, frames: SharedFrames) -> Change:

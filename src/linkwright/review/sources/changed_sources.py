@@ -9,8 +9,7 @@ from functools import cached_property
 from pathlib import PurePosixPath
 from types import MappingProxyType
 
-from linkwright.packages.manifest import MANIFEST
-from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
+from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
 from linkwright.review.sources.code import Code, read_code
 from linkwright.review.sources.cpp_bases import ClassMethods
 from linkwright.review.sources.moved_code import MovedCode, find_moved_code, without_functions

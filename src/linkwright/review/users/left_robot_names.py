@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import PurePosixPath
 
@@ -27,6 +27,7 @@ _SOURCE_SUFFIXES = (*CPP_SUFFIXES, PYTHON_SUFFIX)
 _SETTINGS_SUFFIXES = (".yaml", ".yml")
 _RVIZ_SUFFIX = ".rviz"
 _SEMANTIC_SUFFIX = ".srdf"
+_DESCRIPTION_SUFFIXES = (".urdf", ".xacro")
 _ROBOT_SUFFIXES = (".urdf", ".xacro", ".sdf", ".world", ".mjcf", ".xml")
 _PACKAGE_USERS = (*LAUNCH_SUFFIXES, "package.xml", *_SETTINGS_SUFFIXES, PYTHON_SUFFIX)
 _FRAME_KEY = re.compile(r"(?:.*_)?frame(?:_id|_name)?", re.IGNORECASE)
@@ -43,6 +44,8 @@ _RVIZ_FRAME = re.compile(
 _SEMANTIC_JOINT = re.compile(r"<(?:joint|passive_joint)\b[^>]*\bname\s*=\s*[\"'](?P<name>[^\"']+)[\"']")
 _SEMANTIC_LINK = re.compile(r"\b(?:base_link|tip_link|child_link|parent_link)\s*=\s*[\"'](?P<name>[^\"']+)[\"']")
 """The attributes of chains, end effectors and virtual joints. Pairs of links without a collision do no harm."""
+_ROBOT_REFERENCE = re.compile(r"<gazebo\b[^>]*\breference\s*=\s*[\"'](?P<name>[^\"']+)[\"']")
+_ROBOT_LINK = re.compile(r"<(?:parent|child)\b[^>]*\blink\s*=\s*[\"'](?P<name>[^\"']+)[\"']")
 _XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _TRANSFORM_PUBLISHERS = ("static_transform_publisher", "tf_prefix")
 _DEFINITIONS = {
@@ -51,8 +54,10 @@ _DEFINITIONS = {
 }
 """The elements that define frames (True) and joints (False)."""
 _MACRO_CALL = re.compile(
-    r"<(?:xacro|[a-z]\w*):(?!macro|property|arg\b|include|if\b|unless\b)[\w.-]+\b(?P<values>[^>]*)>"
+    r"<(?:xacro|[a-z]\w*):(?!macro|property|arg\b|include|if\b|unless\b|insert_block\b|call\b|element\b|attribute\b)"
+    r"(?P<macro>[\w.-]+)\b(?P<values>[^>]*)>"
 )
+_ATTRIBUTE_VALUE = re.compile(r"=\s*[\"']([^\"']+)[\"']")
 _SUBSTITUTION = re.compile(r"\$\{[^}]*\}|\$\([^)]*\)")
 _BROADCAST = re.compile(r"\bsendTransform\b|TransformBroadcaster\b")
 _COMMON_FRAMES = frozenset({"earth", "map", "odom", "world"})
@@ -190,6 +195,37 @@ class _Files:
             elif path.endswith(_SEMANTIC_SUFFIX):
                 pattern = _SEMANTIC_LINK if lost.is_frame else _SEMANTIC_JOINT
                 yield from _find_in_text(path, _XML_COMMENT.sub(_blank, text), pattern, lost)
+            elif path.endswith(_DESCRIPTION_SUFFIXES) and lost.is_frame:
+                yield from self._find_in_description(path, _XML_COMMENT.sub(_blank, text), lost)
+
+    def _find_in_description(self, path: str, text: str, lost: _LostName) -> Iterator[tuple[str, Change]]:
+        """Yield the changes about elements for a lost link, also under conditions that no compared robot fulfills.
+
+        A file that calls a macro of another repository is not searched, because the macro may make the link.
+        """
+        if self._calls_unknown_macro(text) or any(lost.name.startswith(name) for name in self._names_of_unknown_macros):
+            return
+        yield from _find_in_text(path, text, _ROBOT_LINK, lost, phrase("the link of the joint does not exist"))
+        joint = replace(lost, is_frame=False)
+        robots = (other for name, other in self._texts.items() if name.endswith(_ROBOT_SUFFIXES))
+        if not any(True for other in robots for _ in _find_definitions(other, joint)):
+            yield from _find_in_text(path, text, _ROBOT_REFERENCE, lost, phrase("Gazebo ignores the element"))
+
+    def _calls_unknown_macro(self, text: str) -> bool:
+        return any(match["macro"] not in self._version.macros for match in _MACRO_CALL.finditer(text))
+
+    @cached_property
+    def _names_of_unknown_macros(self) -> frozenset[str]:
+        """The values that descriptions pass to macros of other repositories, which may prefix names with them."""
+        return frozenset(
+            value
+            for path, text in self._texts.items()
+            if path.endswith(_DESCRIPTION_SUFFIXES)
+            for match in _MACRO_CALL.finditer(_XML_COMMENT.sub("", text))
+            if match["macro"] not in self._version.macros
+            for value in _ATTRIBUTE_VALUE.findall(match["values"])
+            if _PLAIN_NAME.fullmatch(value)
+        )
 
     def _find_in_settings(self, path: str, text: str, lost: _LostName) -> Iterator[tuple[str, Change]]:
         pattern = _FRAME_KEY if lost.is_frame else _JOINT_KEY
@@ -244,12 +280,14 @@ def _find_settings(text: str, name: str) -> Iterator[tuple[str, int, int]]:
             yield re.split(r"[.\[]", path.rstrip("]"))[-1], value.line, value.column
 
 
-def _find_in_text(path: str, text: str, pattern: re.Pattern[str], lost: _LostName) -> Iterator[tuple[str, Change]]:
+def _find_in_text(
+    path: str, text: str, pattern: re.Pattern[str], lost: _LostName, reason: Phrase | None = None
+) -> Iterator[tuple[str, Change]]:
     for match in pattern.finditer(text):
         if match["name"].strip("/") == lost.name:
             start = match.start("name")
             column = start - text.rfind("\n", 0, start)
-            yield lost.make_change(path, text.count("\n", 0, start) + 1, column, _make_reason(lost))
+            yield lost.make_change(path, text.count("\n", 0, start) + 1, column, reason or _make_reason(lost))
 
 
 def _make_reason(lost: _LostName) -> Phrase:

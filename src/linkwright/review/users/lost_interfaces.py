@@ -8,11 +8,10 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.messages.definitions.interfaces import Structure
-from linkwright.packages.manifest import MANIFEST, package_name
+from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, package_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.interfaces import read_structures
-from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
 from linkwright.review.sources.cpp_interface_uses import find_cpp_uses, find_member_uses, find_members
 from linkwright.review.sources.interface_uses import InterfaceUse, LostInterface
 from linkwright.review.sources.lost_types import find_including_files
