@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import PurePosixPath
 
-from linkwright.packages.manifest import MANIFEST, package_name
-from linkwright.review.files.rosbuild_manifests import ROSBUILD_MANIFEST
+from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, package_name
 from linkwright.review.versions import Version
 
 _SUFFIXES = (".msg", ".srv", ".action")

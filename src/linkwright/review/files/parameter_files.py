@@ -88,8 +88,8 @@ def compare_parameter_files(pair: FilePair, read_names: Callable[[Mapping[str, Y
             compare_generated_parameters(pair, old, new)
             return
         old, new = resolve_includes(pair, old, new)
-    changes, renamed = join_renamed_values(join_replaced_classes(_find_changes(pair, old, new, read_names)))
-    pair.changes += [*renamed, *merge_values(changes)]
+    changes, renamed_values = join_renamed_values(join_replaced_classes(_find_changes(pair, old, new, read_names)))
+    pair.changes += [*renamed_values, *merge_values(changes)]
 
 
 def parameter_contents(version: Version, path: str) -> Phrase | None:
