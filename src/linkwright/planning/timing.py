@@ -26,7 +26,7 @@ _MIN_LENGTH = 1e-9
 _MAX_TURN = 1e-6
 """The change of the direction at a point of the path up to which the motion does not stop there."""
 _MARGIN = 0.995
-"""The share of the limits that is used, because they are exceeded by up to 0.3 % between two points."""
+"""The share of the limits that is used, because they are exceeded by up to 0.2 % between two points."""
 _MIN_ANGLE = 1e-4
 """The angle in rad between two lines up to which there is no corner."""
 _LINE_SPACING = 0.1
@@ -298,9 +298,11 @@ def _speed_limits(path: _Path, steps: Array) -> tuple[Array, Array, Array]:
         each of shape (n, lines): -offset - ratio * x and offset - ratio * x.
     """
     slopes, curvatures = path.slopes, path.curvatures
-    limits = np.divide(
-        path.max_velocities, np.abs(slopes), out=np.full_like(slopes, np.inf), where=np.abs(slopes) > _MIN_SLOPE
-    )
+    # Between two points of an arc, a joint may move faster than at one of them.
+    steepest = np.abs(slopes)
+    steepest[:-1] = np.maximum(steepest[:-1], np.abs(slopes[1:]))
+    steepest[1:] = np.maximum(steepest[1:], np.abs(slopes[:-1]))
+    limits = np.divide(path.max_velocities, steepest, out=np.full_like(slopes, np.inf), where=steepest > _MIN_SLOPE)
     limits = (limits**2).min(axis=1)
     # u must also be possible at the next point, where x is larger by 2 * step * u.
     end_slopes = slopes.copy()
