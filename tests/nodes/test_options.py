@@ -2,12 +2,14 @@
 
 import os
 import sys
+from unittest.mock import MagicMock
 
 import pytest
 
 from linkwright.graph import LogLevel
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import create_node, find_default_name
+from linkwright.vision.cameras.video import VideoSource
 from tests.nodes.harness import joint, robot
 from tests.speech.nodes import fake_sounddevice
 
@@ -75,6 +77,12 @@ def terminal():
 def microphone(monkeypatch):
     """Return the microphone of a machine that has one."""
     monkeypatch.setitem(sys.modules, "sounddevice", fake_sounddevice)
+
+
+@pytest.fixture(autouse=True)
+def camera(monkeypatch):
+    """Return the camera of a machine that has one, which sends no images."""
+    monkeypatch.setattr(VideoSource, "_open", lambda *_: MagicMock(**{"read.return_value": (False, None)}))
 
 
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)

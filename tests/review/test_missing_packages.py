@@ -239,7 +239,7 @@ def test_value_that_needs_a_file_which_only_the_new_version_misses_is_not_compar
             "arm_description/urdf/angle.xacro": QUARTER,
         }
     )
-    package.write({PATH: ARM.replace("</robot>", angle.replace("arm_d", "maths_d") + include + call + "</robot>")})
+    package.write({PATH: ARM.replace("</robot>", angle.replace("arm_d", "angles_d") + include + call + "</robot>")})
     review_subject = subject(compare(package), PATH)
     assert [line for line in sentences(review_subject) if "lidar front" in line] == []
     assert [str(problem.text) for problem in review_subject.problems] == [

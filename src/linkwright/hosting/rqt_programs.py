@@ -53,6 +53,11 @@ PANEL_PROGRAMS: Mapping[tuple[str, str], PanelProgram] = MappingProxyType(
 )
 """The programs that open a panel, by package and executable."""
 
+RQT_COMMANDS: Mapping[str, str] = MappingProxyType(
+    {executable: package for package, executable in PANEL_PROGRAMS if package.startswith("rqt")}
+)
+"""The packages of the programs that are commands of a shell, by executable. `ros2 run` starts the others."""
+
 MISSING_PROGRAMS: Mapping[str, Phrase] = MappingProxyType(
     {
         "rqt_action": phrase("run `ros2 action list -t` and `ros2 interface show TYPE`"),

@@ -12,7 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from linkwright.files.user_folders import cache_folder
-from linkwright.hosting.rqt_programs import PANEL_PROGRAMS
+from linkwright.hosting.rqt_programs import RQT_COMMANDS
 from linkwright.messages.distribution import ASSUMED_DISTRIBUTION_VARIABLE
 from linkwright.packages.ament import ROS_VARIABLES
 from linkwright.process.own_programs import PROGRAMS_MODULE
@@ -25,7 +25,7 @@ PROGRAMS = {
     "urdf_to_graphiz": (PROGRAMS_MODULE, "urdf_to_graphviz"),
     "rviz2": (PROGRAMS_MODULE, "rviz2"),
     **{name: (PROGRAMS_MODULE, name) for name in ("gz", "ign", "gazebo", "gzserver", "gzclient")},
-    **{name: (PROGRAMS_MODULE, name) for package, name in PANEL_PROGRAMS if package.startswith("rqt")},
+    **{name: (PROGRAMS_MODULE, name) for name in RQT_COMMANDS},
     "launch_test": (PROGRAMS_MODULE, "launch_test"),
     "colcon": (PROGRAMS_MODULE, "colcon"),
     "linkwright": ("linkwright", None),

@@ -12,7 +12,7 @@ from linkwright.cli.exit_status import FINDINGS, FINE, run_command
 from linkwright.cli.tools.gz import run_gz, run_simulator
 from linkwright.cli.tools.ros2 import ros2
 from linkwright.diagnostics import LinkwrightError, missing_extra, print_diagnostics
-from linkwright.hosting.rqt_programs import PANEL_PROGRAMS
+from linkwright.hosting.rqt_programs import RQT_COMMANDS
 from linkwright.process.interruption import raise_interrupts
 
 _FAILURE_STATUS = 255
@@ -108,7 +108,7 @@ TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "gz": partial(run_gz, "gz"),
     "ign": partial(run_gz, "ign"),
     **{name: partial(run_simulator, name) for name in ("gazebo", "gzserver", "gzclient")},
-    **{executable: partial(_run, package, executable) for package, executable in PANEL_PROGRAMS},
+    **{executable: partial(_run, package, executable) for executable, package in RQT_COMMANDS.items()},
     "rqt_bag": _run_rqt_bag,
     "launch_test": _run_launch_test,
     "colcon": _run_colcon,
