@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -13,7 +14,10 @@ from linkwright.xacro import Limits
 
 
 def lines_run(function: Callable[[], object]) -> int:
-    """Return the number of executed Python lines in a call; work inside numpy counts as none."""
+    """Return the number of executed Python lines in a call; work inside numpy counts as none.
+
+    Nor do finalizers of objects that other tests left behind.
+    """
     count = 0
 
     def trace(_frame: FrameType, event: str, _argument: Any) -> Any:
@@ -21,12 +25,15 @@ def lines_run(function: Callable[[], object]) -> int:
         count += event == "line"
         return trace
 
-    before = sys.gettrace()
+    before, collects = sys.gettrace(), gc.isenabled()
+    gc.disable()
     sys.settrace(trace)
     try:
         function()
     finally:
         sys.settrace(before)
+        if collects:
+            gc.enable()
     return count
 
 
