@@ -55,3 +55,10 @@ def test_other_values_are_removed_and_added(review_values, old, new):
 def test_values_that_are_renamed_share_a_line(review_values):
     lines = review_values(["serial_port: 4", "angle_min: -1"], ["port: 4", "min_ang: -1"])
     assert len(lines) == 1
+
+
+@pytest.mark.parametrize(("count", "is_renamed"), [(30, True), (31, False)])
+def test_many_equal_values_are_not_paired(review_values, count, is_renamed):
+    words = [f"gain{chr(97 + number // 26)}{chr(97 + number % 26)}" for number in range(count)]
+    lines = review_values([f"{word}_{word[::-1]}: 0.5" for word in words], [f"{word}: 0.5" for word in words])
+    assert any("with the same value" in line for line in lines) is is_renamed

@@ -71,9 +71,9 @@ def test_robot_has_gazebos_hardware_and_stands_firmly_only_in_gazebo(tmp_path: P
     (plugin,) = robot.iterfind("gazebo/plugin")
     assert plugin.get("name") == "gz_ros2_control::GazeboSimROS2ControlPlugin"
     assert plugin.findtext("parameters") == str(package / "config" / "ros2_controllers.yaml")
-    (joint,) = (each for each in robot.iterfind("joint") if each.find("child").get("link") == "base")  # type: ignore[union-attr]
+    (joint,) = robot.iterfind("joint/child[@link='base']/..")
     assert joint.get("type") == "fixed"
-    assert joint.find("parent").get("link") == "world"  # type: ignore[union-attr]
+    assert joint.find("parent[@link='world']") is not None
 
 
 @pytest.mark.parametrize(

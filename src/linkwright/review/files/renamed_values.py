@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 
 from linkwright.diagnostics import phrase
 from linkwright.review.changes import Change
 from linkwright.review.files.renamed_parts import get_parent
 from linkwright.review.files.value_changes import ValueChange
+from linkwright.review.name_words import split_name
 
-_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+_MAX_EQUAL = 30
+"""The maximum number of equal removed or added values below a parent. More are ambiguous, and not paired."""
 _MIN_ABBREVIATION = 3
 """The minimum number of characters of an abbreviated word, such as ``ang``."""
 
@@ -26,7 +27,7 @@ def join_renamed_values(changes: Iterable[ValueChange]) -> tuple[list[ValueChang
         [change for change in remaining if change.kind == kind and change.reason is None and len(change.values) == 1]
         for kind in ("removed", "added")
     )
-    pairs = [(old, new) for old in removed for new in added if _is_renamed(old, new)]
+    pairs = list(_find_pairs(removed, added))
     pairs = [
         (old, new)
         for old, new in pairs
@@ -45,17 +46,25 @@ def _describe(pairs: Sequence[tuple[ValueChange, ValueChange]]) -> list[Change]:
     return [Change(text, location=new.location, other_names=others)]
 
 
-def _is_renamed(old: ValueChange, new: ValueChange) -> bool:
-    if old.values != new.values or get_parent(old.name) != get_parent(new.name):
-        return False
+def _find_pairs(
+    removed: Iterable[ValueChange], added: Iterable[ValueChange]
+) -> Iterator[tuple[ValueChange, ValueChange]]:
+    """Yield the removed and added values that are equal, and whose names may be those of one value."""
+    groups: dict[Hashable, tuple[list[ValueChange], list[ValueChange]]] = {}
+    for side, changes in enumerate((removed, added)):
+        for change in changes:
+            groups.setdefault((get_parent(change.name), change.values), ([], []))[side].append(change)
+    for olds, news in groups.values():
+        if max(len(olds), len(news)) <= _MAX_EQUAL:
+            yield from ((old, new) for old in olds for new in news if _have_similar_names(old, new))
+
+
+def _have_similar_names(old: ValueChange, new: ValueChange) -> bool:
+    """Return whether the words of the name of one value contain those of the other one, which has the same parent."""
     parent = get_parent(old.name)
-    old_words, new_words = (_list_words(change.name.removeprefix(parent)) for change in (old, new))
-    shorter, longer = sorted((old_words, new_words), key=len)
+    words = (set(split_name(change.name.removeprefix(parent))) for change in (old, new))
+    shorter, longer = sorted(words, key=len)
     return bool(shorter) and all(any(_is_same_word(word, other) for other in longer) for word in shorter)
-
-
-def _list_words(name: str) -> set[str]:
-    return {word.lower() for word in _WORD.findall(name)}
 
 
 def _is_same_word(first: str, second: str) -> bool:

@@ -9,6 +9,7 @@ from dataclasses import replace
 from linkwright.review.changes import Change
 from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.merging import name_edit
+from linkwright.review.name_words import split_name
 from linkwright.review.sources.details import is_rename
 from linkwright.review.sources.names import NameKind
 
@@ -18,7 +19,6 @@ _SEPARATE_KINDS = tuple(
 """The kinds of names that keep a line each, because other files are searched for them."""
 
 _QUOTED = re.compile(r"'([^']+)'")
-_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 _NOTATION = "notation"
 
 
@@ -43,7 +43,7 @@ def _make_key(change: Change) -> Hashable | None:
 def _have_same_words(old: str, new: str) -> bool:
     """Return whether two names differ only in their notation, such as ``setSpeed`` and ``set_speed``."""
     matches = _QUOTED.match(old), _QUOTED.match(new)
-    words = [[word.lower() for word in _WORD.findall(match[1])] for match in matches if match is not None]
+    words = [split_name(match[1]) for match in matches if match is not None]
     return len(words) == len(matches) and words[0] == words[1]
 
 

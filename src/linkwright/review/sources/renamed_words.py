@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 
+from linkwright.review.name_words import split_name
 from linkwright.review.sources.code import Code, Part
 from linkwright.review.sources.names import CPP_SUFFIXES
 
@@ -136,12 +137,8 @@ def _find_functions(old: Code, new: Code) -> Iterator[tuple[str, str]]:
 
 def _is_version(old: Code, name: str, new: Code, other: str) -> bool:
     """Return whether two functions have the same code, or names that only differ in their notation."""
-    words = [[*_list_words(_split(function)[1])] for function in (name, other)]
+    words = [split_name(_split(function)[1]) for function in (name, other)]
     return words[0] == words[1] or (bool(old.get_body(name)) and old.get_body(name) == new.get_body(other))
-
-
-def _list_words(name: str) -> Iterable[str]:
-    return (word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", name))
 
 
 def _list_parts(code: Code) -> list[Part]:
