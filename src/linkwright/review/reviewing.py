@@ -18,6 +18,7 @@ from linkwright.lint.targets import Targets, find_included_robots, find_targets,
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.build_types import is_unused_cmake_file
+from linkwright.review.caching import forget_cached_results
 from linkwright.review.changes import (
     Change,
     Effect,
@@ -87,7 +88,6 @@ from linkwright.review.replaced_files import join_replaced_files
 from linkwright.review.required_packages import is_named
 from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.comparing import source_subjects
-from linkwright.review.sources.reading import forget_source_names
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.unfixed_findings import drop_unfixed_findings
 from linkwright.review.users.left_robot_names import find_left_robot_names
@@ -134,7 +134,7 @@ def review(
     Raises:
         LinkwrightError: REV103, there is no such package.
     """
-    forget_source_names()
+    forget_cached_results()
     versions = match_moved_files(versions)
     folders = _find_package_folders(versions, packages)
     drawings = Drawings(images=with_images or with_scenes, scenes=with_scenes)
