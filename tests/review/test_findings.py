@@ -261,13 +261,14 @@ def test_setup_with_a_syntax_error_hides_neither_new_nor_fixed_findings(reposito
     assert finding_codes(compare(repository, "HEAD~1..HEAD").new_findings) == ["LW827"]
 
 
-def test_finding_about_a_mesh_by_its_path_is_neither_new_nor_fixed(package, compare, monkeypatch):
-    """The working tree and the other version are different folders."""
+@pytest.mark.parametrize("folder", [".", "arm_description"])
+def test_finding_about_a_mesh_by_its_path_is_neither_new_nor_fixed(package, compare, monkeypatch, folder):
+    """The working tree and the other version are different folders, and the review runs in one of them."""
     mesh = '<visual><geometry><mesh filename="file://$(find arm_description)/meshes/arm.stl"/></geometry></visual>'
     text = ARM.replace('<link name="base_link"/>', f'<link name="base_link">{mesh}</link>')
     pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:{}\nsize 12345\n"
     package.commit({PATH: text, "arm_description/meshes/arm.stl": pointer.format("7e" * 32)})
-    monkeypatch.chdir(package.root)
+    monkeypatch.chdir(package.root / folder)
     package.write({PATH: text.replace("0.2", "0.3")})
     result = compare(package)
     assert [found.path for found in result.subjects] == [PATH]

@@ -152,6 +152,21 @@ def test_package_that_commit_removes_is_not_left_out(package, compare):
     assert any("can no longer be read" in sentence and "lidar_description" in sentence for sentence in breaking(result))
 
 
+def test_package_that_only_the_working_tree_contains_is_missing_in_earlier_commits(sensor_package, compare):
+    """A package that git ignores, such as a download of another repository, is found."""
+    sensor_package.commit({PATH: WITH_SENSOR.replace('xyz="0 0 0.1"', 'xyz="0 0 0.2"'), ".gitignore": "/downloads"})
+    sensor = {
+        "package.xml": "<package format='3'><name>lidar_description</name></package>",
+        "urdf/lidar.xacro": QUARTER.replace("quarter", "lidar_height"),
+    }
+    missing = f"'{PATH}' is compared without the packages and files that are not found: 'lidar_description'"
+    sensor_package.commit({f"lidar/{name}": text for name, text in sensor.items()})
+    assert missing in note_texts(compare(sensor_package, "HEAD~2..HEAD~1"))
+    sensor_package.commit({f"lidar/{name}": None for name in sensor})
+    sensor_package.write({f"downloads/lidar/{name}": text for name, text in sensor.items()})
+    assert missing not in note_texts(compare(sensor_package, "HEAD~3..HEAD~2"))
+
+
 def test_file_that_neither_version_has_is_left_out(package, compare):
     text = ARM.replace("</robot>", '<xacro:include filename="absent.xacro"/><xacro:absent/></robot>')
     package.commit({PATH: text})

@@ -148,3 +148,29 @@ def test_topic_of_a_source_that_an_added_plugin_has_is_not_lost(repository, comp
     repository.commit({"a/src/drive.cpp": None, PATH: robot_text(*new)})
     found = breaking(compare(repository, "HEAD~1..HEAD"))
     assert (f"subscriptions removed: '{topic}' (Twist)" in found) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("added", "names", "is_breaking"),
+    [
+        (DRIVE, ("odom",), False),
+        (DRIVE, ("odom", "state"), True),
+        (
+            '<gazebo reference="base"><sensor name="s" type="lidar"><topic>/scan</topic></sensor></gazebo>',
+            ("scan",),
+            False,
+        ),
+        (DRIVE, (*(f"wheel_{number}" for number in range(9)), "odom"), True),
+        (
+            '<gazebo><plugin name="p" filename="libp.so"><odom_frame>odom</odom_frame></plugin></gazebo>',
+            ("odom",),
+            True,
+        ),
+    ],
+)
+def test_topics_of_a_source_that_an_added_plugin_has_are_not_lost(repository, compare, added, names, is_breaking):
+    source = "import rclpy\n\n\ndef start(node):\n    node.create_publisher(Odometry, 'rate', 1)\n"
+    lost = "".join(f"    node.create_publisher(Odometry, '{name}', 1)\n" for name in names)
+    repository.commit({PATH: robot_text(LIGHT), "arm_description/driver.py": source + lost})
+    repository.write({PATH: robot_text(LIGHT, added), "arm_description/driver.py": source})
+    assert bool(breaking(compare(repository))) is is_breaking

@@ -13,16 +13,16 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, ph
 from linkwright.files.git_repository import GitRepository
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.packages import PackageFinder
-from linkwright.packages.manifest import SourceScan
+from linkwright.packages.manifest import MANIFEST, SourceScan, package_name
 from linkwright.packages.share_layout import find_share_of_sources
 
 
 class CommitFiles:
     """The files of a commit in a temporary folder, including included files and meshes.
 
-    Neither the repository nor its working tree is changed. Packages that are not in the commit are found from the
-    working tree. Symbolic links that point outside the folder are removed, because a commit must not show other
-    files of the computer.
+    Neither the repository nor its working tree is changed. Packages of other repositories are found from the working
+    tree, but not those that the repository contains today and the commit does not. Symbolic links that point outside
+    the folder are removed, because a commit must not show other files of the computer.
 
     Args:
         repository: the git repository of the commit.
@@ -51,6 +51,7 @@ class CommitFiles:
         find_unused: Callable[[Sequence[str]], Collection[str]] | None = None,
     ) -> None:
         self.name = name
+        self._repository = repository
         self._repository_root = repository.root
         self._folder = ScratchFolder("revision")
         self.root = Path(self._folder.name).resolve() / "files"
@@ -78,14 +79,18 @@ class CommitFiles:
     def finder(self, folder: Path) -> PackageFinder:
         """Return a finder for a file's folder.
 
-        It finds the commit's packages, and other packages in the working tree.
+        It finds the commit's packages, and packages outside the repository, in submodules and in ignored folders of the
+        working tree.
         """
         return self._finder.starting_at([folder, self._repository_root, Path.cwd()])
 
     @cached_property
     def _finder(self) -> PackageFinder:
         """The finder whose search of the source trees all others share."""
-        return PackageFinder(start=[self._repository_root], extra=self.packages)
+        manifests = self._repository.list_working_files(MANIFEST, f"*/{MANIFEST}")
+        names = (package_name((self._repository_root / path).parent) for path in manifests)
+        hidden = {name for name in names if name is not None}.difference(self.packages)
+        return PackageFinder(start=[self._repository_root], extra=self.packages, hidden=hidden)
 
     @cached_property
     def packages(self) -> Mapping[str, Path]:

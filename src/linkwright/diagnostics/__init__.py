@@ -23,7 +23,14 @@ from linkwright.diagnostics.phrase import (
     term,
     title_of_page,
 )
-from linkwright.diagnostics.render import display_path, print_diagnostics, render, to_data, wants_color
+from linkwright.diagnostics.render import (
+    display_path,
+    print_diagnostics,
+    render,
+    shows_absolute_paths,
+    to_data,
+    wants_color,
+)
 from linkwright.diagnostics.suggest import (
     as_typed,
     did_you_mean,
@@ -62,6 +69,7 @@ __all__ = [
     "quoted",
     "quoted_names",
     "render",
+    "shows_absolute_paths",
     "term",
     "title_of_page",
     "to_data",

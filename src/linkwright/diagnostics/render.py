@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
+from contextvars import ContextVar
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note, Severity, Span
 from linkwright.diagnostics.phrase import as_phrase, phrase
@@ -26,6 +27,9 @@ _REPLACEMENTS = {
     **dict.fromkeys((*range(0x80, 0xA0), *range(0x202A, 0x202F), *range(0x2066, 0x206A)), 0xFFFD),
 }
 """The replacements of characters that control a terminal or the order of the text after them."""
+
+shows_absolute_paths: ContextVar[bool] = ContextVar("shows_absolute_paths", default=False)
+"""Whether `display_path` returns absolute paths, so that a text does not depend on the current folder."""
 
 
 def wants_color(stream: IO[str]) -> bool:
@@ -203,5 +207,7 @@ def _indent(text: str) -> str:
 def display_path(path: str | Path) -> str:
     """Return a path as shown in messages, relative to the current folder if it is inside."""
     text = str(path)
+    if shows_absolute_paths.get():
+        return os.path.abspath(text)  # noqa: PTH100 - Path.resolve would follow links
     relative = os.path.relpath(text)
     return text if relative.startswith("..") else relative

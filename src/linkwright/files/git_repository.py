@@ -193,6 +193,17 @@ class GitRepository:
         """Return whether a commit contains a file, whose path is relative to the root."""
         return self.run("cat-file", "-e", f"{commit}:{path}").returncode == 0
 
+    def list_working_files(self, *patterns: str) -> list[str]:
+        """Return the paths of the working tree's files that git tracks or would add, relative to the root.
+
+        Files of submodules are not listed.
+
+        Args:
+            patterns: the patterns of git of which a path matches at least one.
+        """
+        options = ("--cached", "--others", "--exclude-standard", "-z")
+        return self.run("ls-files", *options, "--", *patterns).stdout.split("\0")[:-1]
+
     def list_symbolic_links(self, commit: str) -> list[str]:
         """Return the paths of a commit's symbolic links, relative to the root."""
         entries = self.run("ls-tree", "-r", "-z", commit).stdout.split("\0")

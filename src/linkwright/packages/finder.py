@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, MutableMapping, Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import (
@@ -78,6 +78,7 @@ class PackageFinder:
         environment: the environment variables, with ``AMENT_PREFIX_PATH``; by default, those of the process.
         extra: package name -> share folder; these packages take precedence.
         sources_first: whether sources take precedence over the files that an earlier build installed from them.
+        hidden: the names of packages that are not searched for in workspaces and source trees.
     """
 
     def __init__(
@@ -87,6 +88,7 @@ class PackageFinder:
         environment: Mapping[str, str] | None = None,
         extra: Mapping[str, str | Path] | None = None,
         sources_first: bool = False,
+        hidden: Collection[str] = (),
     ) -> None:
         self._environment = os.environ if environment is None else environment
         if start is None:
@@ -96,6 +98,7 @@ class PackageFinder:
         self._starts = tuple(dict.fromkeys(_to_absolute(start) for start in starts))
         self._extra = {name: Path(share) for name, share in (extra or {}).items()}
         self._sources_first = sources_first
+        self._hidden = frozenset(hidden)
         self._scans: dict[Path, SourceScan] = {}
         self._shares: dict[str, Path] = {}
         self._suggestions: dict[str, tuple[Phrase | None, bool]] = {}
@@ -108,7 +111,11 @@ class PackageFinder:
         Both finders share the results of searches through source trees.
         """
         finder = PackageFinder(
-            start=start, environment=self._environment, extra=self._extra, sources_first=self._sources_first
+            start=start,
+            environment=self._environment,
+            extra=self._extra,
+            sources_first=self._sources_first,
+            hidden=self._hidden,
         )
         finder._scans = self._scans
         return finder
@@ -164,7 +171,8 @@ class PackageFinder:
         """
         packages = dict(self._extra)
         for name, share in self._all_packages():
-            packages.setdefault(name, share)
+            if name not in self._hidden:
+                packages.setdefault(name, share)
         return packages
 
     def resolve(self, address: str, relative_to: Path | None = None) -> Path:
@@ -218,7 +226,8 @@ class PackageFinder:
             else (self._search_installs, self._search_sources)
         )
         for search in searches:
-            yield from search(name)
+            if name not in self._hidden:
+                yield from search(name)
         yield find_shipped_packages().get(name)
         yield find_substituted_share(name)
 

@@ -92,6 +92,7 @@ class Change:
         path_change: how the path of the file changed; None for other changes.
         is_code: whether the change only names functions and classes with other code.
         uninstalled: the files and folders that a build file no longer installs, if the sentence names them; else empty.
+        lost_topics: the topics that a source no longer publishes or receives, if the sentence names them; else empty.
     """
 
     sentence: Phrase
@@ -104,6 +105,7 @@ class Change:
     path_change: PathChange | None = None
     is_code: bool = False
     uninstalled: tuple[str, ...] = ()
+    lost_topics: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -222,6 +224,7 @@ class Subject:
         expanded: the elements of changed files that the compared robots show.
         missing: the names of omitted packages and files, which neither version has.
         is_lost: whether the new version cannot be read, and the old version can.
+        added_topics: the topics of plugins and sensors that a description or world adds.
     """
 
     kind: SubjectKind
@@ -238,6 +241,7 @@ class Subject:
     expanded: Collection[ExpandedElement] = ()
     missing: Sequence[str] = ()
     is_lost: bool = False
+    added_topics: Collection[str] = ()
 
     @property
     def is_empty(self) -> bool:

@@ -73,6 +73,7 @@ def compare_file(
         expanded=pair.expanded,
         missing=tuple(pair.missing),
         is_lost=pair.is_lost,
+        added_topics=pair.added_topics,
     )
 
 

@@ -105,6 +105,7 @@ class FilePair:
     scene: RobotScene | None = None
     expanded: set[ExpandedElement] = field(default_factory=set)
     missing: dict[str, None] = field(default_factory=dict)
+    added_topics: set[str] = field(default_factory=set)
     is_lost: bool = False
     is_gained: bool = False
 

@@ -154,6 +154,12 @@ def find_added_topics(differences: Iterable[Difference]) -> frozenset[str]:
     return frozenset(topics)
 
 
+def find_offered_topics(differences: Iterable[Difference]) -> set[str]:
+    """Return the topics of added plugins and sensors."""
+    elements = [item.element for item in differences if is_added(item) and item.element is not None]
+    return {topic for element in elements for topic in find_topics(element)}
+
+
 def _find_names(element: Element) -> Iterator[str]:
     """Yield the names in the parameters of the plugins in an element."""
     text = " ".join(element.text().split())

@@ -11,13 +11,14 @@ from multiprocessing import get_context
 from pathlib import PurePosixPath
 from typing import Any, TypeVar
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_mean, phrase, shows_absolute_paths
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.affected import TextFiles, may_be_read
 from linkwright.lint.targets import Targets, find_included_robots, find_targets, is_plain_robot
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.build_types import is_unused_cmake_file
+from linkwright.review.caching import forget_cached_results
 from linkwright.review.changes import (
     Change,
     Effect,
@@ -87,7 +88,6 @@ from linkwright.review.replaced_files import join_replaced_files
 from linkwright.review.required_packages import is_named
 from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.comparing import source_subjects
-from linkwright.review.sources.reading import forget_source_names
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.unfixed_findings import drop_unfixed_findings
 from linkwright.review.users.left_robot_names import find_left_robot_names
@@ -134,11 +134,16 @@ def review(
     Raises:
         LinkwrightError: REV103, there is no such package.
     """
-    forget_source_names()
+    forget_cached_results()
     versions = match_moved_files(versions)
+    folders = _find_package_folders(versions, packages)
     drawings = Drawings(images=with_images or with_scenes, scenes=with_scenes)
-    result = _Reviewer(versions, _find_package_folders(versions, packages), drawings).run(workers)
-    behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
+    token = shows_absolute_paths.set(True)
+    try:
+        result = _Reviewer(versions, folders, drawings).run(workers)
+        behavior = [compare_behavior(versions, path, seeds) for path in scenarios]
+    finally:
+        shows_absolute_paths.reset(token)
     result = replace(
         result,
         subjects=[*result.subjects, *(subject for subject in behavior if not subject.is_empty)],
@@ -510,11 +515,16 @@ def _open_process_pool(count: int) -> Iterator[Callable[..., Callable[[], Any]]]
     if count == 1:
         yield partial
         return
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=_show_absolute_paths)
     try:
         yield lambda function, *arguments: pool.submit(function, *arguments).result
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def _show_absolute_paths() -> None:
+    """Make the messages of a process independent of its current folder."""
+    shows_absolute_paths.set(True)
 
 
 def _find_maps_of_images(versions: Versions, files: Sequence[ChangedFile]) -> Iterator[tuple[str, str]]:

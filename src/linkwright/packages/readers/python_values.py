@@ -87,6 +87,20 @@ class PythonFile:
             _record_bindings(node, bindings)
         return bindings
 
+    @cached_property
+    def _import_sources(self) -> dict[str, list[tuple[str, str]]]:
+        sources: dict[str, list[tuple[str, str]]] = {}
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.ImportFrom):
+                module = "." * node.level + (node.module or "")
+                for alias in node.names:
+                    sources.setdefault(alias.asname or alias.name, []).append((module, alias.name))
+        return sources
+
+    def find_import_sources(self, name: str) -> Sequence[tuple[str, str]]:
+        """Return the modules from which the file imports a name, with its name there."""
+        return self._import_sources.get(name, ())
+
     def assigned_expression(self, name: str) -> ast.expr | None:
         """Return the expression assigned to a name, or None if there is not exactly one assignment."""
         return self._assignments.get(name)

@@ -35,11 +35,7 @@ class CostmapTopics:
 
     def find_reason(self, parameter: str) -> Phrase | None:
         """Return the reason why changing or removing a parameter is breaking, or None if no topic is lost by it."""
-        lost = sorted(
-            topic
-            for owner, costmap, topic in _list_topics(self._old)
-            if parameter in (owner, _get_list_name(owner)) and (costmap, topic) not in self._new_topics
-        )
+        lost = sorted(self._lost_topics.get(parameter, ()))
         if not lost:
             return None
         return phrase("the costmap no longer gets the messages of {names}", names=quoted_names(lost))
@@ -72,6 +68,16 @@ class CostmapTopics:
 
     def _list_old(self, parameter: str) -> list[str]:
         return _split(self._old[parameter].text) if parameter in self._old else []
+
+    @cached_property
+    def _lost_topics(self) -> dict[str, list[str]]:
+        """The topics that a costmap no longer reads, by the parameters that named them."""
+        lost: dict[str, list[str]] = {}
+        for owner, costmap, topic in _list_topics(self._old):
+            if (costmap, topic) not in self._new_topics:
+                for parameter in {owner, _get_list_name(owner)}:
+                    lost.setdefault(parameter, []).append(topic)
+        return lost
 
     @cached_property
     def _new_topics(self) -> set[tuple[str, str]]:

@@ -28,9 +28,10 @@ from linkwright.review.files.moved_nodes import find_node_move
 from linkwright.review.files.moveit_names import MoveItRules
 from linkwright.review.files.parameter_names import (
     NameRules,
+    RenamingRules,
     find_node_name,
-    find_part_renaming_reason,
     has_different_type,
+    index_parts,
     is_parameter,
     list_part_paths,
 )
@@ -303,15 +304,16 @@ def _report_renamed(
 ) -> Mapping[str, YamlValue]:
     """Report renamed and moved parts of a file, and return the old values with the new names."""
     renamed = find_renamed_parts(old, new)
+    rules, first_old, first_new = RenamingRules(old), index_parts(old), index_parts(new)
     groups: dict[Hashable, list[Change]] = {}
     for old_part, new_part in renamed.items():
-        first_value = next(value for name, value in new.items() if _is_below(name, new_part))
+        first_value = new[first_new[new_part]]
         text = phrase("{old} moved to {name}", old=old_part, name=new_part)
         if get_parent(old_part) == get_parent(new_part):
             text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
         reason = moveit.find_renaming_reason(old_part)
-        if reason is None and not _follows_node(old_part, new_part, old, readers):
-            reason = find_part_renaming_reason(old_part, new_part, old)
+        if reason is None and not _follows_node(old_part, new_part, first_old[old_part], readers):
+            reason = rules.find_reason(old_part, new_part)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         change = Change(text, effect, reason, Location(pair.new_path, first_value.line, first_value.column))
         kind = None if reason is None else reason.template
@@ -323,9 +325,15 @@ def _report_renamed(
     return rename_parts(old, renamed)
 
 
-def _follows_node(part: str, new_part: str, values: Mapping[str, YamlValue], readers: KeyReaders) -> bool:
-    """Return whether a renamed part is a node that the programs renamed, too."""
-    name = next((name for name in values if _is_below(name, part)), part)
+def _follows_node(part: str, new_part: str, name: str, readers: KeyReaders) -> bool:
+    """Return whether a renamed part is a node that the programs renamed, too.
+
+    Args:
+        part: the old path of the part.
+        new_part: its new path.
+        name: the old path of its first value.
+        readers: the programs that may read the values.
+    """
     node, new_node = find_node_name(name), find_node_name(f"{new_part}{name.removeprefix(part)}")
     return None not in (node, new_node) and node != new_node and readers.have_renamed_node(node or "", [new_node or ""])
 

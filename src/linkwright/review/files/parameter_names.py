@@ -6,7 +6,7 @@ The names are those of controllers, joints and frames.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
@@ -352,43 +352,59 @@ def _find_name_items(text: str) -> set[str]:
     return {item for item in list_items(text) if item not in ("", EMPTY) and not _NUMBER_OR_BOOLEAN.fullmatch(item)}
 
 
-def find_part_renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
-    """Return the reason why renaming or moving a part is breaking; None if it is not.
+class RenamingRules:
+    """Decide which renamed and moved parts of a parameter file are breaking.
 
     Args:
-        part: the old path: a node, parameters of a node, or a controller of ROS 1.
-        new_part: the new path.
         values: the old values by path.
     """
-    names = [
-        name
-        for name in _find_ros1_controllers({name: value.text for name, value in values.items()})
-        if name == part or name.startswith(f"{part}.")
-    ]
-    names = [name for name in names if not can_evaluate_to(f"{new_part}{name.removeprefix(part)}", name)]
-    if names:
-        return make_controllers_reason(list(map(_separate_by_slashes, names)))
-    node, new_node = find_node_name(f"{part}."), find_node_name(f"{new_part}.")
-    if node is None or list_part_paths(part)[:-1] == list_part_paths(new_part)[:-1]:
-        return _find_node_renaming_reason(part, new_part, values)
-    if new_node is not None and matches_node(new_node, node):
-        return phrase("values that are set under the old names no longer have an effect")
-    return phrase("the node '{name}' starts without these parameters", name=node)
+
+    def __init__(self, values: Mapping[str, YamlValue]) -> None:
+        self._ros1_controllers = list(_find_ros1_controllers({name: value.text for name, value in values.items()}))
+        self._controllers = set(find_controllers(values))
+        self._node_parameters = index_parts(name for name in values if _NODE.match(name))
+
+    def find_reason(self, part: str, new_part: str) -> Phrase | None:
+        """Return the reason why renaming or moving a part is breaking; None if it is not.
+
+        Args:
+            part: the old path: a node, parameters of a node, or a controller of ROS 1.
+            new_part: the new path.
+        """
+        names = [name for name in self._ros1_controllers if name == part or name.startswith(f"{part}.")]
+        names = [name for name in names if not can_evaluate_to(f"{new_part}{name.removeprefix(part)}", name)]
+        if names:
+            return make_controllers_reason(list(map(_separate_by_slashes, names)))
+        node, new_node = find_node_name(f"{part}."), find_node_name(f"{new_part}.")
+        if node is None or list_part_paths(part)[:-1] == list_part_paths(new_part)[:-1]:
+            return self._find_node_reason(part, new_part)
+        if new_node is not None and matches_node(new_node, node):
+            return phrase("values that are set under the old names no longer have an effect")
+        return phrase("the node '{name}' starts without these parameters", name=node)
+
+    def _find_node_reason(self, part: str, new_part: str) -> Phrase | None:
+        """Return the reason why renaming or moving node parameters is breaking.
+
+        Returns None if the new name also matches the old node, or if the old name matches any node.
+        """
+        parameter = self._node_parameters.get(part, "")
+        match = _NODE.match(parameter) if parameter.startswith(f"{part}.") else None
+        if match is None or len(match[0]) < len(part) or match["node"] in self._controllers:
+            return None
+        new_node = find_node_name(f"{new_part}{parameter.removeprefix(part)}")
+        is_for_any_node = any(word in match["node"] for word in _WILDCARDS)
+        if new_node is None or matches_node(new_node, match["node"]) or is_for_any_node:
+            return None
+        return phrase("the node '{name}' starts without these parameters", name=match["node"])
 
 
-def _find_node_renaming_reason(part: str, new_part: str, values: Mapping[str, YamlValue]) -> Phrase | None:
-    """Return the reason why renaming or moving node parameters is breaking.
-
-    Returns None if the new name also matches the old node, or if the old name matches any node.
-    """
-    parameter = next((name for name in values if _NODE.match(name) and name.startswith(f"{part}.")), None)
-    match = None if parameter is None else _NODE.match(parameter)
-    if parameter is None or match is None or len(match[0]) < len(part) or match["node"] in find_controllers(values):
-        return None
-    new_node = find_node_name(f"{new_part}{parameter.removeprefix(part)}")
-    if new_node is None or matches_node(new_node, match["node"]) or any(word in match["node"] for word in _WILDCARDS):
-        return None
-    return phrase("the node '{name}' starts without these parameters", name=match["node"])
+def index_parts(names: Iterable[str]) -> dict[str, str]:
+    """Return the first path in or below each part of some paths."""
+    first_paths: dict[str, str] = {}
+    for name in names:
+        for part in list_part_paths(name):
+            first_paths.setdefault(part, name)
+    return first_paths
 
 
 def matches_node(name: str, node: str) -> bool:

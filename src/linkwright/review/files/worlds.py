@@ -41,6 +41,7 @@ from linkwright.review.plugins import (
     find_added_topics,
     find_default_topic_reason,
     find_missing_topics_reason,
+    find_offered_topics,
     format_contents,
     is_added,
     is_removed,
@@ -89,6 +90,7 @@ def compare_worlds(pair: FilePair) -> None:
     changed = drop_equal_values(ElementComparison().child_differences(*elements))
     joined_differences = list(join_inertials(drop_rounding(changed)))
     topics = find_added_topics(joined_differences)
+    pair.added_topics |= find_offered_topics(joined_differences)
     differences = merge_replaced_plugins(joined_differences)
     changes = [
         _WorldChange(difference, _find_breaking_reason(difference, topics, elements[1])) for difference in differences

@@ -104,9 +104,9 @@ class HelperFunctions:
     def __init__(self, root: Path, action_classes: frozenset[str]) -> None:
         self._root = root
         self._action_classes = action_classes
-        self._names_by_file: dict[int, frozenset[str]] = {}
-        self._functions: dict[tuple[int, str], Function | None] = {}
-        self._value_functions: dict[tuple[int, str], Function | None] = {}
+        self._names_by_file: dict[PythonFile, frozenset[str]] = {}
+        self._functions: dict[tuple[PythonFile, str], Function | None] = {}
+        self._value_functions: dict[tuple[PythonFile, str], Function | None] = {}
         self._remaining_passes = _MAX_PASSES
 
     def reserve_passes(self, count: int) -> bool:
@@ -121,7 +121,7 @@ class HelperFunctions:
 
     def find_local_names(self, python: PythonFile) -> frozenset[str]:
         """Return the names of a file's functions that make actions and are called in it."""
-        names = self._names_by_file.get(id(python))
+        names = self._names_by_file.get(python)
         if names is None:
             skipped = None if (guard := find_program_guard(python.tree)) is None else id(guard)
             statements = [statement for statement in python.tree.body if id(statement) != skipped]
@@ -132,13 +132,13 @@ class HelperFunctions:
             names = frozenset(
                 node.name for node in functions if node.name in called and self._makes_actions(python, node)
             )
-            self._names_by_file[id(python)] = names
+            self._names_by_file[python] = names
         return names
 
     def find(self, python: PythonFile, call: ast.Call) -> Function | None:
         """Return the called function if it is in the repository and makes actions, or None."""
         name = called_name(call)
-        key = id(python), name
+        key = python, name
         if key not in self._functions:
             self._functions[key] = self._find(python, name)
         return self._functions[key]
@@ -146,7 +146,7 @@ class HelperFunctions:
     def is_foreign(self, python: PythonFile, call: ast.Call) -> bool:
         """Return whether the called function is imported from a package that is not part of launch."""
         first_name = called_name(call).partition(".")[0]
-        modules = [module for module, _ in _find_import_sources(python, first_name)]
+        modules = [module for module, _ in python.find_import_sources(first_name)]
         return (
             bool(modules)
             and not any(_LAUNCH_MODULE.match(module) for module in modules)
@@ -155,14 +155,14 @@ class HelperFunctions:
 
     def is_imported(self, python: PythonFile, name: str) -> bool:
         """Return whether a name is imported from a module that is not part of launch."""
-        return any(not _LAUNCH_MODULE.match(module) for module, _ in _find_import_sources(python, name))
+        return any(not _LAUNCH_MODULE.match(module) for module, _ in python.find_import_sources(name))
 
     def find_imported_value(self, python: PythonFile, name: str, depth: int = 0) -> tuple[PythonFile, ast.expr] | None:
         """Return the expression that a module of the repository assigns to an imported name, with the module.
 
         The result is None if the name is not imported, or not assigned exactly once.
         """
-        for module, imported in _find_import_sources(python, name) if depth < _MAX_IMPORT_DEPTH else ():
+        for module, imported in python.find_import_sources(name) if depth < _MAX_IMPORT_DEPTH else ():
             if _LAUNCH_MODULE.match(module):
                 continue
             for path in self._find_module_files(module, Path(python.source.name)):
@@ -178,7 +178,7 @@ class HelperFunctions:
     def find_value_function(self, python: PythonFile, call: ast.Call) -> Function | None:
         """Return the called function if it is in the repository and only computes and returns a value, or None."""
         name = called_name(call)
-        key = id(python), name
+        key = python, name
         if key not in self._value_functions:
             self._value_functions[key] = self._find_value_function(python, name)
         return self._value_functions[key]
@@ -254,7 +254,7 @@ class HelperFunctions:
             return python, definition
         if depth >= _MAX_IMPORT_DEPTH:
             return None
-        for module, imported in _find_import_sources(python, name):
+        for module, imported in python.find_import_sources(name):
             for path in self._find_module_files(module, Path(python.source.name)):
                 file = _try_parse(path)
                 imported_definition = None if file is None else self._find_definition(file, imported, depth + 1)
@@ -321,15 +321,6 @@ def _index_nested_functions(python: PythonFile) -> dict[str, ast.FunctionDef]:
     ]
     names = Counter(node.name for node in nested)
     return {node.name: node for node in nested if names[node.name] == 1 and node.name not in outer}
-
-
-def _find_import_sources(python: PythonFile, name: str) -> Iterator[tuple[str, str]]:
-    """Yield the modules from which a file imports a name, with its name there."""
-    for node in ast.walk(python.tree):
-        if isinstance(node, ast.ImportFrom):
-            for alias in node.names:
-                if (alias.asname or alias.name) == name:
-                    yield "." * node.level + (node.module or ""), alias.name
 
 
 @lru_cache(maxsize=8)

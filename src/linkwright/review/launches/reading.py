@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText, foreign, phrase
+from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launches.dictionary_classes import expand_dictionary_classes
 from linkwright.review.launches.environment import find_python_readings
@@ -17,7 +18,11 @@ from linkwright.review.launches.outlines import LaunchOutline, join_namespaces
 from linkwright.review.launches.python import ACTIONS, read_python_outline
 from linkwright.xacro.cache import read_document
 
+_MAX_OUTLINES = 512
+"""The maximum number of outlines that are kept."""
 
+
+@cached_in_review(maxsize=_MAX_OUTLINES)
 def read_outline(path: Path, root: Path) -> LaunchOutline:
     """Return the outline of a launch file in Python, XML or YAML.
 

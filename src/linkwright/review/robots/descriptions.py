@@ -32,6 +32,7 @@ from linkwright.review.plugins import (
     find_added_topics,
     find_default_topic_reason,
     find_missing_topics_reason,
+    find_offered_topics,
     format_contents,
     is_still_offered,
 )
@@ -187,6 +188,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
     if has_other_root:
         yield _make_root_change(old, new, frames)
     added_names = find_added_topics(comparison.differences)
+    pair.added_topics |= find_offered_topics(comparison.differences)
     differences = merge_renamed_sensors(merge_replaced_plugins(comparison.differences))
     added_links = AddedLinks(differences, new)
     switched_parts = SwitchedParts(pair, case)

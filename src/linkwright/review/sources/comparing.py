@@ -287,7 +287,9 @@ class _SourcePair(PairedNames):
             text = phrase("{kind} removed: {names}", kind=kind.plural, names=format_names(lost))
             used = describe_new_user(text, lost, self.old, self.new, self.file.old_path or self.file.path)
             reason = None if used is not None else self._find_removal_reason(lost, old_names)
-            yield self.make_change(used or text, lost[0].span, self.old, reason)
+            change = self.make_change(used or text, lost[0].span, self.old, reason)
+            topics = [item.name for item in lost if kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION)]
+            yield replace(change, lost_topics=tuple(topics))
         newly_hidden = [item for item in removed if item.name in non_public]
         if newly_hidden:
             text = phrase("{kind} no longer public: {names}", kind=kind.plural, names=format_names(newly_hidden))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
+from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.cpp import read_cpp
 from linkwright.review.sources.cpp_conditions import blank_disabled
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, PYTHON_SUFFIX, SourceNames
@@ -46,22 +46,9 @@ def try_read_source(path: Path) -> SourceText | None:
         return None
 
 
+@cached_in_review(maxsize=_MAX_SOURCES)
 def read_source_names(path: Path) -> SourceNames:
-    """Return the names in a source. The result is empty for a file that cannot be read.
-
-    A file is read once in a review, in which it does not change; see `forget_source_names`. The result is shared:
-    callers must not change it.
-    """
-    return _read_source_names(path)
-
-
-def forget_source_names() -> None:
-    """Forget the sources that were read, because a working tree may change between two reviews."""
-    _read_source_names.cache_clear()
-
-
-@lru_cache(maxsize=_MAX_SOURCES)
-def _read_source_names(path: Path) -> SourceNames:
+    """Return the names in a source. The result is empty for a file that cannot be read."""
     names = SourceNames()
     source = try_read_source(path)
     if source is None:
