@@ -29,6 +29,7 @@ from linkwright.review.launches.name_effects import (
     resolve_name,
 )
 from linkwright.review.launches.outlines import (
+    BUILDER,
     CONDITION,
     NAMES_AS_REMAPPINGS,
     NAMESPACE,
@@ -257,6 +258,9 @@ def find_setting_reason(
         return find_addition_reason(entry)
     if entry.kind == "argument":
         return _find_argument_reason(entry, setting, old, new, old_outline, new_outline)
+    if entry.kind == BUILDER:
+        values = (outline.resolve(text or "") for outline, text in ((old_outline, old), (new_outline, new)))
+        return find_hardware_reason(setting.rpartition(" ")[2], *values)
     if entry.kind == "remapping" and setting == "to":
         return find_remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:

@@ -10,6 +10,7 @@ from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.excerpts import shorten_middle
 from linkwright.review.launches.outlines import (
+    BUILDER,
     CONDITION,
     DELETION,
     ENVIRONMENT,
@@ -76,6 +77,8 @@ def format_title(entry: Entry) -> Phrase:
         return phrase("parameter '{name}' of the nodes that follow", name=name)
     if entry.kind == "parameters":
         return phrase("parameters of '{file}'", file=name)
+    if entry.kind == BUILDER:
+        return phrase("'{name}()'", name=name)
     if entry.kind == DELETION:
         return _format_deletion_title(name)
     if entry.kind == "handler":
