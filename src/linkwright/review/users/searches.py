@@ -21,7 +21,10 @@ from linkwright.review.users.ignored_packages import find_ignored_packages
 from linkwright.review.users.left_remappings import find_left_remappings
 from linkwright.review.users.lost_controllers import find_lost_controllers
 from linkwright.review.users.lost_data import find_lost_data
-from linkwright.review.users.lost_description_arguments import find_lost_description_arguments
+from linkwright.review.users.lost_description_arguments import (
+    find_lost_description_arguments,
+    find_undeclared_description_arguments,
+)
 from linkwright.review.users.lost_display_classes import find_lost_display_classes
 from linkwright.review.users.lost_displays import find_lost_displays
 from linkwright.review.users.lost_installs import find_lost_installs
@@ -52,6 +55,7 @@ SEARCHES: tuple[Search, ...] = (
         find_lost_controllers,
         find_lost_data,
         find_lost_description_arguments,
+        find_undeclared_description_arguments,
         find_lost_installs,
     ),
     *(find_lost_libraries, find_lost_programs, find_lost_registrations, find_lost_sources, find_missing_programs),
