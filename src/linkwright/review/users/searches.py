@@ -11,7 +11,7 @@ from linkwright.review.launches.left_nodes import find_left_nodes
 from linkwright.review.launches.left_parameters import find_left_parameters
 from linkwright.review.launches.loaded_plugins import find_undeclared_plugins
 from linkwright.review.launches.missing_programs import find_missing_programs, find_old_package_names
-from linkwright.review.launches.passed_arguments import find_passed_arguments
+from linkwright.review.launches.passed_arguments import find_passed_arguments, find_refused_arguments
 from linkwright.review.launches.script_callers import find_lost_arguments
 from linkwright.review.sources.callers import find_broken_callers
 from linkwright.review.sources.left_types import find_left_types
@@ -62,6 +62,7 @@ SEARCHES: tuple[Search, ...] = (
     *(find_old_package_names, find_old_dependencies),
     *(
         find_passed_arguments,
+        find_refused_arguments,
         find_left_nodes,
         find_left_parameters,
         find_lost_interfaces,
