@@ -97,7 +97,7 @@ def find_refused_arguments(versions: Versions, changed_files: Sequence[ChangedFi
 
 def _find_refused(version: Version, path: str) -> dict[tuple[str, str], Entry]:
     """Return the includes that fail in ROS 1, by the path of the included file and the argument that it refuses."""
-    refused = {}
+    refused: dict[tuple[str, str], Entry] = {}
     for entry, included_path, passed in _find_passed(version, path, is_ros1=True):
         included = _try_read(version, included_path)
         if included is not None and included.is_ros1:
