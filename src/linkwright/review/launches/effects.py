@@ -211,13 +211,32 @@ def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: Launc
     )
 
 
-def find_addition_reason(entry: Entry) -> Phrase | None:
-    """Return the reason why adding a launch action is breaking, or None if it is not."""
+def find_addition_reason(entry: Entry, outline: LaunchOutline) -> Phrase | None:
+    """Return the reason why adding a launch action is breaking, or None if it is not.
+
+    Args:
+        entry: the action.
+        outline: the outline of the new file, which contains the action.
+    """
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         return _explain_required_argument(entry)
-    if entry.kind == READING and not entry.settings and entry.name not in _STANDARD_VARIABLES:
+    is_required = entry.kind == READING and not entry.settings and entry.name not in _STANDARD_VARIABLES
+    if is_required and not _is_read_by_stopped_actions(entry.name, outline):
         return phrase("the launch file fails where '{name}' is not set", name=entry.name)
     return None
+
+
+def _is_read_by_stopped_actions(variable: str, outline: LaunchOutline) -> bool:
+    """Return whether only actions that do not start by default read an environment variable.
+
+    A condition that reads the variable is evaluated in any case.
+    """
+    reading = re.compile(rf"\$\(env {re.escape(variable)}\)")
+    readers = [other for other in outline.entries if any(map(reading.search, (other.name, *other.settings.values())))]
+    return bool(readers) and not any(
+        reading.search(condition) or evaluate_condition(outline.resolve(condition)) is not False
+        for condition in (reader.settings.get(CONDITION, "") for reader in readers)
+    )
 
 
 def _explain_required_argument(argument: Entry) -> Phrase:
@@ -255,7 +274,7 @@ def find_setting_reason(
         new_outline: the outline of the new file.
     """
     if entry.kind == READING:
-        return find_addition_reason(entry)
+        return find_addition_reason(entry, new_outline)
     if entry.kind == "argument":
         return _find_argument_reason(entry, setting, old, new, old_outline, new_outline)
     if entry.kind == BUILDER:
