@@ -20,7 +20,7 @@ from linkwright.review.files.parameter_names import (
     switches_transform,
 )
 from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
-from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.conditions import evaluate_condition, find_reversed_argument
 from linkwright.review.launches.matching import compute_name_similarity
 from linkwright.review.launches.name_effects import (
     find_node_remapping_reason,
@@ -295,6 +295,9 @@ def find_setting_reason(
         others = [other for other in new_outline.entries if other is not entry]
         if any(_starts_same_node(entry, other, new_outline, new_outline) for other in others):
             return None  # another action starts the node under the opposite condition
+        reversed_argument = find_reversed_argument(old or "", new or "")
+        if reversed_argument is not None and all(other.name != entry.name for other in others):
+            return phrase("the argument '{name}' has the opposite meaning now", name=reversed_argument)
         return phrase("by default, it no longer starts") if old_holds and is_stopped else None
     if entry.kind != "node" or offers_nothing(entry):
         return None
@@ -404,6 +407,8 @@ def _find_argument_reason(
         removed = [item for item in list_items(old) if item not in list_items(new)]
         if removed:
             return phrase("callers that pass '{value}' fail", value=", ".join(removed))
+    if setting == "choices" and old is None and any(item.lower() not in _BOOLEANS for item in list_items(new or "")):
+        return phrase("callers that pass another value fail")
     return None
 
 
