@@ -315,6 +315,55 @@ def test_changes_of_manifests_are_reported(repository, compare, old, new, expect
     assert bool(breaking(result)) is is_breaking
 
 
+ROS1_MANIFEST = """<package format="2"><name>arm_msgs</name><version>1.0.0</version><description>Arms.</description>
+  <maintainer email="a@example.org">A</maintainer><license>MIT</license>
+  <buildtool_depend>catkin</buildtool_depend>
+  <depend>std_msgs</depend>
+  <build_export_depend>geometry_msgs</build_export_depend>
+</package>
+"""
+ROS1_FILES = {
+    "a/package.xml": ROS1_MANIFEST,
+    "a/CMakeLists.txt": """project(arm_msgs)
+find_package(catkin REQUIRED COMPONENTS std_msgs)
+catkin_package(CATKIN_DEPENDS std_msgs)
+""",
+}
+ROS2_MANIFEST = (
+    ROS1_MANIFEST.replace("catkin", "ament_cmake")
+    .replace("  <depend>std_msgs</depend>\n  <build_export_depend>geometry_msgs</build_export_depend>\n", "")
+    .replace("</package>", "<export><build_type>ament_cmake</build_type></export></package>")
+)
+
+
+def test_package_that_moves_from_ros_1_to_ros_2_is_one_breaking_change(repository, compare):
+    """Nobody uses the dependencies of a package of another version of ROS."""
+    repository.commit(ROS1_FILES)
+    repository.write(
+        {
+            "a/package.xml": ROS2_MANIFEST,
+            "a/CMakeLists.txt": "project(arm_msgs)\nfind_package(ament_cmake REQUIRED)\nament_package()\n",
+        }
+    )
+    result = compare(repository)
+    assert breaking(result) == ["build type: catkin -> ament_cmake"]
+    (change,) = [change for change in subject(result, "a/package.xml").changes if change.reason is not None]
+    assert str(change.reason) == "packages of ROS 1 no longer find the package"
+    assert "exported dependencies removed: 'std_msgs'" in sentences(subject(result, "a/CMakeLists.txt"))
+
+
+def test_package_that_builds_for_both_versions_of_ros_is_not_breaking(repository, compare):
+    repository.commit(ROS1_FILES)
+    both = ROS1_MANIFEST.replace(
+        "</package>",
+        '<buildtool_depend condition="$ROS_VERSION == 2">ament_cmake</buildtool_depend><export>'
+        '<build_type condition="$ROS_VERSION == 1">catkin</build_type>'
+        '<build_type condition="$ROS_VERSION == 2">ament_cmake</build_type></export></package>',
+    )
+    repository.write({"a/package.xml": both})
+    assert breaking(compare(repository)) == []
+
+
 DEPENDENCIES = EXPORTS.replace(
     "  <exec_depend>xacro</exec_depend>\n",
     """  <build_depend>gears</build_depend>

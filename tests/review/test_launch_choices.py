@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import breaking, sentences
+from tests.review.conftest import breaking, sentences, subject
 
 LAUNCH = """import os
 from launch import LaunchDescription
@@ -266,3 +266,30 @@ def generate_launch_description():
     assert [line for found in compare(repository).subjects for line in sentences(found)] == [
         "other code: TIMEOUT = 5 -> TIMEOUT = 9"
     ]
+
+
+SECOND_LASER = """<launch>
+  <arg name="second" default="$(optenv SECOND {default})"/>
+  <group if="$(arg second)">
+    <node pkg="laser" type="laser" name="rear"><param name="host" value="$(env LASER_IP)"/></node>
+  </group>
+  {more}
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("default", "more", "is_breaking"),
+    [
+        ("false", "", False),
+        ("true", "", True),
+        ("false", '<node pkg="a" type="b" name="c" ns="$(env LASER_IP)"/>', True),
+        ("false", '<group if="$(env LASER_IP)"><node pkg="a" type="b" name="c"/></group>', True),
+    ],
+)
+def test_variable_that_only_nodes_read_which_do_not_start(repository, compare, default, more, is_breaking):
+    repository.commit({"arm/launch/arm.launch": "<launch/>"})
+    repository.write({"arm/launch/arm.launch": SECOND_LASER.format(default=default, more=more)})
+    line = "use of environment variable 'LASER_IP' added"
+    assert line in sentences(subject(compare(repository), "arm/launch/arm.launch"))
+    assert (line in breaking(compare(repository))) is is_breaking

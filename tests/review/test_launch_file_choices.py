@@ -80,3 +80,14 @@ def test_lost_argument_of_a_path_has_the_files_that_are_chosen_by_default(review
     found = review_reasons(text, "$(var description))", "$(var viewer))")
     folders = [f"'$(find-pkg-share {name})/config/view.rviz'" for name in ("viewer", "arm_description")]
     assert f"{SENTENCE}; by default, it is {folders[0]} instead of {folders[1]}" in found
+
+
+def test_value_that_takes_the_place_of_a_parameter_file_is_no_other_file(review_reasons):
+    text = """<launch>
+  <arg name="params" default="$(find-pkg-share arm)/config/arm.yaml"/>
+  <node pkg="nav2_map_server" exec="map_server"><param from="$(var params)"/></node>
+</launch>
+"""
+    inline = '<param name="yaml_filename" value="$(find-pkg-share arm)/maps/arm.yaml"/>'
+    found = review_reasons(text, '<param from="$(var params)"/>', inline)
+    assert not [sentence for sentence in found if "no longer chooses" in sentence]

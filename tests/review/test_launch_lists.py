@@ -104,3 +104,59 @@ def test_actions_of_other_packages_in_a_sum_of_lists_are_not_removed(repository,
     repository.write({"arm/launch/arm.launch.py": new})
     assert new.count("nodes") == 2
     assert compare(repository).subjects == []
+
+
+SPAWNERS = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def start(context):
+    arm = LaunchConfiguration("controller")
+
+    def spawn(controllers, active=True):
+        flags = ["--inactive"] if not active else []
+        return Node(package="controller_manager", executable="spawner", arguments=["-t", "10"] + flags + controllers)
+
+    active = ["state"]
+    inactive = ["gripper"]
+    return [
+        spawn(active),
+        spawn(inactive, active=False),
+        Node(package="controller_manager", executable="spawner", arguments=[arm]),
+    ]
+
+
+def generate_launch_description():
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("controller", default_value="arm"),
+            DeclareLaunchArgument("use", default_value="DEFAULT"),
+            OpaqueFunction(function=start),
+        ]
+    )
+"""
+ARM = """        Node(package="controller_manager", executable="spawner", arguments=[arm]),
+"""
+APPENDED = """    inactive = ["gripper"]
+    if LaunchConfiguration("use").perform(context) == "true":
+        active.append(arm.perform(context))
+"""
+
+
+@pytest.mark.parametrize(("default", "is_started"), [("true", True), ("false", False)])
+def test_controller_that_another_spawner_gets_by_append_is_started(review_changes, default, is_started):
+    text = SPAWNERS.replace("DEFAULT", default)
+    old, new = text, text.replace(ARM, "").replace('    inactive = ["gripper"]\n', APPENDED)
+    found, found_breaking = review_changes("arm.launch.py", old, old, new)
+    title = "node 'controller_manager/spawner' of 'state', '$(var controller)': arguments [-t, 10, state] -> "
+    assert any(line.startswith(f"{title}[-t, 10, state, $(var") for line in found)
+    assert (found_breaking == []) is is_started
+
+
+def test_words_of_a_list_that_a_constant_argument_chooses_are_read(review_changes):
+    found, _ = review_changes("arm.launch.py", SPAWNERS, 'inactive = ["gripper"]', 'inactive = ["gripper", "tool"]')
+    (line,) = found
+    assert line.endswith("arguments [-t, 10, --inactive, gripper] -> [-t, 10, --inactive, gripper, tool]")

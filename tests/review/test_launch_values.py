@@ -165,3 +165,50 @@ def test_names_in_an_evaluation_of_ros_1_have_the_values_of_the_arguments(reposi
     repository.write({path: NAMES_IN_EVALUATION.format(condition=condition, prefix="$(arg prefix)")})
     (change,) = subject(compare(repository), path).changes
     assert (change.reason is not None) is is_breaking
+
+
+SWITCHED = """<launch>
+  <arg name="raw" default="{default}"/>
+  <node pkg="arm" exec="camera" name="camera" {condition}/>
+  {more}
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "more", "is_reversed"),
+    [
+        ('if="$(var raw)"', 'unless="$(var raw)"', "", True),
+        ('unless="$(var raw)"', 'if="$(var raw)"', "", True),
+        ('if="$(var raw)"', 'unless="$(var sim)"', "", False),
+        ('if="$(var raw)"', 'unless="$(var raw)"', '<node pkg="arm" exec="camera" name="b" if="$(var raw)"/>', False),
+    ],
+)
+def test_a_condition_that_tests_an_argument_the_other_way_round(repository, compare, old, new, more, is_reversed):
+    path = "arm/launch/arm.launch.xml"
+    default = "true" if "if" in old else "false"
+    repository.commit({path: SWITCHED.format(default=default, condition=old, more=more)})
+    default = "true" if "if" in new else "false"
+    repository.write({path: SWITCHED.format(default=default, condition=new, more=more)})
+    reasons = [str(change.reason) for change in subject(compare(repository), path).changes]
+    assert ("the argument 'raw' has the opposite meaning now" in reasons) is is_reversed
+
+
+@pytest.mark.parametrize(
+    ("choices", "is_breaking"), [("['a', 'b']", True), ("['true', 'false']", False), ("['True', 'false']", False)]
+)
+def test_choices_that_an_argument_newly_has(repository, compare, choices, is_breaking):
+    text = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+
+
+def generate_launch_description():
+    return LaunchDescription([DeclareLaunchArgument('controller', default_value='a')])
+"""
+    path = "arm/launch/arm.launch.py"
+    repository.commit({path: text})
+    repository.write({path: text.replace("='a'", f"='a', choices={choices}")})
+    (change,) = subject(compare(repository), path).changes
+    assert (None if change.reason is None else str(change.reason)) == (
+        "callers that pass another value fail" if is_breaking else None
+    )

@@ -60,3 +60,44 @@ def test_argument_without_effect_and_launch_file_of_a_test_break_nobody(find_lin
     assert find_lines(unused, unused.replace(ARGUMENT, "")) == []
     new = ROBOT.replace(ARGUMENT, "").replace("$(arg prefix)", "")
     assert find_lines(ROBOT, new, "arm_description/test/arm.launch.py") == []
+
+
+ROS1_LAUNCH = """<launch>
+  <arg name="model" default="arm.urdf.xacro"/>
+  <arg name="gpu" default="false"/>
+  <param name="robot_description" command="$(find xacro)/xacro '$(find arm_description)/urdf/$(arg model)' {}"/>
+</launch>
+"""
+ROS1_PATH = "arm_description/launch/arm.launch"
+NEW_LINE = f"passes 'gpu' to '{ROBOT_PATH}', which has no such argument"
+
+
+@pytest.mark.parametrize(
+    ("robot", "expected"),
+    [
+        (ROBOT, NEW_LINE),
+        (ROBOT.replace('prefix" default', 'use_gpu" default'), f"{NEW_LINE}, but 'use_gpu'"),
+        (ROBOT.replace(ARGUMENT, f'{ARGUMENT}<xacro:arg name="gpu" default="true"/>'), None),
+        (ROBOT.replace("base", "$(arg gpu)"), None),
+        (ROBOT.replace(ARGUMENT, f'<xacro:include filename="$(find gears)/urdf/gears.xacro"/>{ARGUMENT}'), None),
+    ],
+)
+@pytest.mark.parametrize("path", [ROS1_PATH, LAUNCH_PATH])
+def test_argument_that_a_description_does_not_have(repository, compare, robot, expected, path):
+    """A file of a package that is not there may declare it."""
+    old, new = ROS1_LAUNCH.format("prefix:=left_"), ROS1_LAUNCH.format("prefix:=left_ gpu:=$(arg gpu)")
+    old = old.replace('  <arg name="gpu" default="false"/>\n', "")
+    if path == LAUNCH_PATH:
+        old, new = LAUNCH, LAUNCH.replace("'left_'", "'left_', ' gpu:=true'")
+    repository.commit({"arm_description/package.xml": PACKAGE_XML, ROBOT_PATH: robot, path: old})
+    repository.write({path: new})
+    assert [line for line in sentences(subject(compare(repository), path)) if "passes" in line] == (
+        [] if expected is None else [expected]
+    )
+
+
+def test_argument_that_was_passed_before_is_not_told(repository, compare):
+    text = ROS1_LAUNCH.format("gpu:=$(arg gpu)")
+    repository.commit({"arm_description/package.xml": PACKAGE_XML, ROBOT_PATH: ROBOT, ROS1_PATH: text})
+    repository.write({ROS1_PATH: text.replace('"false"', '"true"')})
+    assert not [line for line in sentences(subject(compare(repository), ROS1_PATH)) if "passes" in line]

@@ -40,3 +40,21 @@ def test_a_node_moves_to_a_file_that_a_launch_file_loads(repository, compare, lo
     result = compare(repository)
     assert sentences(subject(result, PATH)) == [line]
     assert (line in breaking(result)) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("parameters", "is_moved"),
+    [
+        ("[{'rate': 10, 'frame': 'map', 'topic': '/odom'}]", True),
+        ("[{'rate': 10}, {'frame': frame}, {'topic': '/odom'}]", True),
+        ("[{'rate': 10}]", False),
+    ],
+)
+def test_a_node_moves_to_the_launch_file_that_starts_it(repository, compare, parameters, is_moved):
+    launch = make_launch_file("all.yaml").replace('executable="navigator"', 'executable="nav", name="navigator"')
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: PLANNER + NAVIGATOR, LAUNCH: launch})
+    repository.write({PATH: PLANNER, LAUNCH: launch.replace('["config/all.yaml"]', parameters)})
+    (change,) = subject(compare(repository), PATH).changes
+    text = f"navigator moved to {LAUNCH}" if is_moved else "navigator removed: rate 10, frame map, topic /odom"
+    assert str(change.sentence) == text
+    assert (change.reason is None) is is_moved

@@ -47,6 +47,29 @@ def test_a_package_that_is_looked_up_in_any_case_must_be_named(repository, compa
     assert reasons == (expected if is_breaking else [])
 
 
+@pytest.mark.parametrize(
+    ("statement", "files", "is_breaking"),
+    [
+        ("from arm_tools.launch import load\n", {}, True),
+        ("import arm_tools\n", {}, True),
+        ("try:\n    import arm_tools\nexcept ImportError:\n    arm_tools = None\n", {}, False),
+        ("import arm_tools\n", {"arm/launch/arm_tools.py": ""}, False),
+        ("import arm_tools\n", {"tools/package.xml": PACKAGE_XML.replace("arm_description", "arm_tools")}, False),
+        ("import arm_tools\n", {"tool.repos": "repositories:\n  arm_tools: {type: git}\n"}, False),
+        ("import launch_testing_ros\nimport typing_extensions\nimport yaml\n", {}, False),
+    ],
+)
+def test_a_package_that_a_launch_file_imports_must_be_named(repository, compare, statement, files, is_breaking):
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: LAUNCH.format("", ""), **files})
+    repository.write({PATH: statement + LAUNCH.format("", "")})
+    changes = [
+        change for change in subject(compare(repository), PATH).changes if "imports added" in str(change.sentence)
+    ]
+    reasons = [str(change.reason) for change in changes if change.reason is not None]
+    expected = ["package.xml does not name 'arm_tools', without which the launch file fails"]
+    assert reasons == (expected if is_breaking else [])
+
+
 def test_a_call_of_another_package_that_is_returned_is_an_action(review_changes):
     text = """from other_package import make_launch
 

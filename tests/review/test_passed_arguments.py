@@ -94,3 +94,29 @@ def test_a_removed_argument_of_a_file_that_includes_others(repository, compare, 
     repository.write({"lamp/launch/a.launch.py": new})
     line = "passes 'run' to 'lamp/launch/a.launch.py', which no longer has the argument"
     assert (line in breaking(compare(repository))) is is_found
+
+
+@pytest.mark.parametrize(
+    ("call", "is_found"),
+    [
+        (CALL1.format(file="a.launch", name="speed"), True),
+        (CALL1.format(file="a.launch", name="run"), False),
+        (CALL1.format(file="other.launch", name="speed"), False),
+        (CALL1.format(file="a.launch", name="run").replace("<include", '<include ns="left"'), False),
+        (CALL2.format(file="a.launch", name="speed").replace("<launch>", '<launch><node pkg="a" exec="b"/>'), False),
+    ],
+)
+def test_an_argument_that_an_included_file_of_ros_1_never_had_makes_the_include_fail(
+    repository, compare, call, is_found
+):
+    repository.commit({"lamp/package.xml": MANIFEST, "lamp/launch/a.launch": ROS1, "lamp/launch/b.launch": "<launch/>"})
+    repository.write({"lamp/launch/b.launch": call})
+    line = "passes 'speed' to 'lamp/launch/a.launch', which has no such argument"
+    assert (line in breaking(compare(repository))) is is_found
+
+
+def test_an_argument_that_an_included_file_never_had_is_told_once(repository, compare):
+    call = CALL1.format(file="a.launch", name="speed")
+    repository.commit({"lamp/package.xml": MANIFEST, "lamp/launch/a.launch": ROS1, "lamp/launch/b.launch": call})
+    repository.write({"lamp/launch/b.launch": call.replace('value="1"', 'value="2"')})
+    assert not [line for line in breaking(compare(repository)) if line.startswith("passes")]

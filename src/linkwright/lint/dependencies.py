@@ -46,7 +46,10 @@ _CORE_PACKAGES = frozenset(
     }
 )
 """More packages that the base packages bring."""
-_CORE_PREFIXES = ("ament_", "rcl_", "rclcpp_", "rmw_", "rosidl_", "launch_")
+_CORE_PREFIXES = (
+    *("ament_", "rcl_", "rclcpp_", "rmw_", "rosidl_"),
+    *("launch_pytest", "launch_ros", "launch_testing", "launch_xml", "launch_yaml"),
+)
 _CORE_PACKAGES_OF_ROS1 = frozenset(
     {
         *("actionlib", "bond", "catkin", "cpp_common", "dynamic_reconfigure", "genmsg", "gencpp", "genpy", "geneus"),

@@ -14,6 +14,11 @@ DEPENDENCY_TAGS = frozenset(
     }
 )
 
+CATKIN = "catkin"
+"""The build tool of ROS 1, and the type of packages that build with it."""
+_AMENT = "ament_"
+"""The beginning of the names of the build tools of ROS 2, and of the types of packages that build with them."""
+
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
@@ -67,7 +72,16 @@ class Manifest:
     @property
     def is_ros1(self) -> bool:
         """Whether the package builds with catkin, for ROS 1 only or for ROS 1 and ROS 2."""
-        return self.build_type == "catkin" or self.declares("catkin")
+        return self.build_type == CATKIN or self.declares(CATKIN)
+
+    @property
+    def ros_versions(self) -> frozenset[int]:
+        """The versions of ROS for which the package builds: 1 with catkin, 2 with ament; empty for other tools."""
+        export = self.root.first("export")
+        types = [] if export is None else [element.text().strip() for element in export.elements("build_type")]
+        names = [*types, *(dependency.name for dependency in self.dependencies if "buildtool" in dependency.tag)]
+        is_ros2 = any(name.startswith(_AMENT) for name in names)
+        return frozenset({1} if self.is_ros1 or CATKIN in types else ()) | frozenset({2} if is_ros2 else ())
 
     def declares(self, package: str) -> bool:
         """Return whether a name is the package's own name or the name of a dependency of any kind."""

@@ -49,6 +49,7 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
         for (tag, name), elements in _group_elements(old).items()
     }
     is_private = exports_nothing(pair.versions.old, pair.old_path)
+    is_moved = bool(find_lost_ros_versions(old, new))
     changes: dict[_DependencyChange, list[_Dependency]] = {}
     for package in dict.fromkeys(key.package for key in (*new_elements, *old_elements)):
         before, after = (
@@ -58,7 +59,7 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
             [key for key in keys if key not in others] for keys, others in ((before, after), (after, before))
         )
         if removed or added:
-            is_lost = _is_lost(before, after, old, is_private=is_private)
+            is_lost = not is_moved and _is_lost(before, after, old, is_private=is_private)
             change = _DependencyChange(_format_tags(removed), _format_tags(added), is_lost)
             changes.setdefault(change, []).append((added or removed)[0])
         if not (removed and added):
@@ -72,6 +73,11 @@ def compare_dependencies(pair: FilePair, old: Manifest, new: Manifest) -> None:
         EnvironmentVariables(_find_condition_variables(elements)) for elements in (old_elements, new_elements)
     )
     old_variables.compare(pair, new_variables)
+
+
+def find_lost_ros_versions(old: Manifest, new: Manifest) -> frozenset[int]:
+    """Return the versions of ROS for which a package that now builds for another one no longer builds."""
+    return old.ros_versions - new.ros_versions if new.ros_versions else frozenset()
 
 
 def _make_sort_key(change: _DependencyChange) -> int:

@@ -14,7 +14,8 @@ from linkwright.review.versions import Version
 
 _MIN_GROUP_SIZE = 2
 _TOP_KEY = re.compile(r"^['\"]?([\w./~-]+)['\"]?\s*:", re.MULTILINE)
-_LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
+LAUNCH_SUFFIXES = (".launch", "launch.py", "launch.xml", "launch.yaml", "launch.yml")
+"""The ends of the names of launch files."""
 
 
 def find_group_reason(pair: FilePair, name: str, values: Collection[str]) -> Phrase | None:
@@ -56,4 +57,4 @@ def _has_group(pair: FilePair, path: str, name: str, keys: Collection[str]) -> b
 def is_named_by_launch_file(version: Version, path: str) -> bool:
     """Return whether a launch file of a version contains the name of a file."""
     file_name = PurePosixPath(path).name
-    return any(file_name in version.text(launch) for launch in version.paths(_LAUNCH_SUFFIXES))
+    return any(file_name in version.text(launch) for launch in version.paths(LAUNCH_SUFFIXES))

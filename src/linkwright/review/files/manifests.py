@@ -8,11 +8,11 @@ from pathlib import Path, PurePosixPath
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
 from linkwright.lint.targets import find_targets
 from linkwright.packages.manifest import package_name
-from linkwright.packages.readers.package_xml import Manifest
+from linkwright.packages.readers.package_xml import CATKIN, Manifest
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.excerpts import differing_excerpts
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.dependencies import compare_dependencies
+from linkwright.review.files.dependencies import compare_dependencies, find_lost_ros_versions
 from linkwright.review.renamed_packages import PackageNames, find_renamed_packages
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
@@ -36,9 +36,14 @@ def compare_manifests(pair: FilePair) -> None:
     if formats[0] != formats[1]:
         text = phrase("format: {old} -> {new}", old=formats[0], new=formats[1])
         pair.add(text, pair.location(new.root.span()))
-    if old.build_type != new.build_type:
-        text = phrase("build type: {old} -> {new}", old=old.build_type or "-", new=new.build_type or "-")
-        pair.add(text, pair.location(new.root.span()))
+    lost = find_lost_ros_versions(old, new)
+    if old.build_type != new.build_type or lost:
+        old_type, new_type = (
+            manifest.build_type or (CATKIN if lost and manifest.is_ros1 else "-") for manifest in manifests
+        )
+        text = phrase("build type: {old} -> {new}", old=old_type, new=new_type)
+        reason = phrase("packages of ROS {versions} no longer find the package", versions=", ".join(map(str, lost)))
+        pair.add(text, pair.location(new.root.span()), reason if lost else None)
     compare_dependencies(pair, old, new)
     _compare_exports(pair, old, new)
 
@@ -51,7 +56,7 @@ def manifest_contents(version: Version, path: str) -> Phrase:
     manifest = _read(version.file(path))
     export = manifest.root.first("export")
     is_metapackage = export is not None and export.first("metapackage") is not None
-    build_type = phrase("metapackage") if is_metapackage else manifest.build_type or "catkin"
+    build_type = phrase("metapackage") if is_metapackage else manifest.build_type or CATKIN
     names = list(dict.fromkeys(dependency.name for dependency in manifest.dependencies))
     texts: list[Phrase] = [
         phrase("'{name}' {version}, {type}", name=manifest.name or "", version=manifest.text("version") or "-",

@@ -1,18 +1,19 @@
-"""Find nodes whose parameters move to another parameter file, which a launch file loads."""
+"""Find nodes whose parameters move to another parameter file, which a launch file loads, or to a launch file."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair, UnreadableFileError
-from linkwright.review.files.lost_groups import is_named_by_launch_file, list_changed_files
+from linkwright.review.files.lost_groups import LAUNCH_SUFFIXES, is_named_by_launch_file, list_changed_files
 from linkwright.review.files.parameter_names import find_node_name
 from linkwright.review.files.yaml_values import YamlValue, read_yaml_values
 from linkwright.review.list_changes import change_text
 from linkwright.review.versions import Version
 
+_PARAMETERS = "ros__parameters"
 _MIN_SHARE = 0.5
 """The minimum share of the values that stay equal."""
 
@@ -29,6 +30,9 @@ def find_node_move(pair: FilePair, name: str, values: Mapping[str, YamlValue]) -
     if len(nodes) != 1 or None in nodes or not (name in nodes or f"{name}.".startswith(f"{next(iter(nodes))}.ros__")):
         return None
     versions = pair.versions
+    launch_file = _find_setting_file(pair, next(filter(None, nodes)), values)
+    if launch_file is not None:
+        return phrase("{old} moved to {name}", old=name, name=launch_file)
     for path in list_changed_files(pair):
         if path == pair.new_path or not is_named_by_launch_file(versions.new, path):
             continue
@@ -43,10 +47,28 @@ def find_node_move(pair: FilePair, name: str, values: Mapping[str, YamlValue]) -
         text = phrase("{old} moved to {name}", old=name, name=path)
         if not changed:
             return text
-        names = {item: item.removeprefix(name).lstrip(".").removeprefix("ros__parameters.") for item in changed}
+        names = {item: item.removeprefix(name).lstrip(".").removeprefix(f"{_PARAMETERS}.") for item in changed}
         items = [str(change_text(names[item], values[item].shown, found[item].shown)) for item in changed]
         return phrase("{change}, with {items}", change=text, items=joined_first(items, MAX_NAMES))
     return None
+
+
+def _find_setting_file(pair: FilePair, node: str, values: Iterable[str]) -> str | None:
+    """Return the changed launch file that newly sets the parameters of a node itself; None if there is none."""
+    short_name = node.rpartition(".")[2].rpartition("/")[2]
+    names = [path.rpartition(f"{_PARAMETERS}.")[2] for path in values]
+    for file in pair.versions.changed_files:
+        if file.old_path is None or file.new_path is None or not file.new_path.endswith(LAUNCH_SUFFIXES):
+            continue
+        old, new = pair.versions.old.text(file.old_path), pair.versions.new.text(file.new_path)
+        sets_all = [all(_is_quoted(name, text) for name in names) for text in (old, new)]
+        if _is_quoted(short_name, new) and sets_all == [False, True]:
+            return file.new_path
+    return None
+
+
+def _is_quoted(name: str, text: str) -> bool:
+    return f"'{name}'" in text or f'"{name}"' in text
 
 
 def _read_values(version: Version, path: str) -> dict[str, YamlValue]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import PurePosixPath
 
+from linkwright.packages.readers.package_xml import CATKIN
 from linkwright.review.files.build_facts import BUILD_TOOLS, BuildFacts, Fact, FactKind
 from linkwright.review.versions import Version
 
@@ -27,8 +28,13 @@ def is_unused_export(version: Version, path: str, old: BuildFacts, new: BuildFac
         return _has_no_headers(version, path, old, fact.name)
     if fact.kind is FactKind.EXPORTED_DEPENDENCY:
         is_tool = fact.name in _INTERFACE_TOOLS and all(other.kind is not FactKind.INTERFACE for other in new.facts)
-        return is_tool or fact.name in BUILD_TOOLS
+        return is_tool or fact.name in BUILD_TOOLS or _uses_catkin(old) != _uses_catkin(new)
     return False
+
+
+def _uses_catkin(facts: BuildFacts) -> bool:
+    """Return whether a package is built for ROS 1, so that no package of ROS 2 has used its dependencies."""
+    return any(fact.kind is FactKind.PACKAGE and fact.name == CATKIN for fact in facts.facts)
 
 
 def _has_no_headers(version: Version, path: str, facts: BuildFacts, folder: str) -> bool:

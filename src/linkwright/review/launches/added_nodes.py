@@ -31,7 +31,7 @@ def explain_addition(
     """
     if entry.kind == "argument" and _is_read_without_declaration(entry.name, old):
         return None  # callers had to pass it before, too
-    reason = find_addition_reason(entry) or find_missing_package_reason(pair, entry, new)
+    reason = find_addition_reason(entry, new) or find_missing_package_reason(pair, entry, new)
     return reason or _find_remapping_reason(entry, removed, old, new)
 
 

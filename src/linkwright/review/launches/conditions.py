@@ -13,6 +13,7 @@ _EVAL_SUBSTITUTION = re.compile(r"\$\(eval (.*)\)", re.DOTALL)
 _COMPARISON = re.compile(r"(?P<left>\S*) (?P<operator>==|!=) (?P<right>\S*)")
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 _TEXT_METHODS: dict[str, Callable[[str], str]] = {"lower": str.lower, "strip": str.strip, "upper": str.upper}
+_ARGUMENT_TERM = re.compile(r"(?P<word>if|unless) \$\((?:var|arg) (?P<name>\w+)\)")
 _MAX_CHARACTERS = 500
 """The maximum length of an evaluated condition."""
 
@@ -61,6 +62,16 @@ def _strip_quotes(text: str) -> str:
         if len(text) > 1 and text[0] == text[-1] == quote and quote not in text[1:-1]:
             return text[1:-1]
     return text
+
+
+def find_reversed_argument(old: str, new: str) -> str | None:
+    """Return the argument that a condition tests the other way round, if this is the only difference; else None."""
+    old_terms, new_terms = (set(_SEPARATOR.split(condition)) for condition in (old, new))
+    matches = [_ARGUMENT_TERM.fullmatch(" ".join(terms)) for terms in (old_terms - new_terms, new_terms - old_terms)]
+    before, after = matches
+    if before is None or after is None or before["name"] != after["name"] or before["word"] == after["word"]:
+        return None
+    return before["name"]
 
 
 def _evaluate_expression(node: ast.expr) -> object:

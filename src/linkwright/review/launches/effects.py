@@ -20,7 +20,7 @@ from linkwright.review.files.parameter_names import (
     switches_transform,
 )
 from linkwright.review.files.yaml_values import YamlType, YamlValue, parse_yaml_value
-from linkwright.review.launches.conditions import evaluate_condition
+from linkwright.review.launches.conditions import evaluate_condition, find_reversed_argument
 from linkwright.review.launches.matching import compute_name_similarity
 from linkwright.review.launches.name_effects import (
     find_node_remapping_reason,
@@ -29,6 +29,7 @@ from linkwright.review.launches.name_effects import (
     resolve_name,
 )
 from linkwright.review.launches.outlines import (
+    BUILDER,
     CONDITION,
     NAMES_AS_REMAPPINGS,
     NAMESPACE,
@@ -210,13 +211,32 @@ def _starts_same_node(entry: Entry, other: Entry, old: LaunchOutline, new: Launc
     )
 
 
-def find_addition_reason(entry: Entry) -> Phrase | None:
-    """Return the reason why adding a launch action is breaking, or None if it is not."""
+def find_addition_reason(entry: Entry, outline: LaunchOutline) -> Phrase | None:
+    """Return the reason why adding a launch action is breaking, or None if it is not.
+
+    Args:
+        entry: the action.
+        outline: the outline of the new file, which contains the action.
+    """
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         return _explain_required_argument(entry)
-    if entry.kind == READING and not entry.settings and entry.name not in _STANDARD_VARIABLES:
+    is_required = entry.kind == READING and not entry.settings and entry.name not in _STANDARD_VARIABLES
+    if is_required and not _is_read_by_stopped_actions(entry.name, outline):
         return phrase("the launch file fails where '{name}' is not set", name=entry.name)
     return None
+
+
+def _is_read_by_stopped_actions(variable: str, outline: LaunchOutline) -> bool:
+    """Return whether only actions that do not start by default read an environment variable.
+
+    A condition that reads the variable is evaluated in any case.
+    """
+    reading = re.compile(rf"\$\(env {re.escape(variable)}\)")
+    readers = [other for other in outline.entries if any(map(reading.search, (other.name, *other.settings.values())))]
+    return bool(readers) and not any(
+        reading.search(condition) or evaluate_condition(outline.resolve(condition)) is not False
+        for condition in (reader.settings.get(CONDITION, "") for reader in readers)
+    )
 
 
 def _explain_required_argument(argument: Entry) -> Phrase:
@@ -254,9 +274,12 @@ def find_setting_reason(
         new_outline: the outline of the new file.
     """
     if entry.kind == READING:
-        return find_addition_reason(entry)
+        return find_addition_reason(entry, new_outline)
     if entry.kind == "argument":
         return _find_argument_reason(entry, setting, old, new, old_outline, new_outline)
+    if entry.kind == BUILDER:
+        values = (outline.resolve(text or "") for outline, text in ((old_outline, old), (new_outline, new)))
+        return find_hardware_reason(setting.rpartition(" ")[2], *values)
     if entry.kind == "remapping" and setting == "to":
         return find_remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
@@ -272,6 +295,9 @@ def find_setting_reason(
         others = [other for other in new_outline.entries if other is not entry]
         if any(_starts_same_node(entry, other, new_outline, new_outline) for other in others):
             return None  # another action starts the node under the opposite condition
+        reversed_argument = find_reversed_argument(old or "", new or "")
+        if reversed_argument is not None and all(other.name != entry.name for other in others):
+            return phrase("the argument '{name}' has the opposite meaning now", name=reversed_argument)
         return phrase("by default, it no longer starts") if old_holds and is_stopped else None
     if entry.kind != "node" or offers_nothing(entry):
         return None
@@ -381,6 +407,8 @@ def _find_argument_reason(
         removed = [item for item in list_items(old) if item not in list_items(new)]
         if removed:
             return phrase("callers that pass '{value}' fail", value=", ".join(removed))
+    if setting == "choices" and old is None and any(item.lower() not in _BOOLEANS for item in list_items(new or "")):
+        return phrase("callers that pass another value fail")
     return None
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.included import find_callers
-from linkwright.review.launches.outlines import Entry, LaunchOutline
+from linkwright.review.launches.outlines import Entry, LaunchOutline, without_condition
 
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)[^()]*\)")
 _FOLDER = re.compile(r"\$\((find|find-pkg-share|dirname)[ )]")
@@ -36,10 +36,10 @@ class FileChoices:
 
     def compare(self, old: Entry, new: Entry) -> None:
         """Report the files of an action that depend on different arguments."""
-        old_files, new_files = set(_find_file_paths(old, self._old)), set(_find_file_paths(new, self._new))
-        removed, added = old_files - new_files, new_files - old_files
+        old_files, new_files = _find_file_paths(old, self._old), _find_file_paths(new, self._new)
+        removed, added = old_files.keys() - new_files.keys(), new_files.keys() - old_files.keys()
         for old_path in sorted(removed):
-            for new_path in sorted(added):
+            for new_path in sorted(path for path in added if old_files[old_path] & new_files[path]):
                 is_same_file = self._old.resolve(old_path) == self._new.resolve(new_path)
                 is_only_candidate = len(removed) == 1 and (not _find_argument_names(old_path) or len(added) == 1)
                 if is_same_file or is_only_candidate or _get_file_name(old_path) == _get_file_name(new_path):
@@ -85,16 +85,18 @@ class FileChoices:
         return any(name in include.settings for _, include in callers)
 
 
-def _find_file_paths(entry: Entry, outline: LaunchOutline) -> Iterator[str]:
-    """Yield the paths of files in the name and the settings of an action."""
+def _find_file_paths(entry: Entry, outline: LaunchOutline) -> dict[str, set[str]]:
+    """Return the paths of files in the name and the settings of an action, each with the settings that name it."""
+    paths: dict[str, set[str]] = {}
     if entry.has_value:
-        return
-    names = (entry.name,) if entry.kind in ("include", "parameters", "process") else ()
-    for text in (*names, *entry.settings.values()):
+        return paths
+    names = {"": entry.name} if entry.kind in ("include", "parameters", "process") else {}
+    for setting, text in (names | entry.settings).items():
         for word in _split_words(text):
             path = outline.resolve(word)
             if "/" in path and (_FOLDER.match(path) or _FILE.search(path)):
-                yield word
+                paths.setdefault(word, set()).add(without_condition(setting))
+    return paths
 
 
 def _split_words(text: str) -> Iterator[str]:

@@ -23,6 +23,7 @@ from linkwright.review.launches.added_nodes import explain_addition, find_missin
 from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.bridged_topics import explain_lost_topics
+from linkwright.review.launches.builders import separate_builders
 from linkwright.review.launches.effects import find_removal_reason
 from linkwright.review.launches.environment_readers import find_reader, reads_variable
 from linkwright.review.launches.file_choices import FileChoices
@@ -92,7 +93,7 @@ def compare_launch_files(pair: FilePair) -> None:
     old, new = outlines
     undeclared = _find_new_undeclared_arguments(pair, old, new)
     renamed = find_renamed_names(old, new)
-    old = rename_in_outline(old, renamed)
+    old, new = separate_builders(rename_in_outline(old, renamed), new)
     old_names = {new_name: old_name for old_name, new_name in renamed.items()}
     included = (
         IncludedActions(pair.versions.old, pair.old_path, old),

@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
-from pathlib import Path
+from collections.abc import Iterable
+from pathlib import Path, PurePosixPath
 
-from linkwright.diagnostics import Span, joined_first, phrase
+from linkwright.diagnostics import Phrase, Span, joined_first, phrase
 from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
+from linkwright.review.required_packages import is_undeclared_and_new
+from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.reading import try_read_source
+from linkwright.review.versions import Version
 
 _LAUNCH_MODULES = frozenset({"ament_index_python", "launch", "launch_ros", "osrf_pycommon"})
 """The modules of the launch system, which every installation of ROS has."""
+
+_ROS_MODULE = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)+|xacro")
+"""The names of most packages of ROS, which projects of Python rarely have."""
+_PYTHON_MODULES = frozenset({"pkg_resources", "typing_extensions"})
 
 
 def compare_imports(pair: FilePair) -> None:
@@ -26,10 +35,35 @@ def compare_imports(pair: FilePair) -> None:
         if not imports:
             continue
         names = joined_first([f"'{text}'" for text in imports], MAX_NAMES)
-        sentence = phrase("imports added: {imports}", imports=names)
+        location = pair.location(next(iter(imports.values())), is_old=is_old)
         if is_old:
-            sentence = phrase("imports removed: {imports}", imports=names)
-        pair.add(sentence, pair.location(next(iter(imports.values())), is_old=is_old))
+            pair.add(phrase("imports removed: {imports}", imports=names), location)
+        else:
+            reason = _find_missing_reason(pair, [module for module in own if module not in other])
+            pair.add(phrase("imports added: {imports}", imports=names), location, reason)
+
+
+def _find_missing_reason(pair: FilePair, modules: Iterable[str]) -> Phrase | None:
+    """Return the reason why a package is missing that the file imports in any case; None if none certainly is.
+
+    Args:
+        pair: both versions of the launch file.
+        modules: the modules that only the new version imports.
+    """
+    source = try_read_source(pair.new_file)
+    for module in modules:
+        is_package = _ROS_MODULE.fullmatch(module) is not None and module not in _PYTHON_MODULES
+        always = re.search(rf"^(?:from|import)[ \t]+{module}\b", source.text if source else "", re.MULTILINE)
+        is_missing = is_package and always is not None and not _has_module(pair.versions.new, module)
+        if is_missing and is_undeclared_and_new(pair.versions, pair.new_path, module):
+            return phrase("package.xml does not name '{name}', without which the launch file fails", name=module)
+    return None
+
+
+def _has_module(version: Version, name: str) -> bool:
+    """Return whether a repository has a module or a folder of modules with a name."""
+    paths = map(PurePosixPath, version.paths((PYTHON_SUFFIX,)))
+    return any(path.stem == name or name in path.parts for path in paths)
 
 
 def _read_imports(path: Path) -> dict[str, tuple[str, Span]] | None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ast
+import sys
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
-from linkwright.review.launches.text import ExpressionTexts, format_branches
+from linkwright.review.launches.text import BoundExpression, ExpressionTexts, format_branches
 
 _CONSTANTS = {"True": True, "False": False}
 _Condition = tuple[ast.If, bool]
@@ -36,16 +37,41 @@ def find_added_items(python: PythonFile, name: ast.Name, texts: ExpressionTexts)
         name: the use of the name.
         texts: the texts of the expressions of the function.
     """
-    value = python.resolved(name)
+    return _find_items(python, name.id, range(python.resolved(name).lineno + 1, name.lineno), texts)
+
+
+def find_later_items(added_to: BoundExpression) -> list[AddedItem]:
+    """Return the items added to a list that a name has, such as one that a function gets as an argument."""
+    python = added_to.texts.python
+    for node in ast.walk(python.tree):
+        if isinstance(node, ast.Assign) and node.value is added_to.node and isinstance(node.targets[0], ast.Name):
+            lines = range(node.lineno + 1, sys.maxsize)
+            return _find_items(python, node.targets[0].id, lines, added_to.texts, start=node.lineno)
+    return []
+
+
+def _find_items(
+    python: PythonFile, name: str, lines: range, texts: ExpressionTexts, *, start: int | None = None
+) -> list[AddedItem]:
+    """Return the items that statements in a range of lines of a function add to a list.
+
+    Args:
+        python: the parsed file.
+        name: the name of the list.
+        lines: the lines.
+        texts: the texts of the expressions of the function.
+        start: a line of the function; None for the line after the others.
+    """
+    line = lines.stop if start is None else start
     functions = [
         node
         for node in ast.walk(python.tree)
-        if isinstance(node, ast.FunctionDef) and node.lineno <= name.lineno <= (node.end_lineno or 0)
+        if isinstance(node, ast.FunctionDef) and node.lineno <= line <= (node.end_lineno or 0)
     ]
     body = max(functions, key=lambda node: node.lineno).body if functions else python.tree.body
     items: list[AddedItem] = []
-    for node, call, conditions in _find_additions(body, name.id, ()):
-        if not value.lineno < node.lineno < name.lineno:
+    for node, call, conditions in _find_additions(body, name, ()):
+        if node.lineno not in lines:
             continue
         known = [_CONSTANTS.get(texts.text(branch.test)) for branch, _ in conditions]
         if any(value is (not expected) for value, (_, expected) in zip(known, conditions, strict=True)):

@@ -29,6 +29,8 @@ LOG_MESSAGE = "log message"
 """The kind of an action that only writes a text to the log."""
 READING = "reading"
 """The kind of an entry for an environment variable that the file reads."""
+BUILDER = "builder"
+"""The kind of an entry for an object that a chain of calls makes and that actions use."""
 DELETION = "deletion"
 """The kind of an action that deletes parameters of ROS 1."""
 SERVER_PARAMETER = "server parameter"
@@ -57,7 +59,8 @@ class Entry:
     Attributes:
         kind: ``argument``, ``variable``, ``node``, ``process``, ``include``; ``remapping``, ``parameter``,
             ``parameters`` or ``environment`` of all nodes that follow; ``server parameter`` of ROS 1; ``reading`` of an
-            environment variable; ``handler`` of an event; ``action`` of a foreign package.
+            environment variable; ``handler`` of an event; ``builder`` of an object that actions use; ``action`` of a
+            foreign package.
         name: the name of the argument or variable, ``package/executable`` of the node, the command, the path of the
             file, or the function that makes the action.
         settings: the values, by name. The value of an argument is its default.

@@ -1,4 +1,4 @@
-"""Find launch files that still pass an argument which the included file no longer declares."""
+"""Find launch files that pass an argument which the included file does not declare, or no longer."""
 
 from __future__ import annotations
 
@@ -14,7 +14,14 @@ from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import find_launch_files, is_launch_file
 from linkwright.review.launches.argument_uses import read_code
 from linkwright.review.launches.included import IncludedActions
-from linkwright.review.launches.outlines import CONDITION, LaunchOutline, without_condition
+from linkwright.review.launches.outlines import (
+    CONDITION,
+    ENVIRONMENT,
+    NAMESPACE_OF_INCLUDED,
+    Entry,
+    LaunchOutline,
+    without_condition,
+)
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -64,19 +71,59 @@ def _names_outside_of_keys(text: str, name: str) -> bool:
 
 
 def _check_caller(version: Version, path: str, lost: dict[str, dict[str, Phrase]]) -> Iterator[Change]:
-    outline = _try_read(version, path)
-    actions = None if outline is None else IncludedActions(version, path, outline)
-    for entry in outline.entries if outline is not None else ():
-        if actions is None or outline is None or entry.kind != "include":
-            continue
-        file = actions.find_included_file(replace(entry, name=outline.resolve(entry.name)), version.file(path))
-        included_path = None if file is None else version.relative(file)
-        names = lost.get(included_path or "", {})
-        passed = {without_condition(name) for name in entry.settings} - {CONDITION}
+    for entry, included_path, passed in _find_passed(version, path):
+        names = lost.get(included_path, {})
         for name in (name for name in names if name in passed):
             values = {"name": name, "file": included_path}
             text = phrase("passes '{name}' to '{file}', which no longer has the argument", **values)
             yield Change(text, Effect.BREAKING, names[name], Location(path, entry.span.line, entry.span.column))
+
+
+def find_refused_arguments(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the changed launch files of ROS 1 that newly pass an argument which the included file never declared."""
+    for file in changed_files:
+        if not (file.old_path and file.new_path and is_launch_file(file.new_path)):
+            continue
+        known = set(_find_refused(versions.old, file.old_path))
+        for (included_path, name), entry in _find_refused(versions.new, file.new_path).items():
+            old = _try_read(versions.old, included_path)
+            was_declared = old is not None and any(other.has_value and other.name == name for other in old.entries)
+            if (included_path, name) in known or was_declared:
+                continue
+            text = phrase("passes '{name}' to '{file}', which has no such argument", name=name, file=included_path)
+            location = Location(file.new_path, entry.span.line, entry.span.column)
+            yield file.new_path, Change(text, Effect.BREAKING, phrase("the include fails"), location)
+
+
+def _find_refused(version: Version, path: str) -> dict[tuple[str, str], Entry]:
+    """Return the includes that fail in ROS 1, by the path of the included file and the argument that it refuses."""
+    refused: dict[tuple[str, str], Entry] = {}
+    for entry, included_path, passed in _find_passed(version, path, is_ros1=True):
+        included = _try_read(version, included_path)
+        if included is not None and included.is_ros1:
+            declared = {other.name for other in included.entries if other.has_value}
+            refused |= {(included_path, name): entry for name in sorted(passed - declared)}
+    return refused
+
+
+def _find_passed(version: Version, path: str, *, is_ros1: bool = False) -> Iterator[tuple[Entry, str, set[str]]]:
+    """Yield the includes of a file with the path of the included file and the names of the passed arguments.
+
+    Args:
+        version: the version of the repository.
+        path: the path of the file.
+        is_ros1: whether to leave out files of ROS 2.
+    """
+    outline = _try_read(version, path)
+    if outline is None or (is_ros1 and not outline.is_ros1):
+        return
+    actions = IncludedActions(version, path, outline)
+    for entry in (entry for entry in outline.entries if entry.kind == "include"):
+        file = actions.find_included_file(replace(entry, name=outline.resolve(entry.name)), version.file(path))
+        included_path = None if file is None else version.relative(file)
+        if included_path is not None:
+            names = {without_condition(name) for name in entry.settings if not name.startswith(ENVIRONMENT)}
+            yield entry, included_path, names - {CONDITION, NAMESPACE_OF_INCLUDED}
 
 
 def _try_read(version: Version, path: str) -> LaunchOutline | None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import PythonFile, called_name
 from linkwright.review.launches.helpers import Function, HelperFunctions, find_parameter_defaults, find_program_guard
-from linkwright.review.launches.list_additions import find_added_items
+from linkwright.review.launches.list_additions import AddedItem, find_added_items, find_later_items
 from linkwright.review.launches.literals import CoveredLiterals, Literals
 from linkwright.review.launches.log_messages import LOG_CLASS, read_log_message
 from linkwright.review.launches.names import is_chosen_value
@@ -547,7 +547,10 @@ class _Reader:
 
     def _read_added_items(self, node: ast.expr) -> list[str]:
         """Return the texts of the items that statements add to the list of a name."""
-        added = find_added_items(self.python, node, self.texts) if isinstance(node, ast.Name) else []
+        return self._cover_added(find_added_items(self.python, node, self.texts) if isinstance(node, ast.Name) else [])
+
+    def _cover_added(self, added: Sequence[AddedItem]) -> list[str]:
+        """Return the texts of the items that statements add to a list, which need no lines of their own."""
         self.covered.update(id(item.call) for item in added)
         self.branches.update(id(branch) for item in added for branch in item.branches)
         return [item.text for item in added]
@@ -570,8 +573,11 @@ class _Reader:
         words = None if arguments is None else arguments.texts.find_words(arguments.node)
         if arguments is not None and words is not None:
             texts = [word.texts.format_joined(word.node) for word in words]
-            if arguments.texts is self.texts:
+            if arguments.texts is self.texts and isinstance(arguments.node, ast.Name):
                 texts += self._read_added_items(arguments.node)
+            else:
+                lists = arguments.texts.find_lists(arguments.node)
+                texts += self._cover_added([item for found in lists for item in find_later_items(found)])
             parts["arguments"] = f"[{', '.join(texts)}]"
             del others["arguments"]
         if "remappings" in others:

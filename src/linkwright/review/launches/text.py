@@ -70,7 +70,7 @@ class ExpressionTexts:
         helpers: HelperFunctions | None = None,
         depth: int = 0,
     ) -> None:
-        self._python = python
+        self.python = self._python = python
         self._helpers = helpers
         self._depth = depth
         self._bindings = bindings or {}
@@ -227,12 +227,21 @@ class ExpressionTexts:
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
             left, right = texts.find_words(node.left), texts.find_words(node.right)
             return None if left is None or right is None else left + right
+        if isinstance(node, ast.IfExp) and (holds := texts.evaluate_parameter(node.test)) is not None:
+            return texts.find_words(node.body if holds else node.orelse)
         if not isinstance(node, ast.ListComp) or len(node.generators) != 1 or node.generators[0].ifs:
             return None
         items = texts.find_items(node.generators[0].iter)
         passes = [texts.with_item(node.generators[0].target, item) for item in items or ()]
         known = [item.resolve(node.elt) for item in passes if item is not None]
         return None if items is None or len(known) != len(items) else known
+
+    def find_lists(self, node: ast.expr) -> list[BoundExpression]:
+        """Return the lists that a sum of lists joins."""
+        value = self.resolve(node)
+        if isinstance(value.node, ast.BinOp) and isinstance(value.node.op, ast.Add):
+            return [*value.texts.find_lists(value.node.left), *value.texts.find_lists(value.node.right)]
+        return [value] if isinstance(value.node, ast.List) else []
 
     def text(self, node: ast.expr | None, depth: int = 0) -> str:
         """Return an expression as text, with the values of names that are assigned once."""

@@ -9,7 +9,9 @@ from linkwright.diagnostics import Phrase, joined_first, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.excerpts import shorten_middle
+from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.outlines import (
+    BUILDER,
     CONDITION,
     DELETION,
     ENVIRONMENT,
@@ -21,6 +23,8 @@ from linkwright.review.launches.outlines import (
     SERVER_PARAMETER,
     TEST,
     Entry,
+    extract_condition,
+    without_condition,
 )
 from linkwright.review.list_changes import EMPTY, list_items, nested_list_items
 
@@ -76,6 +80,8 @@ def format_title(entry: Entry) -> Phrase:
         return phrase("parameter '{name}' of the nodes that follow", name=name)
     if entry.kind == "parameters":
         return phrase("parameters of '{file}'", file=name)
+    if entry.kind == BUILDER:
+        return phrase("'{name}()'", name=name)
     if entry.kind == DELETION:
         return _format_deletion_title(name)
     if entry.kind == "handler":
@@ -139,11 +145,15 @@ def find_served_names(entry: Entry) -> list[str]:
 
 
 def _find_spawned_controllers(words: Sequence[str]) -> Iterator[str]:
-    """Yield the words of a spawner's command line that are neither options nor their values."""
+    """Yield the words of a spawner's command line that are neither options nor their values.
+
+    A word under a condition that does not hold is left out.
+    """
     is_value = False
     for word in words:
-        if not word.startswith(("-", _CHOSEN_OPTION)) and not is_value:
-            yield word
+        is_name = not word.startswith(("-", _CHOSEN_OPTION)) and not is_value
+        if is_name and evaluate_condition(extract_condition(word)) is not False:
+            yield without_condition(word)
         is_value = word.startswith("-") and word not in _SPAWNER_FLAGS
 
 

@@ -30,6 +30,16 @@ def is_unused_argument(graph: IncludeGraph, path: str, name: str) -> bool:
     return outlines is not None and not _Uses(outlines).reaches_argument(name)
 
 
+def reads_argument(graph: IncludeGraph, path: str, name: str) -> bool:
+    """Return whether a file, or a file that it includes, may read an argument, whatever it does with the value."""
+    written = _make_pattern(name)
+    return graph.declares(path, lambda outline: next(_find_uses(outline.root, written), None) is not None)
+
+
+def _make_pattern(name: str) -> re.Pattern[str]:
+    return re.compile(rf"\$\(arg\s+{re.escape(name)}\s*\)|{_COMPUTED_ARGUMENT.pattern}")
+
+
 @dataclass
 class _Uses:
     """The uses of values in the files of robots."""
@@ -39,7 +49,7 @@ class _Uses:
 
     def reaches_argument(self, name: str) -> bool:
         """Return whether a value of an argument reaches a robot."""
-        written = re.compile(rf"\$\(arg\s+{re.escape(name)}\s*\)|{_COMPUTED_ARGUMENT.pattern}")
+        written = _make_pattern(name)
         return any(self._is_reached(outline.root, written) for outline in self.outlines)
 
     def _is_reached(self, root: Element, written: re.Pattern[str]) -> bool:

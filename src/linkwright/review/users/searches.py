@@ -11,7 +11,7 @@ from linkwright.review.launches.left_nodes import find_left_nodes
 from linkwright.review.launches.left_parameters import find_left_parameters
 from linkwright.review.launches.loaded_plugins import find_undeclared_plugins
 from linkwright.review.launches.missing_programs import find_missing_programs, find_old_package_names
-from linkwright.review.launches.passed_arguments import find_passed_arguments
+from linkwright.review.launches.passed_arguments import find_passed_arguments, find_refused_arguments
 from linkwright.review.launches.script_callers import find_lost_arguments
 from linkwright.review.sources.callers import find_broken_callers
 from linkwright.review.sources.left_types import find_left_types
@@ -21,7 +21,10 @@ from linkwright.review.users.ignored_packages import find_ignored_packages
 from linkwright.review.users.left_remappings import find_left_remappings
 from linkwright.review.users.lost_controllers import find_lost_controllers
 from linkwright.review.users.lost_data import find_lost_data
-from linkwright.review.users.lost_description_arguments import find_lost_description_arguments
+from linkwright.review.users.lost_description_arguments import (
+    find_lost_description_arguments,
+    find_undeclared_description_arguments,
+)
 from linkwright.review.users.lost_display_classes import find_lost_display_classes
 from linkwright.review.users.lost_displays import find_lost_displays
 from linkwright.review.users.lost_installs import find_lost_installs
@@ -52,12 +55,14 @@ SEARCHES: tuple[Search, ...] = (
         find_lost_controllers,
         find_lost_data,
         find_lost_description_arguments,
+        find_undeclared_description_arguments,
         find_lost_installs,
     ),
     *(find_lost_libraries, find_lost_programs, find_lost_registrations, find_lost_sources, find_missing_programs),
     *(find_old_package_names, find_old_dependencies),
     *(
         find_passed_arguments,
+        find_refused_arguments,
         find_left_nodes,
         find_left_parameters,
         find_lost_interfaces,
