@@ -154,7 +154,7 @@ class ElementComparison:
                 )
         texts = " ".join(old.text().split()), " ".join(new.text().split())
         if not self._same_text(*(_complete_namespace(path, text) for text in texts)):
-            shown = map(round_numbers, texts)
+            shown = round_numbers(texts[0]), round_numbers(texts[1])
             yield Difference("extension", name, "changed", path, *shown, "", location_of(old), location_of(new))
         yield from self.child_differences(list(old.elements()), list(new.elements()), path, (name, old, new))
 
