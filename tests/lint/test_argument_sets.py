@@ -73,6 +73,18 @@ def test_failure_without_arguments_is_one_info(check):
     assert findings[0]["notes"][0]["file"].endswith("view.launch.py")
 
 
+def test_defaults_that_fail_where_they_are_used_are_told_with_the_error(check):
+    robot = f"""<robot {XACRO} name="r"><xacro:arg name="kind" default="old"/>
+    <xacro:include filename="$(arg kind).xacro"/></robot>"""
+    launch = LAUNCH.format(kinds="'small'").replace("'name': 'a', 'type'", "'kind'")
+    files = {"arm/urdf/arm.urdf.xacro": robot, "arm/urdf/small.xacro": PART, "arm/launch/view.launch.py": launch}
+    (finding,) = check(files)
+    assert (finding["severity"], finding["code"]) == ("info", "LINT303")
+    start = "'arm.urdf.xacro' cannot be expanded with the default of the argument 'kind': no such file: "
+    assert finding["message"].startswith(start)
+    assert finding["message"].endswith("old.xacro'")
+
+
 PLAIN_ROBOT = f'<robot name="r"><link name="base_link">{CAN_VISUAL}</link></robot>'
 EXPANDING_LAUNCH = """
 import os

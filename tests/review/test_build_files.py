@@ -399,6 +399,8 @@ def find_dependency_changes(repository, compare, *replacements):
         ("", "build_export_depend", True),
         ("install(DIRECTORY include/ DESTINATION include)", "depend", True),
         ("ament_export_dependencies(gears)", "depend", True),
+        ("ament_export_dependencies(ament_cmake rosidl_default_generators)\nament_package()", "depend", False),
+        ("ament_export_dependencies(ament_cmake gears)\nament_package()", "depend", True),
         ("pluginlib_export_plugin_description_file(nav2_core plugins.xml)", "depend", False),
         ("add_library(core src/core.cpp)", "depend", True),
         ("add_library(core src/core.cpp)\ninstall(TARGETS core DESTINATION lib)\nament_package()", "depend", False),

@@ -115,3 +115,35 @@ def test_several_frames_that_a_source_loses_are_looked_for(repository, compare):
     repository.write({"arm/frames.py": imports})
     lines = [str(change.sentence) for _, change in compare(repository).breaking_changes]
     assert "names the frame 'lamp', which 'arm/frames.py' no longer has" in lines
+
+
+PAIRS = '<robot name="{robot}"><disable_collisions link1="base_link" link2="{link}" reason="Never"/></robot>\n'
+OTHER_ROBOT = '<robot name="{}"><link name="camera"/></robot>\n'
+
+
+@pytest.mark.parametrize(
+    ("files", "found"),
+    [
+        ({"arm.srdf": PAIRS.format(robot="arm", link="camera")}, ["arm.srdf"]),
+        ({"arm.srdf": PAIRS.format(robot="arm", link="camera"), "b/b.urdf": OTHER_ROBOT.format("b")}, ["arm.srdf"]),
+        ({"arm.srdf": PAIRS.format(robot="arm", link="camera"), "b/b.urdf": OTHER_ROBOT.format("arm")}, []),
+        ({"arm.srdf": PAIRS.format(robot="arm", link="lens")}, []),
+        ({"arm.srdf": PAIRS.format(robot="other", link="camera")}, []),
+    ],
+)
+def test_disabled_collisions_of_a_renamed_link_belong_to_the_robot_of_the_name(repository, compare, files, found):
+    repository.commit({"arm/arm.urdf": ROBOT.format(link="camera", joint="shoulder"), **files})
+    repository.write({"arm/arm.urdf": ROBOT.format(link="lens", joint="shoulder")})
+    changes = [
+        (subject.path, str(change.sentence), str(change.reason))
+        for subject, change in compare(repository).breaking_changes
+        if subject.path.endswith(".srdf")
+    ]
+    assert changes == [
+        (
+            path,
+            "disables collisions of 'camera', which 'arm/arm.urdf' no longer has",
+            "MoveIt also checks the disabled collisions of the link, which is 'lens' now",
+        )
+        for path in found
+    ]

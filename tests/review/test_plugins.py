@@ -62,6 +62,48 @@ def test_equal_numbers_of_extensions_are_no_change(repository, compare):
     assert compare(repository).subjects == []
 
 
+def test_digits_that_a_computation_adds_are_neither_compared_nor_shown(repository, compare):
+    def text(sum_text: str, friction: str) -> str:
+        values = f"<mu1>{sum_text}</mu1><mu2>{friction}</mu2><dampingFactor>1234567890123456</dampingFactor>"
+        robot = robot_text(f'<gazebo reference="base">{values}</gazebo>')
+        return robot.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ', 1)
+
+    path = PATH.replace(".urdf", ".urdf.xacro")
+    repository.commit({path: text("${0.1 + 0.2}", "1.0")})
+    repository.write({path: text("0.3", "${0.1 + 0.7}").replace("3456<", "3457<")})
+    (found,) = compare(repository).subjects
+    assert sentences(found) == [
+        "extension 'gazebo base': mu2 1.0 -> 0.8",
+        "extension 'gazebo base': dampingFactor 1234567890123456 -> 1234567890123457",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("plugin", "is_breaking"),
+    [
+        ("filename='libgazebo_ros_dock.so'><robotNamespace></robotNamespace>", False),
+        ("filename='libgazebo_ros_dock.so'><robotNamespace>/</robotNamespace>", False),
+        ("filename='libgazebo_ros_dock.so'><robotNamespace>left</robotNamespace>", True),
+        ("filename='libgazebo_ros_dock.so'>", True),
+        ("filename='libgazebo_ros_dock.so'><ros/>", False),
+        ("filename='libgazebo_ros_dock.so'><ros><namespace>left</namespace></ros>", True),
+        ("filename='gz-sim-diff-drive-system'>", False),
+    ],
+)
+@pytest.mark.parametrize(("old", "new"), [("/drive", "drive"), ("drive", "/drive")])
+def test_relative_topic_of_a_plugin_in_the_root_namespace_has_the_same_name(
+    repository, compare, plugin, is_breaking, old, new
+):
+    text = f"<gazebo><plugin name='dock' {plugin}<commandTopic>{{}}</commandTopic></plugin></gazebo>"
+    repository.commit({PATH: robot_text(text.format(old))})
+    repository.write({PATH: robot_text(text.format(new))})
+    result = compare(repository)
+    assert [sentences(found) for found in result.subjects] == [
+        [f"extension 'gazebo': plugin dock commandTopic {old} -> {new}"]
+    ]
+    assert bool(breaking(result)) is is_breaking
+
+
 BLOCKS = """
     <gazebo reference="base"><collision/></gazebo>
     <gazebo reference="base">

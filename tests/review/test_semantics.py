@@ -69,6 +69,50 @@ def test_joint_that_becomes_passive_is_not_breaking(package, compare):
     assert [change.reason for change in subject(compare(package), PATH).changes if change.reason] == []
 
 
+GROUP_OF_JOINTS = """<robot name="arm"><group name="all">{members}<joint name="j1"/><joint name="j2"/></group></robot>
+"""
+TREE = """<robot name="arm"><link name="a"/><link name="b"/><link name="c"/>
+  <joint name="${prefix}j1" type="revolute"><parent link="${prefix}a"/><child link="${prefix}b"/></joint>
+  <joint name="${prefix}j2" type="revolute"><parent link="${prefix}b"/><child link="${prefix}c"/></joint>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("members", "lost"),
+    [
+        ('<chain base_link="a" tip_link="c"/>', []),
+        ('<link name="b"/><link name="c"/>', []),
+        ('<chain base_link="b" tip_link="c"/>', ["j1"]),
+        ('<link name="b"/>', ["j2"]),
+        ('<chain base_link="a" tip_link="part_of_another_repository"/>', []),
+    ],
+)
+def test_joints_that_a_chain_or_link_of_the_group_brings_are_not_lost(package, compare, members, lost):
+    package.commit({PATH: GROUP_OF_JOINTS.replace("{members}", members), "arm_description/urdf/tree.xacro": TREE})
+    package.write({PATH: f'<robot name="arm"><group name="all">{members}</group></robot>'})
+    (change,) = subject(compare(package), PATH).changes
+    names = [] if change.reason is None else [name for name in ("j1", "j2") if f"'{name}'" in str(change.reason)]
+    assert names == lost
+
+
+def test_joints_of_a_group_in_the_group_are_not_lost(package, compare):
+    text = GROUP_OF_JOINTS.replace("{members}", '<group name="part"/>')
+    part = '<group name="part"><joint name="j1"/></group></robot>'
+    package.commit({PATH: text.replace("</robot>", part)})
+    package.write({PATH: text.replace("</robot>", part).replace('<joint name="j1"/><joint name="j2"/>', "", 1)})
+    (change,) = subject(compare(package), PATH).changes
+    assert str(change.reason) == "programs that move the joint 'j2' of the group 'all' do not find it"
+
+
+def test_passive_joints_are_one_line(package, compare):
+    package.commit({PATH: SRDF})
+    joints = "".join(f'<passive_joint name="{name}"/>' for name in ("a", "b", "c"))
+    package.write({PATH: SRDF.replace("</robot>", f"{joints}</robot>")})
+    (change,) = subject(compare(package), PATH).changes
+    assert (str(change.sentence), change.other_names) == ("passive_joint 'a' added", ("b", "c"))
+
+
 def test_fixed_joint_that_leaves_a_group_is_not_breaking(package, compare):
     package.commit({PATH: SRDF, "arm_description/urdf/hand.xacro": '<robot><joint type="fixed" name="left"/></robot>'})
     package.write({PATH: SRDF.replace('<joint name="left"/>', "")})

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from linkwright.descriptions import examine as examine_description
-from linkwright.descriptions.argument_sets import ArgumentSet, compared_values, empty_defaults
+from linkwright.descriptions.argument_sets import ArgumentSet, compared_values, empty_defaults, usable_defaults
 from linkwright.descriptions.service import HOLDS_FOR_PARTS
 from linkwright.diagnostics import (
     Diagnostic,
@@ -221,7 +221,10 @@ class SetCheck:
         notes = [Note(message, working_run.argument_set.span)]
         if len(sets) > 1 and working_run.argument_set in sets:
             notes.append(Note(phrase("the file is checked with {count} sets of values", count=len(sets))))
-        yield _make_missing_arguments_finding(default.result, names, tuple(notes))
+        failure = None
+        if usable_defaults(_sources(default.result)).issuperset(names):
+            failure = _find_failure_of_defaults(default, common)
+        yield _make_missing_arguments_finding(default.result, names, tuple(notes), failure=failure)
 
     def _find_required_arguments(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:
         """Return the names of the arguments without which the expansion fails.
@@ -440,9 +443,27 @@ def _may_depend_on_argument(code: str) -> bool:
     return code in (UNDECLARED_CODE, *_FILE_CODES)
 
 
+def _find_failure_of_defaults(default: _Run, common: frozenset[Key]) -> Phrase | str | None:
+    """Return the first error that only the default values cause, or None if they are not declared where they are used.
+
+    Args:
+        default: the check with the default values.
+        common: the errors of all checks.
+    """
+    own_errors = default.errors - common
+    if any(code == UNDECLARED_CODE for code, _, _ in own_errors):
+        return None
+    return next((error.message for error in default.result.diagnostics if _finding_key(error) in own_errors), None)
+
+
 def _make_missing_arguments_finding(
-    result: Checked, names: Sequence[str], notes: tuple[Note, ...], hint: Phrase | None = None
+    result: Checked,
+    names: Sequence[str],
+    notes: tuple[Note, ...],
+    hint: Phrase | None = None,
+    failure: Phrase | str | None = None,
 ) -> Diagnostic:
+    """Return the finding that a file needs arguments, or that it fails with the defaults that it gives them."""
     shown_names = list(names[:_MAX_SHOWN_ARGUMENTS])
     names_text = (
         quoted_names(shown_names, " and ")
@@ -456,6 +477,12 @@ def _make_missing_arguments_finding(
         file=result.path.name,
         names=names_text,
     )
+    if failure is not None:
+        message = counted(
+            "'{file}' cannot be expanded with the default of the argument {names}: {reason}",
+            "'{file}' cannot be expanded with the defaults of the arguments {names}: {reason}",
+            len(names), file=result.path.name, names=names_text, reason=failure,
+        )  # fmt: skip
     root = next(iter(result.subject.sources.values())).root if result.subject is not None else None
     span = root.span() if root is not None else None
     source = root.source if root is not None else None

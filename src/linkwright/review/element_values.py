@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
+from linkwright.descriptions.comparison import round_numbers
 from linkwright.diagnostics import Phrase, joined_first
 from linkwright.xmltree import Element
 
@@ -18,7 +19,7 @@ def format_own_content(element: Element, skipped: Collection[str] = ()) -> str:
     """
     attributes = element.attributes.items()
     words = [f"{name}={value}" for name, value in attributes if name != "name" and name not in skipped]
-    return " ".join([*words, *element.text().split()])
+    return " ".join([*words, round_numbers(element.text())]).strip()
 
 
 def format_values(element: Element, limit: int, skipped: Collection[str] = ()) -> Phrase | None:

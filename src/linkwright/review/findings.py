@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.lint.engine import Checked
 from linkwright.lint.finding import Finding
-from linkwright.lint.known_findings import count_keys, find_new_findings
+from linkwright.lint.known_findings import Key, count_keys, find_new_findings
 from linkwright.lint.targets import DESCRIPTION_SUFFIXES, Targets
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.folders import finding_without_folders, without_folder
@@ -103,8 +103,9 @@ def compare_findings(
 
     A finding in a description that the other version could not read, or that no robot there includes, may be
     as old as the file. It is neither new nor fixed. The same holds for a finding that moved to another file, for one
-    that only names a package by its new name, for one about a file that git cannot check out, and for one in a
-    ``setup.py`` that has a syntax error in the other version.
+    that only names a package by its new name, for one about a file that git cannot check out, for one in a
+    ``setup.py`` that has a syntax error in the other version, and for one in an unchanged description that the other
+    version also has when the file is checked alone.
 
     Args:
         versions: both versions.
@@ -118,11 +119,19 @@ def compare_findings(
     added, fixed = (
         [
             version.with_relative_paths(finding)
-            for finding in find_new_findings(
-                own.diagnostics, version.root, count_keys(other.diagnostics, other_version.root, _invert(names))
+            for finding in _drop_found_alone(
+                [
+                    finding
+                    for finding in find_new_findings(
+                        own.diagnostics, version.root, count_keys(other.diagnostics, other_version.root, _invert(names))
+                    )
+                    if _is_comparable(finding, version, own, other, other_version, names, changed)
+                    and not _names_missing_file(finding, version)
+                ],
+                version,
+                other_version,
+                changed,
             )
-            if _is_comparable(finding, version, own, other, other_version, names, changed)
-            and not _names_missing_file(finding, version)
         ]
         for version, own, other, other_version, names in sides
     )
@@ -140,6 +149,27 @@ def _names_missing_file(finding: Diagnostic, version: Version) -> bool:
     """
     missing = () if version.commit is None else version.commit.missing_files
     return any(path in str(finding.message) for path in missing)
+
+
+def _drop_found_alone(
+    findings: Sequence[Diagnostic], version: Version, other_version: Version, changed: Collection[str]
+) -> list[Diagnostic]:
+    """Return the findings without those that the other version has when their unchanged file is checked alone.
+
+    A check of several robots reports a finding about a robot and about the file that xacro wrote for it only once.
+    """
+    paths = {
+        path
+        for finding in findings
+        if finding.span is not None
+        if (path := version.relative(finding.span.file)) is not None
+        if path.endswith(DESCRIPTION_SUFFIXES) and path not in changed and other_version.file(path).is_file()
+    }
+    known: dict[Key, int] = {}
+    for path in sorted(paths):
+        own = find_findings(other_version, Targets((other_version.file(path),), ()))
+        known |= count_keys(own.diagnostics, other_version.root)
+    return find_new_findings(findings, version.root, known) if known else list(findings)
 
 
 def _drop_moved(

@@ -10,7 +10,7 @@ from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined, phrase, quoted_names
 from linkwright.diagnostics.phrase import as_phrase
 from linkwright.review.element_values import format_values
-from linkwright.review.names_in_plugins import NAME_TAGS, extract_used_name
+from linkwright.review.names_in_plugins import NAME_TAGS, NAMESPACE_TAG, extract_used_name
 from linkwright.xmltree import Element
 
 _DEFAULT_TOPICS = {
@@ -27,6 +27,8 @@ _TOPIC_TAGS = re.compile(r"topic", re.IGNORECASE)
 _PART_TAGS = ("plugin", "sensor")
 _SENSOR_TOPIC = re.compile(r"(?:.* )?sensor (?P<name>\S+) topic")
 """The path of the topic of a sensor."""
+_PLUGIN_PARAMETER = re.compile(r"plugin (?P<name>\S+) (?:\S+ )*(?P<tag>\S+)")
+"""The path of a parameter of a plugin."""
 _MAX_VALUES = 12
 """The maximum number of values of a plugin, sensor or other element in a line."""
 _FILE = re.compile(r"(lib)?(?P<name>.+?)(\.so)?")
@@ -207,6 +209,39 @@ def find_sensor_reason(sensor: Element) -> Phrase | None:
         "programs and bridges that use the default topic of the sensor '{name}' get no messages",
         name=sensor.attributes.get("name", ""),
     )
+
+
+def names_same_topic(difference: Difference, old: Iterable[Element], new: Iterable[Element]) -> bool:
+    """Return whether a parameter of a plugin only gains or loses the slash before a topic, which names the same topic.
+
+    This is so if the namespace of the plugin is the root in both versions.
+
+    Args:
+        difference: the difference between both versions.
+        old: the extensions of the old robot.
+        new: the extensions of the new robot.
+    """
+    match = _PLUGIN_PARAMETER.fullmatch(difference.property)
+    if match is None or difference.kind != "changed" or not difference.old or not difference.new:
+        return False
+    is_topic = _TOPIC_TAGS.search(match["tag"]) is not None
+    if not is_topic or difference.old.strip().lstrip("/") != difference.new.strip().lstrip("/"):
+        return False
+    return all(_is_in_root_namespace(elements, match["name"]) for elements in (old, new))
+
+
+def _is_in_root_namespace(elements: Iterable[Element], name: str) -> bool:
+    """Return whether all plugins of a name are in the root namespace.
+
+    Without a namespace, a plugin of ``gazebo_ros`` for ROS 1 is in that of its model.
+    """
+    plugins = [plugin for element in elements for plugin in find_plugins(element) if find_plugin_name(plugin) == name]
+    for plugin in plugins:
+        spaces = [child.text().strip("/ \t\n") for child in plugin.walk() if NAMESPACE_TAG.search(child.tag)]
+        is_classic = "gazebo_ros" in plugin.attributes.get("filename", "") and plugin.first("ros") is None
+        if any(spaces) or (is_classic and not spaces):
+            return False
+    return bool(plugins)
 
 
 def find_missing_topics_reason(difference: Difference, added: frozenset[str]) -> Phrase | None:

@@ -90,6 +90,7 @@ from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.unfixed_findings import drop_unfixed_findings
+from linkwright.review.users.left_collision_pairs import find_left_collision_pairs
 from linkwright.review.users.left_robot_names import find_left_robot_names
 from linkwright.review.users.lost_files import find_lost_files
 from linkwright.review.users.references import find_lost_references
@@ -239,6 +240,7 @@ class _Reviewer:
     def _add_users_of_lost_names(self, subjects: Sequence[Subject]) -> list[Subject]:
         """Return the subjects with the files that still name a frame or joint which others have lost."""
         users = self._run_step(lambda versions, _: find_left_robot_names(versions, subjects))
+        users += self._run_step(lambda versions, _: find_left_collision_pairs(versions.new, subjects))
         return sorted(_add_changes(subjects, users), key=lambda subject: subject.path) if users else list(subjects)
 
     def _collect_findings(

@@ -45,11 +45,19 @@ def empty_defaults(documents: Iterable[Document]) -> tuple[str, ...]:
 
     An empty default often means that callers must pass a value.
     """
-    elements = (element for document in documents for element in document.root.walk())
-    argument_attributes = (element.attributes for element in elements if element.tag == "xacro:arg")
-    return tuple(
-        dict.fromkeys(item["name"] for item in argument_attributes if "name" in item and item.get("default") == "")
-    )
+    return tuple(dict.fromkeys(name for name, default in _list_defaults(documents) if not default))
+
+
+def usable_defaults(documents: Iterable[Document]) -> frozenset[str]:
+    """Return the names of the arguments with a default that is not empty."""
+    return frozenset(name for name, default in _list_defaults(documents) if default)
+
+
+def _list_defaults(documents: Iterable[Document]) -> Iterator[tuple[str, str]]:
+    """Yield the name and the default of each argument that has one."""
+    for element in (element for document in documents for element in document.root.walk()):
+        if element.tag == "xacro:arg" and {"name", "default"} <= element.attributes.keys():
+            yield element.attributes["name"], element.attributes["default"]
 
 
 def _find_argument_names(elements: Iterable[Element]) -> Iterator[tuple[str, str]]:

@@ -9,6 +9,7 @@ from linkwright.descriptions.comparison.elements import ElementComparison
 from linkwright.descriptions.comparison.file_contents import has_same_bytes
 from linkwright.descriptions.comparison.gazebo_blocks import GAZEBO, joined_block
 from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, find_lost_interfaces
+from linkwright.descriptions.comparison.numbers import round_numbers
 from linkwright.descriptions.comparison.report import as_data, as_text, sentence
 
 __all__ = [
@@ -27,5 +28,6 @@ __all__ = [
     "find_lost_interfaces",
     "has_same_bytes",
     "joined_block",
+    "round_numbers",
     "sentence",
 ]

@@ -11,7 +11,7 @@ from itertools import zip_longest
 
 from linkwright.descriptions.comparison.difference import Difference, Kind, location_of
 from linkwright.descriptions.comparison.gazebo_blocks import GAZEBO, joined_block
-from linkwright.descriptions.comparison.numbers import normalize_numbers
+from linkwright.descriptions.comparison.numbers import normalize_numbers, round_numbers
 from linkwright.descriptions.comparison.plugin_parts import find_plugin_parts
 from linkwright.descriptions.comparison.renamed_elements import renamed_elements
 from linkwright.loading.lean_dataclasses import dataclass, field
@@ -154,7 +154,8 @@ class ElementComparison:
                 )
         texts = " ".join(old.text().split()), " ".join(new.text().split())
         if not self._same_text(*(_complete_namespace(path, text) for text in texts)):
-            yield Difference("extension", name, "changed", path, *texts, "", location_of(old), location_of(new))
+            shown = round_numbers(texts[0]), round_numbers(texts[1])
+            yield Difference("extension", name, "changed", path, *shown, "", location_of(old), location_of(new))
         yield from self.child_differences(list(old.elements()), list(new.elements()), path, (name, old, new))
 
     def _normalize_old_text(self, text: str) -> str:
@@ -254,6 +255,6 @@ def _find_name(element: Element, parts: Mapping[int, str]) -> str | None:
 def _to_one_line(element: Element) -> str:
     """Return an element's attributes, text and child tags as one line."""
     words = [f"{name}={value}" for name, value in element.attributes.items()]
-    words += element.text().split()
+    words += round_numbers(element.text()).split()
     words += [f"<{child.tag}>" for child in element.elements()]
     return " ".join(words)

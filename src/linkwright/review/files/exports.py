@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from pathlib import PurePosixPath
 
-from linkwright.review.files.build_facts import FactKind
+from linkwright.review.files.build_facts import BUILD_TOOLS, FactKind
 from linkwright.review.files.cmake_files import CMAKE_FILE, read_cmake_facts
 from linkwright.review.versions import Version
 
@@ -27,6 +27,7 @@ _EXPORTS = re.compile(
     re.MULTILINE | re.IGNORECASE,
 )
 """A command or file that may export something, which the facts may not show."""
+_EXPORTED_DEPENDENCIES = re.compile(r"\bament_export_dependencies\s*\((?P<names>[^)]*)\)")
 _AMENT_PACKAGE = re.compile(r"^[^#\n]*\bament_package\s*\(", re.MULTILINE)
 
 
@@ -40,13 +41,19 @@ def exports_nothing(version: Version, manifest: str) -> bool:
         manifest: the path of its ``package.xml`` relative to the root.
     """
     path = (PurePosixPath(manifest).parent / CMAKE_FILE).as_posix()
-    if not version.file(path).is_file() or any(_EXPORTS.search(text) for text in _read_build_files(version, manifest)):
+    texts = (_EXPORTED_DEPENDENCIES.sub(_blank_tools, text) for text in _read_build_files(version, manifest))
+    if not version.file(path).is_file() or any(map(_EXPORTS.search, texts)):
         return False
     if _AMENT_PACKAGE.search(version.text(path)):
         return True
     facts = read_cmake_facts(version, path)
     is_known = not facts.unknown and not (facts.has_library and facts.targets)
     return is_known and not facts.header_paths and all(fact.kind not in _EXPORTED_KINDS for fact in facts.facts)
+
+
+def _blank_tools(match: re.Match[str]) -> str:
+    """Return a call that exports dependencies, or nothing if it only exports tools that each package names itself."""
+    return "" if BUILD_TOOLS.issuperset(match["names"].split()) else match[0]
 
 
 def _read_build_files(version: Version, manifest: str) -> Iterator[str]:

@@ -12,8 +12,9 @@ from pathlib import Path
 from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined, joined_first, phrase, quoted_names, term
 from linkwright.lint.targets import find_files_and_packages
 from linkwright.review.breaking import joint_name_reason
-from linkwright.review.changes import MAX_NAMES
+from linkwright.review.changes import MAX_NAMES, Change, Effect
 from linkwright.review.file_pair import FilePair
+from linkwright.review.files.group_joints import GroupJoints
 from linkwright.review.files.semantic_names import (
     LINK_ATTRIBUTES,
     find_renamed_names,
@@ -35,7 +36,7 @@ _JOINT_PREFIX = "joint "
 _JOINT_TAG = re.compile(r"<joint\s[^<>]*>")
 _FIXED = re.compile(r"\stype\s*=\s*[\"']fixed[\"']")
 _NAME = re.compile(r"\sname\s*=\s*[\"']([^\"']*)[\"']")
-_VIRTUAL_JOINT = "virtual_joint"
+_VIRTUAL_JOINT, _PASSIVE_JOINT = "virtual_joint", "passive_joint"
 _PARENT_LINK = "parent_link"
 _PARENT_FRAME = "parent_frame"
 """The attribute of a virtual joint with the frame in which MoveIt plans."""
@@ -82,12 +83,15 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
         report_renamed_names(pair, new_root, new_names, fixed_joints)
     moved_states = dict(_find_states_of_renamed_groups(old, new, renamed))
     old_keys = {new_key: old_key for old_key, new_key in (renamed | moved_states).items()}
+    joints = GroupJoints(pair.versions.new, new_root)
+    added: list[_Entry] = []
+    removed: list[_Entry] = []
     for key, entry in new.items():
         if key in old or key in moved_states.values():
-            _compare_entries(pair, old[old_keys.get(key, key)], entry, passive_joints)
+            _compare_entries(pair, old[old_keys.get(key, key)], entry, passive_joints, joints)
         elif key not in renamed.values():
-            text = phrase("{entry} added", entry=_format_title(entry))
-            pair.add(_add_values(text, entry), pair.location(entry.element.span()))
+            added.append(entry)
+    _report_added(pair, added)
     for key, entry in old.items():
         if key in moved_states:
             continue
@@ -99,12 +103,37 @@ def compare_roots(pair: FilePair, old_root: Element, new_root: Element) -> None:
                 reason = joint_name_reason(entry.name)
             pair.add(text, location, reason)
         elif key not in new:
-            location = pair.location(entry.element.span(), is_old=True)
-            reason = find_removal_reason(entry.tag, entry.name) or _find_planning_frame_reason(entry, new.values())
-            text = phrase("{entry} removed", entry=_format_title(entry))
-            pair.add(_add_values(text, entry), location, reason)
+            removed.append(entry)
+    _report_removed(pair, removed, new.values())
     for tag in _PAIR_TAGS:
         _compare_pairs(pair, tag, _group_by_pair(old_root, tag, new_names), _group_by_pair(new_root, tag))
+
+
+def _report_added(pair: FilePair, entries: Iterable[_Entry]) -> None:
+    for first, names in _group_plain_entries(entries):
+        text = _add_values(phrase("{entry} added", entry=_format_title(first)), first)
+        pair.changes.append(Change(text, location=pair.location(first.element.span()), other_names=names))
+
+
+def _report_removed(pair: FilePair, entries: Iterable[_Entry], new: Collection[_Entry]) -> None:
+    for first, names in _group_plain_entries(entries):
+        location = pair.location(first.element.span(), is_old=True)
+        reason = find_removal_reason(first.tag, first.name) or _find_planning_frame_reason(first, new)
+        text = _add_values(phrase("{entry} removed", entry=_format_title(first)), first)
+        effect = Effect.CHANGED if reason is None else Effect.BREAKING
+        pair.changes.append(Change(text, effect, reason, location, other_names=names))
+
+
+def _group_plain_entries(entries: Iterable[_Entry]) -> Iterator[tuple[_Entry, tuple[str, ...]]]:
+    """Yield the entries; of passive joints, which only have a name, the first with the names of the others."""
+    plain: list[_Entry] = []
+    for entry in entries:
+        if entry.tag == _PASSIVE_JOINT:
+            plain.append(entry)
+        else:
+            yield entry, ()
+    if plain:
+        yield plain[0], tuple(entry.name for entry in plain[1:])
 
 
 def semantic_contents(version: Version, path: str) -> Phrase | None:
@@ -209,7 +238,9 @@ def _add_values(text: Phrase, entry: _Entry) -> Phrase:
     return phrase("{change}: {items}", change=text, items=joined_first(values, MAX_NAMES)) if values else text
 
 
-def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive_joints: Collection[str]) -> None:
+def _compare_entries(
+    pair: FilePair, old: _Entry, new: _Entry, passive_joints: Collection[str], joints: GroupJoints
+) -> None:
     changes: list[str] = []
     for name in dict.fromkeys([*new.values, *old.values]):
         before, after = old.values.get(name), new.values.get(name)
@@ -221,7 +252,7 @@ def _compare_entries(pair: FilePair, old: _Entry, new: _Entry, passive_joints: C
             changes.append(f"{name} {before} -> {after}")
     if changes:
         text = phrase("{entry}: {changes}", entry=_format_title(new), changes=joined_first(changes, MAX_NAMES))
-        reason = _find_lost_joints_reason(pair.versions.old, old, new, passive_joints)
+        reason = _find_lost_joints_reason(pair.versions.old, old, new, passive_joints, joints)
         reason = reason or _find_tip_reason(old, new) or _find_planning_frame_reason(old, [new])
         reason = reason or _find_parent_link_reason(old, new)
         pair.add(text, pair.location(new.element.span()), reason)
@@ -261,7 +292,7 @@ def _find_parent_link_reason(old: _Entry, new: _Entry) -> Phrase | None:
 
 
 def _find_lost_joints_reason(
-    version: Version, old: _Entry, new: _Entry, passive_joints: Collection[str]
+    version: Version, old: _Entry, new: _Entry, passive_joints: Collection[str], joints: GroupJoints
 ) -> Phrase | None:
     """Return the reason why lost joints of a group are breaking; None if they are not.
 
@@ -274,10 +305,10 @@ def _find_lost_joints_reason(
         for name in old.values
         if name.startswith(_JOINT_PREFIX) and name not in new.values
     ]
-    if old.tag != "group" or not lost or not all(map(_is_literal_joint, added)):
+    if old.tag != "group" or not lost or any(map(_is_computed_joint, added)):
         return None
     fixed = {*passive_joints, *_find_fixed_joints(version)}
-    lost = [name for name in lost if name not in fixed]
+    lost = [name for name in lost if name not in fixed and not joints.may_contain(new.name, name)]
     return None if not lost else counted(
         "programs that move the joint {names} of the group '{group}' do not find it",
         "programs that move the joints {names} of the group '{group}' do not find them",
@@ -301,8 +332,8 @@ def _find_tip_reason(old: _Entry, new: _Entry) -> Phrase | None:
     )
 
 
-def _is_literal_joint(member: str) -> bool:
-    return member.startswith(_JOINT_PREFIX) and not _EXPRESSION.search(member)
+def _is_computed_joint(member: str) -> bool:
+    return member.startswith(_JOINT_PREFIX) and _EXPRESSION.search(member) is not None
 
 
 def _find_fixed_joints(version: Version) -> set[str]:

@@ -9,6 +9,7 @@ from typing import Literal
 
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
+from linkwright.review.files.value_vectors import Component, describe_items, find_component
 from linkwright.review.list_changes import change_text
 from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.merging import name_edit
@@ -19,8 +20,8 @@ _INDEX = re.compile(r"\[(\d+)\]")
 _NUMBER = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?")
 _NAME = re.compile(r"[~/]?[A-Za-z_][\w./:-]*")
 """A value that is the name of a topic, a frame or a file, for example."""
-_MAX_COMPONENT_NAME = 3
-"""The maximum length of the name of a component, such as ``x``, ``ixx`` or ``p``."""
+_MIN_EQUAL_COMPONENTS = 3
+"""The minimum number of components with equal changes that are listed by name only."""
 _MIN_SIBLINGS = 4
 """The minimum number of sibling parts that gain or lose values with the same name in one line."""
 _MAX_ITEM_CHANGES = 6
@@ -51,7 +52,7 @@ class ValueChange:
     def sentence(self) -> Phrase:
         """The change in one line."""
         if self.kind == "changed":
-            text = change_text(self.name, *self.values)
+            text = describe_items(self.name, *self.values) or change_text(self.name, *self.values)
             return text if self.note is None else phrase("{change}; {note}", change=text, note=self.note)
         if len(self.values) == 1:
             part = phrase("{parameter} {value}", parameter=self.name, value=self.values[0])
@@ -101,25 +102,29 @@ def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
     """
     lists: dict[str, list[ValueChange]] = {}
     groups: dict[Hashable, list[ValueChange]] = {}
+    singles: list[ValueChange] = []
     for change in changes:
         item = None if change.reason is not None else _ITEM.match(change.name)
         if item is not None:
             lists.setdefault(item["list"], []).append(change)
         else:
+            singles.append(change)
             groups.setdefault(change.key, []).append(change)
+    vectors = _find_vectors(singles)
+    rest = [single for group in groups.values() if (single := [item for item in group if item.name not in vectors])]
     sibling_groups: dict[Hashable, list[ValueChange]] = {}
-    for group in groups.values():
+    for group in rest:
         sibling_groups.setdefault(group[0].sibling_key, []).extend(group)
-    components = _find_components(groups.values())
-    for group in groups.values():
-        if (vector := components.get(group[0].name)) is not None:
-            yield from [_join_components(vector)] if group[0] is vector[0] else []
-            continue
+    merged: dict[str, Change] = {}
+    for alike in _group_equal_vectors(vectors.values()):
+        merged[alike[0][0][1].name] = _join_components(alike)
+    for group in rest:
         siblings = sibling_groups[group[0].sibling_key]
         if group[0].sibling_key is None or len({change.key for change in siblings}) < _MIN_SIBLINGS:
-            yield _merge_group(group)
+            merged[group[0].name] = _merge_group(group)
         elif group[0] is siblings[0]:
-            yield _merge_siblings(siblings)
+            merged[group[0].name] = _merge_siblings(siblings)
+    yield from (merged[change.name] for group in groups.values() for change in group if change.name in merged)
     for name, group in lists.items():
         yield from (
             [_merge_group([change]) for change in group]
@@ -128,23 +133,45 @@ def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
         )
 
 
-def _find_components(groups: Iterable[Sequence[ValueChange]]) -> dict[str, list[ValueChange]]:
-    """Return the changes to numbers of one vector, matrix or controller, by the name of each."""
-    vectors: dict[str, list[ValueChange]] = {}
-    for change, *others in groups:
-        parent, _, name = change.name.rpartition(".")
+_Vector = list[tuple[Component, ValueChange]]
+"""The changed components of one pose, matrix or other group of numbers, each with its change."""
+
+
+def _find_vectors(changes: Iterable[ValueChange]) -> dict[str, _Vector]:
+    """Return the groups in which several numbers change, by the name of each number."""
+    vectors: dict[Hashable, _Vector] = {}
+    for change in changes:
+        component = find_component(change.name)
         is_number = change.kind == "changed" and all(map(_NUMBER.fullmatch, change.values))
-        if parent and is_number and not others and change.reason is None and len(name) <= _MAX_COMPONENT_NAME:
-            vectors.setdefault(parent, []).append(change)
-    return {change.name: vector for vector in vectors.values() if len(vector) > 1 for change in vector}
+        if component is not None and is_number and change.reason is None and change.note is None:
+            vectors.setdefault((component.parent, component.family), []).append((component, change))
+    return {change.name: vector for vector in vectors.values() if len(vector) > 1 for _, change in vector}
 
 
-def _join_components(vector: Sequence[ValueChange]) -> Change:
-    texts = [str(replace(change, name=change.name.rpartition(".")[2]).sentence) for change in vector]
-    parent = vector[0].name.rpartition(".")[0]
-    return Change(
-        phrase("{parameter}: {changes}", parameter=parent, changes=joined(texts)), location=vector[0].location
+def _group_equal_vectors(vectors: Iterable[_Vector]) -> list[list[_Vector]]:
+    """Return lists of different groups that change alike."""
+    alike: dict[Hashable, dict[str, _Vector]] = {}
+    for vector in vectors:
+        key = tuple((component.name, change.values) for component, change in vector)
+        alike.setdefault(key, {})[vector[0][1].name] = vector
+    return [list(group.values()) for group in alike.values()]
+
+
+def _join_components(vectors: Sequence[_Vector]) -> Change:
+    """Return one line about groups that change alike."""
+    first, *others = vectors
+    location = first[0][1].location
+    locations = tuple(vector[0][1].location for vector in others)
+    if len(first) >= _MIN_EQUAL_COMPONENTS and len({change.values for _, change in first}) == 1:
+        names = [change.name for vector in vectors for _, change in vector]
+        return Change(first[0][1].sentence, Effect.CHANGED, None, location, (), tuple(names[1:]), locations)
+    text = phrase(
+        "{parameter}: {changes}",
+        parameter=first[0][0].parent,
+        changes=joined([str(replace(change, name=component.name).sentence) for component, change in first]),
     )
+    names = [vector[0][0].parent for vector in others]
+    return Change(text, Effect.CHANGED, None, location, (), tuple(names), locations)
 
 
 def _merge_group(group: Sequence[ValueChange]) -> Change:

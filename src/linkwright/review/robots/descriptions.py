@@ -35,6 +35,7 @@ from linkwright.review.plugins import (
     find_offered_topics,
     format_contents,
     is_still_offered,
+    names_same_topic,
 )
 from linkwright.review.renamed_sensors import SensorReplacement, merge_renamed_sensors
 from linkwright.review.replaced_plugins import PluginReplacement, merge_replaced_plugins
@@ -214,7 +215,9 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
         reason = None
         if _names_lost_link(difference, old, new):
             reason = phrase("the link '{name}' no longer exists", name=difference.new or "")
-        elif references.find_name(difference) is None:
+        elif references.find_name(difference) is None and not names_same_topic(
+            difference, old.extensions, new.extensions
+        ):
             reason = (
                 (None if is_still_offered(difference, added_names) else find_breaking_reason(difference, old, new))
                 or find_missing_topics_reason(difference, added_names)
