@@ -43,7 +43,7 @@ class TrajectoryExecutionManager:
         controllers, problems = read_controllers(parameters)
         for problem in problems:
             node.get_logger().error(problem)
-        self._execution = TrajectoryExecution(node, controllers)
+        self._execution = TrajectoryExecution(node, controllers, parameters)
         self._threads = ThreadPoolExecutor(1, "moveit_py execution")
         self._pushed: list[Any] = []
         self._running: Future[ExecutionStatus] | None = None

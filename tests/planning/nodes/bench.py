@@ -7,6 +7,7 @@ from copy import copy
 from typing import Any
 
 from linkwright.graph import ActionClient, ActionServer
+from linkwright.graph.actions.server import CancelResponse
 from linkwright.messages import get_action, get_message, get_service
 from linkwright.nodes import NodeOptions
 from linkwright.planning.nodes.move_group import MoveGroup
@@ -49,11 +50,14 @@ class Bench:
         self.node = graph.create_node("client")
         self.received: list[Any] = []
         self.fails = False
+        self.motion_started = asyncio.Event()
+        self.end_of_motion: asyncio.Event | None = None
         self.server = ActionServer(
             self.node,
             "control_msgs/action/FollowJointTrajectory",
             "arm_controller/follow_joint_trajectory",
             self._follow,
+            cancel_callback=self._cancel,
         )
         self.gripper = ActionServer(
             self.node, "control_msgs/action/GripperCommand", "gripper_controller/gripper_cmd", self._grip
@@ -94,13 +98,23 @@ class Bench:
         response = await self.wait(handle.get_result_async())
         return response.status, response.result
 
-    def _follow(self, goal: Any) -> Any:
+    async def _follow(self, goal: Any) -> Any:
         self.received.append(goal.request.trajectory)
-        if self.fails:
+        self.motion_started.set()
+        if self.end_of_motion is not None:
+            await self.end_of_motion.wait()
+        if goal.is_cancel_requested:
+            goal.canceled()
+        elif self.fails:
             goal.abort()
         else:
             goal.succeed()
         return get_action("control_msgs/action/FollowJointTrajectory").Result()
+
+    def _cancel(self, _: Any) -> CancelResponse:
+        if self.end_of_motion is not None:
+            self.end_of_motion.set()
+        return CancelResponse.ACCEPT
 
     def _grip(self, goal: Any) -> Any:
         self.received.append(goal.request.command)
@@ -110,6 +124,16 @@ class Bench:
 
 def message(type_name: str, **fields: Any) -> Any:
     return get_message(type_name)(**fields)
+
+
+def short_trajectory() -> Any:
+    """Return a trajectory of 0.1 s that stays at `START`."""
+    result = message("moveit_msgs/msg/RobotTrajectory")
+    result.joint_trajectory.joint_names = ["pan", *START, "roll", "twist"]
+    point = message("trajectory_msgs/msg/JointTrajectoryPoint", positions=[0.0, *START.values(), 0.0, 0.0])
+    point.time_from_start.nanosec = 100_000_000
+    result.joint_trajectory.points = [point]
+    return result
 
 
 def stamped(x: float, y: float, z: float, frame: str = "base") -> Any:

@@ -23,6 +23,7 @@ from tests.planning.nodes.bench import (
     message,
     motion_request,
     position_constraint,
+    short_trajectory,
     stamped,
     state,
 )
@@ -453,6 +454,47 @@ class TestExecution:
         assert status == GoalStatus.ABORTED
         assert result.error_code.val == result.error_code.CONTROL_FAILED
         assert "Controller 'arm_controller' failed: aborted" in logged("ERROR")
+
+    @pytest.mark.parametrize(
+        ("execution", "arm", "limit"),
+        [
+            ({}, {}, 0.61),
+            ({"allowed_execution_duration_scaling": 2.0, "allowed_goal_duration_margin": 0.3}, {}, 0.5),
+            ({"allowed_goal_duration_margin": 9.0}, {"allowed_goal_duration_margin": 0.0}, 0.11),
+        ],
+    )
+    async def test_controller_that_takes_too_long_is_stopped(self, graph, clock, logged, execution, arm, limit) -> None:
+        manager = PARAMETERS["moveit_simple_controller_manager"]
+        manager = {**manager, "arm_controller": {**manager["arm_controller"], **arm}}
+        bench = Bench(graph, moveit_simple_controller_manager=manager, trajectory_execution=execution)
+        result = await self.start_endless(bench)
+        elapsed_s = 0.0
+        while not result.done():
+            clock.jump(0.05)
+            elapsed_s += 0.05
+            await asyncio.sleep(0.03)
+        assert elapsed_s > limit
+        response = result.result()
+        assert (response.status, response.result.error_code.val) == (GoalStatus.ABORTED, -6)  # TIMED_OUT
+        assert any(f"trajectory execution was {limit:f} seconds" in text for text in logged("ERROR"))
+        bench.move_group.close()
+
+    async def start_endless(self, bench: Bench) -> Any:
+        """Start a trajectory that the controller does not end, and return the future of the result."""
+        bench.end_of_motion = asyncio.Event()
+        handle = await bench.start("ExecuteTrajectory", "execute_trajectory", trajectory=short_trajectory())
+        await bench.motion_started.wait()
+        return handle.get_result_async()
+
+    async def test_duration_is_not_monitored_if_not_wanted(self, graph, clock) -> None:
+        bench = Bench(graph, trajectory_execution={"execution_duration_monitoring": False})
+        result = await self.start_endless(bench)
+        clock.jump(1000.0)
+        await asyncio.sleep(0.1)
+        assert not result.done()
+        bench.end_of_motion.set()
+        assert (await bench.wait(result)).status == GoalStatus.SUCCEEDED
+        bench.move_group.close()
 
     async def test_gripper_gets_its_last_position(self, bench) -> None:
         trajectory = message("moveit_msgs/msg/RobotTrajectory")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -26,6 +27,10 @@ _SERVER_TIMEOUT_S = 5.0
 _POLL_S = 0.02
 _START_TOLERANCE = 0.01
 """The distance in rad or m of the robot from the start of a trajectory that is accepted by default."""
+_DURATION_SCALING, _DURATION_MARGIN_S = 1.1, 0.5
+"""The factor of a trajectory's duration and the time in s after it within which controllers must end by default."""
+_PREFIX = "trajectory_execution."
+_SCALING_PARAMETER, _MARGIN_PARAMETER = "allowed_execution_duration_scaling", "allowed_goal_duration_margin"
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +43,9 @@ class ControllerSettings:
         joints: the joints that the controller moves.
         is_default: whether to prefer it to other controllers of the same joints.
         max_effort: the effort of gripper commands.
+        duration_scaling: the factor of a trajectory's duration within which the controller must end; None for the
+            factor of all controllers.
+        duration_margin_s: the time in s after it; None for the time of all controllers.
     """
 
     name: str
@@ -46,6 +54,8 @@ class ControllerSettings:
     joints: tuple[str, ...]
     is_default: bool = False
     max_effort: float = 0.0
+    duration_scaling: float | None = None
+    duration_margin_s: float | None = None
 
 
 def read_controllers(parameters: Mapping[str, Any]) -> tuple[list[ControllerSettings], list[str]]:
@@ -61,7 +71,10 @@ def read_controllers(parameters: Mapping[str, Any]) -> tuple[list[ControllerSett
     for name in parameters.get(f"{prefix}controller_names") or ():
         values = {
             key: parameters.get(f"{prefix}{name}.{key}")
-            for key in ("action_ns", "type", "joints", "default", "max_effort")
+            for key in (
+                *("action_ns", "type", "joints", "default", "max_effort"),
+                *(_SCALING_PARAMETER, _MARGIN_PARAMETER),
+            )
         }
         if not values["joints"]:
             problems.append(f"joints not specified for controller {name}")
@@ -77,6 +90,8 @@ def read_controllers(parameters: Mapping[str, Any]) -> tuple[list[ControllerSett
                     tuple(values["joints"]),
                     bool(values["default"]),
                     float(values["max_effort"] or 0.0),
+                    values[_SCALING_PARAMETER],
+                    values[_MARGIN_PARAMETER],
                 )
             )
     return controllers, problems
@@ -88,10 +103,13 @@ class TrajectoryExecution:
     Args:
         node: the node that sends the goals.
         controllers: the controllers.
+        parameters: the parameters by name, among them those of ``trajectory_execution``.
     """
 
-    def __init__(self, node: Node, controllers: Sequence[ControllerSettings]) -> None:
+    def __init__(self, node: Node, controllers: Sequence[ControllerSettings], parameters: Mapping[str, Any]) -> None:
         self._controllers = controllers
+        self._parameters = parameters
+        self._clock = node.get_clock()
         self._timebase = node.graph.timebase
         group = ReentrantCallbackGroup()
         self._clients = {
@@ -104,12 +122,15 @@ class TrajectoryExecution:
     async def execute(self, trajectory: Any, is_canceled: Callable[[], bool]) -> None:
         """Execute a moveit_msgs/msg/RobotTrajectory, and return when all controllers are done.
 
+        Controllers that take too long are stopped. As in MoveIt, they have 1.1 times the duration of the trajectory and
+        0.5 s by default; unlike there, the time is that of the node's clock, so that a slow simulation is not too late.
+
         Args:
             trajectory: the trajectory.
             is_canceled: returns whether the execution must stop.
 
         Raises:
-            RequestError: no controllers move these joints, or a controller failed or was stopped.
+            RequestError: no controllers move these joints, or a controller failed, took too long or was stopped.
         """
         joint_trajectory = trajectory.joint_trajectory
         if not joint_trajectory.points:
@@ -121,10 +142,18 @@ class TrajectoryExecution:
         handles = [await self._send(controller, joint_trajectory) for controller in controllers]
         self._handles = [handle for handle, _ in handles]
         pending = [result for _, result in handles]
+        start, limit_s = self._clock.now(), self._find_time_limit_s(controllers, joint_trajectory)
         while not all(result.done() for result in pending):
             if self._is_stopped or is_canceled():
                 self._cancel_all()
                 raise RequestError("PREEMPTED", "the execution was stopped")
+            if (self._clock.now() - start).nanoseconds > limit_s * NANOSECONDS_PER_SECOND:
+                self._cancel_all()
+                raise RequestError(
+                    "TIMED_OUT",
+                    f"Controller is taking too long to execute trajectory (the expected upper bound for the trajectory "
+                    f"execution was {limit_s:f} seconds). Stopping trajectory.",
+                )
             await self._pause()
         for controller, result in zip(controllers, pending, strict=True):
             response = result.result()
@@ -145,6 +174,21 @@ class TrajectoryExecution:
         due = asyncio.Event()
         self._timebase.call_at(loop, self._timebase.steady_ns() + round(_POLL_S * NANOSECONDS_PER_SECOND), due.set)
         await due.wait()
+
+    def _find_time_limit_s(self, controllers: Sequence[ControllerSettings], trajectory: Any) -> float:
+        """Return the time in s after which an execution is stopped; infinite if it is not monitored."""
+        if not self._parameters.get(f"{_PREFIX}execution_duration_monitoring", True):
+            return math.inf
+        scaling = self._parameters.get(f"{_PREFIX}{_SCALING_PARAMETER}", _DURATION_SCALING)
+        margin_s = self._parameters.get(f"{_PREFIX}{_MARGIN_PARAMETER}", _DURATION_MARGIN_S)
+        end = trajectory.points[-1].time_from_start
+        duration_s = end.sec + end.nanosec / NANOSECONDS_PER_SECOND
+        limits: list[float] = [
+            duration_s * (scaling if controller.duration_scaling is None else controller.duration_scaling)
+            + (margin_s if controller.duration_margin_s is None else controller.duration_margin_s)
+            for controller in controllers
+        ]
+        return max(limits)
 
     def _cancel_all(self) -> None:
         for handle in self._handles:
@@ -216,7 +260,7 @@ def check_start(trajectory: Any, robot: RobotContext, parameters: Mapping[str, A
         robot: the robot with its current state.
         parameters: the parameters by name, among them ``trajectory_execution.allowed_start_tolerance``.
     """
-    tolerance = float(parameters.get("trajectory_execution.allowed_start_tolerance", _START_TOLERANCE))
+    tolerance = float(parameters.get(f"{_PREFIX}allowed_start_tolerance", _START_TOLERANCE))
     if not trajectory.points or tolerance <= 0.0 or not robot.has_state:
         return
     names = robot.model.joint_names

@@ -65,7 +65,7 @@ class MoveGroup(SingleNode):
         controllers, problems = read_controllers(parameters)
         for problem in problems:
             node.get_logger().error(problem)
-        self._execution = TrajectoryExecution(node, controllers)
+        self._execution = TrajectoryExecution(node, controllers, parameters)
         publishes_states = parameters.get("publish_state_updates", parameters.get("publish_planning_scene", True))
         self._monitor = SceneMonitor(node, self._robot, publishes_states=bool(publishes_states))
         self._planning = PlanningServices(node, self._robot, self._monitor, Pipelines(parameters), self._default_scale)
