@@ -278,6 +278,7 @@ def test_file_of_the_same_package_with_a_similar_name_replaces_an_include(review
     [
         ("use_sim", "true", "false", True),
         ("use_fake_hardware", "false", "true", True),
+        ("use_gazebo", "true", "false", True),
         ("use_mock_hardware", "True", "False", True),
         ("use_sim_time", "true", "false", False),
         ("use_sim", "true", "True", False),
