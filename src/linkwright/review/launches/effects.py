@@ -277,9 +277,10 @@ def find_setting_reason(
         return find_addition_reason(entry, new_outline)
     if entry.kind == "argument":
         return _find_argument_reason(entry, setting, old, new, old_outline, new_outline)
-    if entry.kind == BUILDER:
-        values = (outline.resolve(text or "") for outline, text in ((old_outline, old), (new_outline, new)))
-        return find_hardware_reason(setting.rpartition(" ")[2], *values)
+    values = (outline.resolve(text or "") for outline, text in ((old_outline, old), (new_outline, new)))
+    hardware_reason = find_hardware_reason(setting.rpartition(" ")[2], *values)
+    if entry.kind in (BUILDER, "include") and hardware_reason is not None:
+        return hardware_reason
     if entry.kind == "remapping" and setting == "to":
         return find_remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
