@@ -228,12 +228,11 @@ def _report_unpaired_entries(
     for entry in added:
         file = old_included.find_unmatched_file(entry, new_included)
         other_file = find_file_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False)
-        if file is None and other_file is not None:
-            differences = find_moved_settings(entry, pair.versions, other_file)
-            if differences is not None:
-                _report_changed_move(pair, entry, other_file, *differences)
-                continue
-        file = file or other_file
+        is_included, file = file is not None, file or other_file
+        differences = None if file is None else find_moved_settings(entry, pair.versions, file, is_included=is_included)
+        if file is not None and differences is not None:
+            _report_changed_move(pair, entry, file, *differences)
+            continue
         if file is None:
             reason = explain_addition(pair, entry, removed, old_included.outline, new_included.outline)
             pair.add(format_added_entry(entry), pair.location(entry.span), reason)
