@@ -169,6 +169,7 @@ def test_words_of_a_list_that_a_constant_argument_chooses_are_read(review_change
         ('"/{0}/driver{1}".format(sim, 2)', "/$(var sim)/driver2"),
         ('"/{robot}/driver".format(robot=sim)', "/$(var sim)/driver"),
         ('"/robot{}".format(int(sim))', "/robot$(var sim)"),
+        ('f"/robot{int(sim)}"', "/robot$(var sim)"),
         ('"/%s/driver" % sim', "/$(var sim)/driver"),
         ('"/%s/driver%02d" % (sim, 2)', "/$(var sim)/driver2"),
         ('"100%%_%s" % sim', "100%_$(var sim)"),

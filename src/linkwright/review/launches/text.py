@@ -13,7 +13,7 @@ from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
 from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, with_condition
 from linkwright.review.launches.python_tests import SUBSTITUTIONS
-from linkwright.review.launches.text_templates import format_template
+from linkwright.review.launches.text_templates import format_template, strip_conversion
 from linkwright.review.list_changes import EMPTY
 
 _MAX_DEPTH = 30
@@ -423,9 +423,9 @@ class ExpressionTexts:
     def _format_value(self, node: ast.expr, part: _Formatter) -> str:
         """Return a value in a formatted text. A substitution is an object, which has no value there."""
         is_bound = isinstance(node, ast.Name) and node.id in self._bindings
-        value = node if is_bound else self._python.resolved(node)
+        value = strip_conversion(node if is_bound else self._python.resolved(node))
         is_object = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in SUBSTITUTIONS
-        return unparse_on_one_line(value) if is_object else part(node)
+        return unparse_on_one_line(value) if is_object else part(value)
 
     def is_unknown_item(self, node: ast.Subscript) -> bool:
         """Return whether an expression is an item of the result of an unknown function that has a name.

@@ -38,9 +38,7 @@ def format_template(node: ast.expr, format_value: Callable[[ast.expr], str]) -> 
     fields = list(_split_template(text, is_old_style=isinstance(node, ast.BinOp)))
     if any(field is not None and field not in values for _, field in fields):
         return None
-    return "".join(
-        literal + ("" if field is None else format_value(_strip_conversion(values[field]))) for literal, field in fields
-    )
+    return "".join(literal + ("" if field is None else format_value(values[field])) for literal, field in fields)
 
 
 def _split_template(text: str, *, is_old_style: bool) -> Iterator[tuple[str, str | None]]:
@@ -65,7 +63,7 @@ def _split_template(text: str, *, is_old_style: bool) -> Iterator[tuple[str, str
         count += name == ""
 
 
-def _strip_conversion(node: ast.expr) -> ast.expr:
+def strip_conversion(node: ast.expr) -> ast.expr:
     """Return the argument of a call such as ``int(x)``, and any other expression unchanged."""
     is_conversion = isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _CONVERSIONS
     return node.args[0] if isinstance(node, ast.Call) and is_conversion and len(node.args) == 1 else node
