@@ -449,6 +449,7 @@ def _find_default_reason(
     reason = next((use.reason for use in uses if use.setting != CONDITION), None)
     old_name, new_name = (value.strip("\"'") for value in (old_value, new_value))  # '""' is an empty name for xacro
     is_name = bool(old_name) and old_name != new_name and "/" not in f"{old_name}{new_name}"
+    is_name = is_name and _VARIABLE.search(old_name) is None
     if reason is None and is_name and _NAME_ARGUMENT.search(argument.name):
         return name_reason(old_name)
     return reason or find_hardware_reason(argument.name, old_value, new_value)
