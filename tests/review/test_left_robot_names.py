@@ -115,3 +115,15 @@ def test_several_frames_that_a_source_loses_are_looked_for(repository, compare):
     repository.write({"arm/frames.py": imports})
     lines = [str(change.sentence) for _, change in compare(repository).breaking_changes]
     assert "names the frame 'lamp', which 'arm/frames.py' no longer has" in lines
+
+
+def test_a_static_transform_that_a_configuration_of_rviz_still_names(repository, compare):
+    node = '<node pkg="tf2_ros" exec="static_transform_publisher" args="0 0 0 0 0 0 base $(var name)_link"/>'
+    launch = '<launch><arg name="name" default="camera"/>{}<node pkg="driver" exec="driver"/></launch>\n'
+    path = "arm/launch/camera.launch.xml"
+    rviz = "Visualization Manager:\n  Global Options:\n    Fixed Frame: camera_link\n"
+    manifest = {"arm/package.xml": MANIFEST.format("arm")}
+    repository.commit({**manifest, path: launch.format(node), "arm/etc/camera.rviz": rviz})
+    repository.write({path: launch.format("")})
+    lines = [str(change.sentence) for subject, change in compare(repository).breaking_changes if "rviz" in subject.path]
+    assert lines == [f"names the frame 'camera_link', which '{path}' no longer has"]

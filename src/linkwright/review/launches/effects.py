@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.breaking import name_reason
+from linkwright.review.breaking import name_reason, transform_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.files.parameter_names import (
     find_switch_reason,
@@ -511,7 +511,7 @@ def _find_served_name_reason(entry: Entry, names: list[str], new: LaunchOutline)
     if not names or any(_EXPRESSION in name for other in same for name in _find_resolved_served_names(other, new)):
         return None
     if is_transform:
-        return phrase("the transform of the frame '{name}' is missing", name=names[0])
+        return transform_reason(names[0])
     return phrase("the topics and services of {controllers} are missing", controllers=", ".join(names))
 
 
