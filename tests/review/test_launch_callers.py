@@ -417,3 +417,21 @@ def test_removed_argument_of_ros1_is_breaking_though_the_file_did_not_use_it(rep
     repository.commit({"arm/launch/arm.launch": f'<launch><arg name="mode" default="fast"/>{node}</launch>'})
     repository.write({"arm/launch/arm.launch": f"<launch>{node}</launch>"})
     assert breaking(compare(repository)) == ["argument 'mode' removed: default fast"]
+
+
+@pytest.mark.parametrize(
+    ("part", "node", "expected"),
+    [
+        ('<param name="speed" value="1.0"/>', '<param name="speed" value="1.0"/>', ""),
+        ('<param name="speed" value="1.0"/>', '<param name="speed" value="2.0"/>', ", now with parameter speed 2.0"),
+        ('<remap from="a" to="b"/>', "", ", without remapping a"),
+        ('<param name="speed" value="$(var rate)"/>', '<param name="speed" value="2.0"/>', ""),
+    ],
+)
+def test_a_node_that_moves_out_of_an_included_file_is_compared(repository, compare, part, node, expected):
+    text = '<launch><node pkg="arm" exec="hand" name="hand">{}</node></launch>\n'
+    include = '<launch><include file="$(dirname)/part.launch.xml"/></launch>\n'
+    repository.commit({"arm/launch/arm.launch.xml": include, "arm/launch/part.launch.xml": text.format(part)})
+    repository.write({"arm/launch/arm.launch.xml": text.format(node)})
+    lines = sentences(subject(compare(repository), "arm/launch/arm.launch.xml"))
+    assert f"node 'arm/hand' moved from arm/launch/part.launch.xml{expected}" in lines

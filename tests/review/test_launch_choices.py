@@ -293,3 +293,17 @@ def test_variable_that_only_nodes_read_which_do_not_start(repository, compare, d
     line = "use of environment variable 'LASER_IP' added"
     assert line in sentences(subject(compare(repository), "arm/launch/arm.launch"))
     assert (line in breaking(compare(repository))) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("os.environ['MODELS'] = '/a'", "os.environ['MODELS'] = '/b'", "value /a -> /b"),
+        ("os.environ['MODELS'] += ':/a'", "os.environ['MODELS'] += ':/b'", "appended value :/a -> :/b"),
+    ],
+)
+def test_variable_that_a_statement_sets_is_compared_as_an_action(review_code, old, new, expected):
+    found, _ = review_code(f"{PLAIN}\n    {old}", f"{PLAIN}\n    {new}")
+    assert found == [f"environment variable 'MODELS': {expected}"]
+    found, _ = review_code(f"{PLAIN}\n    if PLAIN:\n        {old}", f"{PLAIN}\n    if PLAIN:\n        {new}")
+    assert [line for line in found if line.startswith("other code")]

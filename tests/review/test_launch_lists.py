@@ -160,3 +160,28 @@ def test_words_of_a_list_that_a_constant_argument_chooses_are_read(review_change
     found, _ = review_changes("arm.launch.py", SPAWNERS, 'inactive = ["gripper"]', 'inactive = ["gripper", "tool"]')
     (line,) = found
     assert line.endswith("arguments [-t, 10, --inactive, gripper] -> [-t, 10, --inactive, gripper, tool]")
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ('"/{}/driver".format(sim)', "/$(var sim)/driver"),
+        ('"/{0}/driver{1}".format(sim, 2)', "/$(var sim)/driver2"),
+        ('"/{robot}/driver".format(robot=sim)', "/$(var sim)/driver"),
+        ('"/robot{}".format(int(sim))', "/robot$(var sim)"),
+        ('f"/robot{int(sim)}"', "/robot$(var sim)"),
+        ('"/%s/driver" % sim', "/$(var sim)/driver"),
+        ('"/%s/driver%02d" % (sim, 2)', "/$(var sim)/driver2"),
+        ('"100%%_%s" % sim', "100%_$(var sim)"),
+        ('"/{}".format(sim) + "_x"', "/$(var sim)_x"),
+        ('"/{a[0]}".format(a=sim)', "/{a[0]}.format(a=$(var sim))"),
+    ],
+)
+def test_fields_of_formatted_texts_have_their_values(review_changes, name, text):
+    found, _ = review_changes("arm.launch.py", COMMAND, "name=sim", f"name={name}")
+    assert f"node 'arm/driver': name $(var sim) -> {text}" in found
+
+
+def test_a_list_and_a_sum_of_lists_with_the_same_items_are_equal(review_changes):
+    found, _ = review_changes("arm.launch.py", COMMAND, "parameters=[file]", "parameters=[file] + []")
+    assert found == []

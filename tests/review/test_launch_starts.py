@@ -278,6 +278,9 @@ def test_file_of_the_same_package_with_a_similar_name_replaces_an_include(review
     [
         ("use_sim", "true", "false", True),
         ("use_fake_hardware", "false", "true", True),
+        ("use_gazebo", "true", "false", True),
+        ("paused", "false", "true", True),
+        ("paused", "true", "false", False),
         ("use_mock_hardware", "True", "False", True),
         ("use_sim_time", "true", "false", False),
         ("use_sim", "true", "True", False),
@@ -296,3 +299,25 @@ def test_default_that_switches_between_hardware_and_simulation_is_breaking(
     repository.commit({path: text.format(old)})
     repository.write({path: text.format(new)})
     assert bool(breaking(compare(repository))) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "reason"),
+    [
+        ("paused", "false", "true", "the simulation starts paused"),
+        ("paused", "false", "$(arg paused)", "the simulation starts paused"),
+        ("use_sim", "true", "false", "by default, the hardware of the robot is used instead of a simulation"),
+        ("verbose", "false", "true", None),
+    ],
+)
+def test_value_for_an_included_file_that_switches_a_simulation(repository, compare, name, old, new, reason):
+    text = """<launch>
+  <arg name="paused" default="true"/>
+  <include file="$(find gazebo_ros)/launch/empty_world.launch"><arg name="{}" value="{}"/></include>
+</launch>
+"""
+    path = "arm/launch/arm.launch"
+    repository.commit({path: text.format(name, old)})
+    repository.write({path: text.format(name, new)})
+    reasons = [str(change.reason) for change in subject(compare(repository), path).changes if change.reason]
+    assert reasons == ([] if reason is None else [reason])

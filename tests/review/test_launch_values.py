@@ -212,3 +212,14 @@ def generate_launch_description():
     assert (None if change.reason is None else str(change.reason)) == (
         "callers that pass another value fail" if is_breaking else None
     )
+
+
+@pytest.mark.parametrize(("model", "is_breaking"), [('<arg name="model" default="arm"/>', True), ("", False)])
+def test_name_that_was_unknown_by_default_is_not_lost(repository, compare, model, is_breaking):
+    text = '<launch>{}<arg name="robot_name" default="{}"/><node pkg="arm" exec="arm"/></launch>\n'
+    path = "arm/launch/arm.launch.xml"
+    repository.commit({path: text.format(model, "$(var model)")})
+    repository.write({path: text.format(model, "hand")})
+    reasons = [str(change.reason) for change in subject(compare(repository), path).changes if change.reason]
+    assert ("programs that use the name 'arm' do not find it" in reasons) is is_breaking
+    assert bool(reasons) is is_breaking

@@ -147,3 +147,15 @@ def test_disabled_collisions_of_a_renamed_link_belong_to_the_robot_of_the_name(r
         )
         for path in found
     ]
+
+
+def test_a_static_transform_that_a_configuration_of_rviz_still_names(repository, compare):
+    node = '<node pkg="tf2_ros" exec="static_transform_publisher" args="0 0 0 0 0 0 base $(var name)_link"/>'
+    launch = '<launch><arg name="name" default="camera"/>{}<node pkg="driver" exec="driver"/></launch>\n'
+    path = "arm/launch/camera.launch.xml"
+    rviz = "Visualization Manager:\n  Global Options:\n    Fixed Frame: camera_link\n"
+    manifest = {"arm/package.xml": MANIFEST.format("arm")}
+    repository.commit({**manifest, path: launch.format(node), "arm/etc/camera.rviz": rviz})
+    repository.write({path: launch.format("")})
+    lines = [str(change.sentence) for subject, change in compare(repository).breaking_changes if "rviz" in subject.path]
+    assert lines == [f"names the frame 'camera_link', which '{path}' no longer has"]

@@ -46,6 +46,11 @@ def find_breaking_lines(repository, compare):
         ("arm/launch/arm.launch",
          '<launch><node pkg="controller_manager" type="spawner" name="s" args="hand_controller"/></launch>', True),
         ("arm/scripts/grip.py", 'node.create_publisher(Float64, "/hand_controller/commands", 10)\n', True),
+        ("arm/config/moveit_controllers.yaml",
+         ("moveit_simple_controller_manager:\n  controller_names: [arm_controller, hand_controller]\n"
+         "  hand_controller: {type: FollowJointTrajectory}\n"), True),
+        ("arm/config/controllers.yaml", "controller_list:\n  - name: hand_controller\n    joints: [hand]\n", True),
+        ("arm/config/controllers.yaml", "hand: {note: hand_controller}\n", False),
         ("arm/test/grip.py", 'node.create_publisher(Float64, "/hand_controller/commands", 10)\n', False),
     ],
 )  # fmt: skip

@@ -31,6 +31,12 @@ HEAD = (
         ("state = State()\n    state.speed = state.LIMIT\n    print(state.get_fields_and_field_types(), state._x)", []),
         ("state = State()\n    if hasattr(state, 'force'):\n        state.force = 1", []),
         ("state = State()\n    state = drive()\n    state.force = 1", []),  # another object
+        ("state = State()\n    try:\n        state.force = 1\n    except AttributeError:\n        pass", []),
+        (
+            "state = State()\n    try:\n        load(1)\n    except AttributeError:\n        pass\n    state.force = 1",
+            ["uses 'force', which 'arm_msgs/State' does not have"],
+        ),
+        ("state = State()\n    state.force = 1\n\n\ntry:\n    drive()\nexcept AttributeError:\n    pass", []),
     ],
 )
 def test_a_new_use_of_a_field_that_the_type_does_not_have_is_breaking(repository, compare, line, expected):

@@ -230,6 +230,17 @@ def test_parameter_changes_are_reported(repository, compare, old, new, sentence,
     assert bool(breaking(result)) is is_breaking
 
 
+def test_removed_controller_is_one_breaking_line(repository, compare):
+    repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
+    text = PARAMETERS[: PARAMETERS.index("arm_controller:\n  ros")].replace(
+        "    arm_controller:\n      type: a/B\n", ""
+    )
+    repository.write({"a/config/c.yaml": text})
+    result = compare(repository)
+    assert breaking(result) == ["controller_manager.ros__parameters.arm_controller.type a/B removed"]
+    assert REMOVED_CONTROLLER in sentences(subject(result, "a/config/c.yaml"))
+
+
 def test_controller_type_as_own_parameter_is_not_a_removal(repository, compare):
     repository.commit({"a/package.xml": PACKAGE_XML, "a/config/c.yaml": PARAMETERS})
     text = PARAMETERS.replace("    arm_controller:\n      type: a/B\n", "")

@@ -57,6 +57,15 @@ def test_a_package_that_the_old_version_has_or_names(repository, compare, path, 
     assert [change for _, change in compare(repository).breaking_changes] == []
 
 
+@pytest.mark.parametrize(("controller", "reasons"), [("arm", [REASON.format("sun_controllers")]), ("hand", [])])
+def test_a_controller_of_an_undeclared_package_that_a_launch_file_starts(repository, compare, controller, reasons):
+    launch = f'<launch><node pkg="controller_manager" exec="spawner" args="{controller}"/></launch>\n'
+    files = {"lamp/package.xml": MANIFEST.format(""), "lamp/launch/a.launch.xml": launch}
+    repository.commit({**files, "lamp/config/a.yaml": CONTROLLERS})
+    repository.write({"lamp/config/a.yaml": f"{CONTROLLERS}    arm: {{type: sun_controllers/Sun}}\n"})
+    assert [str(change.reason) for _, change in compare(repository).breaking_changes] == reasons
+
+
 LAUNCH = "<launch>\n  <param name='{}' value='{}'/>\n  <node pkg='lamp' type='lamp' name='lamp'/>\n</launch>\n"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import breaking, subject
+from tests.review.conftest import breaking, sentences, subject
 
 NODE = '<node pkg="arm" type="arm" name="arm"{}/>\n'
 LAUNCH = '<launch>\n<arg name="sim" default="true"/>\n{}</launch>\n'
@@ -26,6 +26,16 @@ def test_roslaunch_refuses_equal_names_of_nodes(repository, compare, other, is_b
     repository.commit({"arm/package.xml": PACKAGE_XML, path: LAUNCH.format(first)})
     repository.write({path: LAUNCH.format(first + other)})
     assert breaking(compare(repository)) == (["several nodes have the name 'arm'"] if is_breaking else [])
+
+
+def test_equal_names_of_nodes_are_told_in_ros_2(repository, compare):
+    path = "arm/launch/arm.launch.xml"
+    first = NODE.replace("type", "exec").format("")
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: LAUNCH.format(first)})
+    repository.write({path: LAUNCH.format(first + first.replace('exec="arm"', 'exec="hand"'))})
+    result = compare(repository)
+    assert "several nodes have the name 'arm'" in sentences(subject(result, path))
+    assert breaking(result) == []
 
 
 FILTER = """ekf_filter_node:

@@ -62,6 +62,11 @@ def _find_joint_reason(difference: Difference, old: Robot, new: Robot) -> Phrase
     return None if new_joint is None else find_limited_reason(difference.old, new_joint)
 
 
+def transform_reason(name: str) -> Phrase:
+    """Return the reason why removing the static transform of a frame is breaking."""
+    return phrase("the transform of the frame '{name}' is missing", name=name)
+
+
 def frame_reason(name: str) -> Phrase:
     """Return the reason why removing a link is breaking."""
     return phrase("programs that look up the frame '{name}' do not find it", name=name)

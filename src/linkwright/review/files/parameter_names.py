@@ -101,6 +101,8 @@ class NameRules:
         self._clock_nodes = {node for name in old if (node := find_node_name(name)) and name.endswith(_CLOCK_PARAMETER)}
         self._clock_nodes -= {find_node_name(name) for name in old if not name.endswith(f".{_CLOCK_PARAMETER}")}
         self._new_controllers = set(find_controllers(new))
+        types = filter(None, map(_CONTROLLER_TYPE.fullmatch, old))
+        self._lost_controllers = {match["controller"] for match in types} - self._new_controllers
         self._new_parts = {part for name in new for part in list_part_paths(name)}
         self._topics = CostmapTopics(old, new)
         self._replaced = find_replaced_classes(old, new)
@@ -173,6 +175,8 @@ class NameRules:
             return make_controller_reason(controller["controller"])
         node = _NODE.match(parameter)
         if node is not None and not self._has_node(parameter):
+            if node["node"].rpartition(".")[2].rpartition("/")[2] in self._lost_controllers:
+                return None  # the line about its type has the reason
             if node["node"] in self._clock_nodes or self._readers.have_renamed_node(node["node"], self._added_nodes):
                 return None
             return phrase("the node '{name}' starts without these parameters", name=node["node"])

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.review.files.lost_groups import LAUNCH_SUFFIXES
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.required_packages import is_undeclared_and_new
 from linkwright.review.versions import Versions
@@ -19,6 +20,7 @@ The namespace of a class without an underscore is often not the package.
 _CLASS_PARAMETER = re.compile(
     r"(^|[._])(plugin|type|kinematics_solver|planning_plugin|base_\w+_planner|\w+_controller_manager)$"
 )
+_CONTROLLER_TYPE = re.compile(r"(?:.*[./])?controller_manager\.ros__parameters\.(?P<name>\w+)\.type")
 _PLUGIN = re.compile(r"(^|[._])plugin$")
 _OTHER_NAMES = frozenset(
     {
@@ -55,12 +57,19 @@ class PluginPackages:
     def find_addition_reason(self, values: Mapping[str, YamlValue]) -> Phrase | None:
         """Return the reason why added values are breaking, or None if they are not.
 
-        An added controller, which has a type, may not be started.
+        An added controller, which has a type, counts if a launch file names it, because others may not be started.
         """
-        plugins = {name: value for name, value in values.items() if _PLUGIN.search(name)}
+        plugins = {name: value for name, value in values.items() if _PLUGIN.search(name) or self._is_started(name)}
         packages = dict.fromkeys(find_plugin_package(name, value.text) for name, value in plugins.items())
         reasons = (self.explain_missing_package(package) for package in packages if package is not None)
         return next((reason for reason in reasons if reason is not None), None)
+
+    def _is_started(self, parameter: str) -> bool:
+        """Return whether a parameter is the type of a controller that a launch file names."""
+        match = _CONTROLLER_TYPE.fullmatch(parameter)
+        name = None if match is None else re.compile(rf"(?<![\w./]){re.escape(match['name'])}(?![\w./])")
+        version = self.versions.new
+        return name is not None and any(name.search(version.text(path)) for path in version.paths(LAUNCH_SUFFIXES))
 
     def explain_missing_package(self, package: str) -> Phrase | None:
         """Return the reason why a plugin of a package is not loaded, or None if the package may exist."""

@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
-from linkwright.review.breaking import name_reason
+from linkwright.review.breaking import name_reason, transform_reason
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.files.parameter_names import (
     find_switch_reason,
@@ -277,9 +277,10 @@ def find_setting_reason(
         return find_addition_reason(entry, new_outline)
     if entry.kind == "argument":
         return _find_argument_reason(entry, setting, old, new, old_outline, new_outline)
-    if entry.kind == BUILDER:
-        values = (outline.resolve(text or "") for outline, text in ((old_outline, old), (new_outline, new)))
-        return find_hardware_reason(setting.rpartition(" ")[2], *values)
+    values = (outline.resolve(text or "") for outline, text in ((old_outline, old), (new_outline, new)))
+    hardware_reason = find_hardware_reason(setting.rpartition(" ")[2], *values)
+    if entry.kind in (BUILDER, "include") and hardware_reason is not None:
+        return hardware_reason
     if entry.kind == "remapping" and setting == "to":
         return find_remapping_reason(entry.name, old, new, old_outline, new_outline)
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
@@ -448,6 +449,7 @@ def _find_default_reason(
     reason = next((use.reason for use in uses if use.setting != CONDITION), None)
     old_name, new_name = (value.strip("\"'") for value in (old_value, new_value))  # '""' is an empty name for xacro
     is_name = bool(old_name) and old_name != new_name and "/" not in f"{old_name}{new_name}"
+    is_name = is_name and _VARIABLE.search(old_name) is None
     if reason is None and is_name and _NAME_ARGUMENT.search(argument.name):
         return name_reason(old_name)
     return reason or find_hardware_reason(argument.name, old_value, new_value)
@@ -509,7 +511,7 @@ def _find_served_name_reason(entry: Entry, names: list[str], new: LaunchOutline)
     if not names or any(_EXPRESSION in name for other in same for name in _find_resolved_served_names(other, new)):
         return None
     if is_transform:
-        return phrase("the transform of the frame '{name}' is missing", name=names[0])
+        return transform_reason(names[0])
     return phrase("the topics and services of {controllers} are missing", controllers=", ".join(names))
 
 

@@ -1,4 +1,4 @@
-"""Find the environment variables that launch files read."""
+"""Find the environment variables that launch files read, and those that Python code sets."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from linkwright.diagnostics import Span
 from linkwright.packages.readers.python_values import PythonFile, called_name
-from linkwright.review.launches.outlines import READING, Entry
+from linkwright.review.launches.outlines import ENVIRONMENT_KIND, READING, Entry
 from linkwright.review.launches.text import ExpressionTexts
 
 _READING_FUNCTIONS = re.compile(r"(os\.)?(environ\.get|getenv)")
@@ -33,6 +33,28 @@ def find_python_readings(python: PythonFile) -> list[Entry]:
         for name, has_default in _find_read_names(node)
     )
     return _make_entries(readings)
+
+
+def find_set_variables(python: PythonFile, texts: ExpressionTexts) -> dict[int, Entry]:
+    """Return an entry for each variable that a statement sets in any case, by the identity of the statement.
+
+    Args:
+        python: the parsed launch file.
+        texts: the texts of its expressions.
+    """
+    bodies = [python.tree.body, *(node.body for node in ast.walk(python.tree) if isinstance(node, ast.FunctionDef))]
+    found: dict[int, Entry] = {}
+    for statement in (statement for body in bodies for statement in body):
+        if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
+            target, key = statement.targets[0], "value"
+        elif isinstance(statement, ast.AugAssign) and isinstance(statement.op, ast.Add):
+            target, key = statement.target, "appended value"
+        else:
+            continue
+        if isinstance(target, ast.Subscript) and ast.unparse(target.value) in _ENVIRON:
+            settings = {key: texts.format_joined(statement.value)}
+            found[id(statement)] = Entry(ENVIRONMENT_KIND, texts.text(target.slice), settings, python.span(statement))
+    return found
 
 
 def find_markup_readings(values: Iterable[tuple[str, Span]]) -> list[Entry]:

@@ -42,6 +42,7 @@ from linkwright.review.launches.included import (
     find_moved_settings,
 )
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
+from linkwright.review.launches.incomplete_calls import report_incomplete_calls
 from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
@@ -145,6 +146,7 @@ def compare_launch_files(pair: FilePair) -> None:
             compare_imports(pair)
             report_object_tests(pair)
             report_object_texts(pair)
+            report_incomplete_calls(pair)
         report_undefined_names(pair)
     if any(NAMES_AS_REMAPPINGS in entry.settings for entry in old.entries):
         _mark_unbreaking(pair, keeps_renaming=True)  # the old file failed
@@ -226,12 +228,11 @@ def _report_unpaired_entries(
     for entry in added:
         file = old_included.find_unmatched_file(entry, new_included)
         other_file = find_file_with_moved_action(entry, pair.versions, pair.new_path, is_removed=False)
-        if file is None and other_file is not None:
-            differences = find_moved_settings(entry, pair.versions, other_file)
-            if differences is not None:
-                _report_changed_move(pair, entry, other_file, *differences)
-                continue
-        file = file or other_file
+        is_included, file = file is not None, file or other_file
+        differences = None if file is None else find_moved_settings(entry, pair.versions, file, is_included=is_included)
+        if file is not None and differences is not None:
+            _report_changed_move(pair, entry, file, *differences)
+            continue
         if file is None:
             reason = explain_addition(pair, entry, removed, old_included.outline, new_included.outline)
             pair.add(format_added_entry(entry), pair.location(entry.span), reason)

@@ -23,6 +23,7 @@ from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import find_served_names
 from linkwright.review.versions import Version, Versions
 
+_ARGUMENT = re.compile(r"\$\((?:var|arg) ")
 _PACKAGE_PATH = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<path>[^$]+)")
 _OWN_FOLDER = "$(dirname)/"
 _MOVABLE_KINDS = ("node", "include", "process", "argument")
@@ -369,13 +370,17 @@ def find_file_with_moved_action(entry: Entry, versions: Versions, path: str, *, 
     return None
 
 
-def find_moved_settings(entry: Entry, versions: Versions, old_path: str) -> tuple[Entry, list[str]] | None:
+def find_moved_settings(
+    entry: Entry, versions: Versions, old_path: str, *, is_included: bool = False
+) -> tuple[Entry, list[str]] | None:
     """Return what differs in an action that moved from another launch file, or None if nothing does.
 
     Args:
         entry: the action in the new version.
         versions: both versions.
         old_path: the path of the other launch file in the old version.
+        is_included: whether the old version of the file included the other one, maybe with values for its arguments,
+            so that settings that depend on arguments are not compared.
 
     Returns:
         The action with only the settings that are new or have another value, and the names of the settings that it
@@ -387,7 +392,12 @@ def find_moved_settings(entry: Entry, versions: Versions, old_path: str) -> tupl
     if not old or any(other.settings == entry.settings for other in old):
         return None
     changed = {name: value for name, value in entry.settings.items() if old[0].settings.get(name) != value}
-    return replace(entry, settings=changed), [name for name in old[0].settings if name not in entry.settings]
+    lost = {name: value for name, value in old[0].settings.items() if name not in entry.settings}
+    if is_included:
+        before = {name: old[0].settings.get(name, "") for name in changed}
+        changed = {name: value for name, value in changed.items() if not _ARGUMENT.search(f"{value}{before[name]}")}
+        lost = {name: value for name, value in lost.items() if not _ARGUMENT.search(f"{name}{value}")}
+    return (replace(entry, settings=changed), list(lost)) if changed or lost else None
 
 
 def _make_move_key(entry: Entry) -> _MoveKey:

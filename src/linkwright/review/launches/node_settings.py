@@ -82,5 +82,5 @@ def _format_unknown_parts(name: str, value: BoundExpression, parts: Sequence[Bou
     if not parts:
         return {}
     texts = [part.texts.text(part.node) for part in parts]
-    is_list = len(parts) > 1 or isinstance(value.texts.resolve(value.node).node, (ast.List, ast.Tuple))
+    is_list = len(parts) > 1 or isinstance(value.texts.resolve(value.node).node, (ast.List, ast.Tuple, ast.BinOp))
     return {name: f"[{', '.join(texts)}]" if is_list else texts[0]}

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.launches.environment import find_set_variables
 from linkwright.review.launches.helpers import Function, HelperFunctions, find_parameter_defaults, find_program_guard
 from linkwright.review.launches.list_additions import AddedItem, find_added_items, find_later_items
 from linkwright.review.launches.literals import CoveredLiterals, Literals
@@ -62,8 +63,10 @@ def read_python_outline(python: PythonFile, helpers: HelperFunctions) -> LaunchO
     texts = ExpressionTexts(python, helpers=helpers)
     reader = _Reader(python, helpers, texts)
     reader.visit(python.tree)
-    entries = sorted(reader.read_entries(), key=lambda entry: (entry.span.line, entry.span.column))
-    covered = reader.covered | _find_covered_literals(python, helpers, reader.evaluated)
+    variables = find_set_variables(python, texts)
+    entries = [*reader.read_entries(), *variables.values()]
+    entries.sort(key=lambda entry: (entry.span.line, entry.span.column))
+    covered = reader.covered | variables.keys() | _find_covered_literals(python, helpers, reader.evaluated)
     code = read_other_code(python, covered, reader.branches, texts)
     definitions = find_definitions(python, texts)
     return LaunchOutline(entries, code, definitions, find_scope_sources(python), tests=read_tests(python))

@@ -1,4 +1,4 @@
-"""Report nodes with equal names that a launch file of ROS 1 newly starts, which roslaunch refuses."""
+"""Report nodes with equal names that a launch file newly starts, which roslaunch of ROS 1 refuses."""
 
 from __future__ import annotations
 
@@ -11,16 +11,20 @@ from linkwright.review.launches.outlines import CONDITION, NAMESPACE, PROGRAM_KI
 
 
 def report_repeated_nodes(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
-    """Report the names that several nodes of the new version have by default, and at most one of the old version."""
-    if not (old.is_ros1 and new.is_ros1):
+    """Report the names that several nodes of the new version have by default, and at most one of the old version.
+
+    In ROS 2, the nodes start, but share their parameters and services.
+    """
+    if old.is_ros1 != new.is_ros1:
         return
+    reason = phrase("roslaunch refuses the file") if new.is_ros1 else None
     old_counts = Counter(_find_name(entry, old) for entry in old.entries)
     seen: set[str] = set()
     for entry in new.entries:
         name = _find_name(entry, new)
         if name is not None and name in seen and old_counts[name] < 2:
             text = phrase("several nodes have the name '{name}'", name=name)
-            pair.add(text, pair.location(entry.span), phrase("roslaunch refuses the file"))
+            pair.add(text, pair.location(entry.span), reason)
             old_counts[name] = 2
         seen.add(name or "")
 

@@ -19,6 +19,7 @@ from linkwright.review.launches.fixed_arguments import fix_value
 from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
 from linkwright.review.launches.included import IncludedActions, Program
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
+from linkwright.review.launches.lost_files import LostFiles
 from linkwright.review.launches.lost_values import explain_enabled_namespace, explain_lost_frames, make_frames_reason
 from linkwright.review.launches.moved_parameters import follow_moved_parameters
 from linkwright.review.launches.outlines import (
@@ -156,6 +157,7 @@ class SettingChanges:
         self._including_files = IncludingFiles(pair)
         self._old = old
         self._new = new
+        self._lost_files = LostFiles((old, pair.versions.old), (new, pair.versions.new))
         self._renamed = renamed
         self._old_names = {new_name: old_name for old_name, new_name in renamed.items()}
         self._remappings: dict[Hashable, list[tuple[Entry, Location | None, _Setting]]] = {}
@@ -191,6 +193,7 @@ class SettingChanges:
             defaults = pair.old_default, pair.new_default
             has_different_default = pair.has_defaults and defaults[0] != defaults[1]
             reason = self._find_reason(new, pair.name, *defaults) if has_different_default else None
+            reason = reason or (self._lost_files.find_reason(new, pairs) if pair.name == "parameters" else None)
             reason = reason or explain_lost_frames(new, pair.name, pair.old, pair.new, self._old)
             reason = reason or explain_enabled_namespace(pair.name, pair.old, pair.new, self._old)
             if new.kind == READING and reason is None:

@@ -1,4 +1,4 @@
-"""Find arguments of launch files that newly choose the hardware of the robot, or a simulation of it, by default."""
+"""Find arguments of launch files whose defaults newly choose the hardware of the robot, or another simulation."""
 
 from __future__ import annotations
 
@@ -9,15 +9,17 @@ from linkwright.diagnostics import Phrase, phrase
 _SIMULATED = re.compile(
     r"(?:(?:use|is|enable|in|with)_)?"
     r"(?:sim|simulat(?:e|ed|ion|or)|(?:fake|mock|dummy|sim|simulated)_(?:hardware|components|robot|system|controllers?))"
-    r"(?:_mode|_only)?"
+    r"(?:_mode|_only)?|use_gazebo|fake_execution"
 )
 """The names of arguments that replace the hardware by a simulation."""
+_PAUSED = re.compile(r"(?:start_)?paused?")
+"""The names of arguments with which a simulation starts paused."""
 _TRUE = frozenset({"true", "1", "yes", "on"})
 _FALSE = frozenset({"false", "0", "no", "off"})
 
 
 def find_hardware_reason(name: str, old: str, new: str) -> Phrase | None:
-    """Return the reason why another default is breaking that switches between hardware and a simulation.
+    """Return the reason why another default is breaking that switches between hardware and a simulation, or pauses it.
 
     Args:
         name: the name of the argument.
@@ -25,6 +27,8 @@ def find_hardware_reason(name: str, old: str, new: str) -> Phrase | None:
         new: its new default.
     """
     before, after = old.strip().lower(), new.strip().lower()
+    if _PAUSED.fullmatch(name.lower()) is not None and before in _FALSE and after in _TRUE:
+        return phrase("the simulation starts paused")
     if _SIMULATED.fullmatch(name.lower()) is None:
         return None
     if before in _TRUE and after in _FALSE:

@@ -13,6 +13,7 @@ from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
 from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, with_condition
 from linkwright.review.launches.python_tests import SUBSTITUTIONS
+from linkwright.review.launches.text_templates import format_template, strip_conversion
 from linkwright.review.list_changes import EMPTY
 
 _MAX_DEPTH = 30
@@ -28,7 +29,7 @@ _Formatter = Callable[[ast.expr | None], str]
 _COMPARISON_CONDITIONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
 _PATH_CLASSES = ("Path", "PurePath", "PosixPath", "PurePosixPath")
 _COMPARISON_SUBSTITUTIONS = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
-_STRING_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
+_STRING_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname", "format")
 _PROGRAM_SEARCH = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """A command with an explicit search for the program. The text omits the search, which is the default."""
 _QUOTED_STRING = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
@@ -385,6 +386,9 @@ class ExpressionTexts:
         if isinstance(node, ast.Dict):
             pairs = zip(node.keys, node.values, strict=True)
             return f"{{{', '.join(f'{part(key)}: {part(value)}' for key, value in pairs)}}}"
+        template = format_template(node, lambda value: self._format_value(value, part))
+        if template is not None:
+            return template
         if isinstance(node, ast.Call):
             substitution = self._format_substitution(node, part)
             result = self._find_result(node) if substitution is None else None
@@ -413,13 +417,15 @@ class ExpressionTexts:
         return unparse_on_one_line(node)
 
     def _format_text_part(self, item: ast.expr, part: _Formatter) -> str:
-        """Return a part of a formatted text. A substitution in it is an object, which has no value there."""
-        if not isinstance(item, ast.FormattedValue):
-            return part(item)
-        is_bound = isinstance(item.value, ast.Name) and item.value.id in self._bindings
-        value = item.value if is_bound else self._python.resolved(item.value)
+        """Return a part of a formatted text."""
+        return self._format_value(item.value, part) if isinstance(item, ast.FormattedValue) else part(item)
+
+    def _format_value(self, node: ast.expr, part: _Formatter) -> str:
+        """Return a value in a formatted text. A substitution is an object, which has no value there."""
+        is_bound = isinstance(node, ast.Name) and node.id in self._bindings
+        value = strip_conversion(node if is_bound else self._python.resolved(node))
         is_object = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in SUBSTITUTIONS
-        return unparse_on_one_line(value) if is_object else part(item.value)
+        return unparse_on_one_line(value) if is_object else part(value)
 
     def is_unknown_item(self, node: ast.Subscript) -> bool:
         """Return whether an expression is an item of the result of an unknown function that has a name.
@@ -439,8 +445,13 @@ class ExpressionTexts:
         return owner.texts._find_item(owner.node) if isinstance(owner.node, ast.Subscript) else owner
 
     def _find_item(self, node: ast.Subscript) -> BoundExpression:
-        """Return the value of an item of a dictionary, or the expression itself if it is unknown."""
+        """Return the value of an item of a dictionary or list, or the expression itself if it is unknown."""
         owner = self._find_owner(node)
+        index = node.slice.value if isinstance(node.slice, ast.Constant) else None
+        items = owner.node.elts if isinstance(owner.node, (ast.List, ast.Tuple)) else []
+        is_literal = type(index) is int and not any(isinstance(item, ast.Starred) for item in items)
+        if isinstance(index, int) and is_literal and index < len(items):
+            return owner.texts.resolve(items[index])
         if isinstance(owner.node, ast.Dict):
             pairs = zip(owner.node.keys, owner.node.values, strict=True)
             values = [value for key, value in pairs if key is not None and ast.dump(key) == ast.dump(node.slice)]
@@ -528,6 +539,8 @@ class ExpressionTexts:
         """Return whether an expression other than a sum is a string, such as the path of a package."""
         if isinstance(node, ast.Call):
             return called_name(node).rpartition(".")[2] in _STRING_FUNCTIONS
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mod):
+            node = node.left
         return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
 
     def _split_pieces(self, node: ast.expr) -> list[ast.expr]:

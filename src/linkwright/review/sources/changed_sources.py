@@ -223,7 +223,15 @@ class ChangedSources:
             return False
         others = self._get_unchanged(package)
         is_read = item.kind in (*COMMUNICATION_KINDS, NameKind.NODE)
+        if item.kind is NameKind.PARAMETER and self.find_undeclared_reader(item, path) is not None:
+            return True
         return not (others.has_name(item) if is_read else others.has_text(item.name))
+
+    def find_undeclared_reader(self, item: SourceName, path: str) -> str | None:
+        """Return an unchanged source that gets a parameter which no source of the package declares, or None."""
+        package = self.find_package(path)
+        is_known = package is None or (item.kind, get_comparison_name(item)) in self._known_names
+        return None if package is None or is_known else self._get_unchanged(package).find_undeclared_reader(item.name)
 
     def _has_in_imported(self, item: SourceName, path: str) -> bool:
         """Return whether a changed source that a source imports or includes has a name."""

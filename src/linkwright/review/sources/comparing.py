@@ -63,7 +63,12 @@ from linkwright.review.sources.pairing import (
 )
 from linkwright.review.sources.parameter_defaults import SUM, split_sum
 from linkwright.review.sources.parameter_scopes import find_scoped
-from linkwright.review.sources.reasons import find_message_frame_reason, find_removal_reason, is_used_by_others
+from linkwright.review.sources.reasons import (
+    find_message_frame_reason,
+    find_removal_reason,
+    is_used_by_others,
+    make_reader_reason,
+)
 from linkwright.review.sources.shared_constants import find_constant_users
 from linkwright.review.sources.statement_changes import compare_statements
 from linkwright.review.sources.type_variants import TypeVariants
@@ -317,6 +322,9 @@ class _SourcePair(PairedNames):
         if not lost:
             return find_other_node_reason(items) if items else None
         reason = find_removal_reason(lost, names, self.new.get_names(self.file.new_path), path)
+        if lost[0].kind is NameKind.PARAMETER:
+            readers = ((item.name, self.new.find_undeclared_reader(item, self.file.path)) for item in lost)
+            return next((make_reader_reason(name, reader) for name, reader in readers if reader is not None), reason)
         users = ((item, self.new.find_user(item, path, self.old)) for item in (lost if reason is not None else ()))
         return next((make_user_reason(item.kind, user, item.name) for item, user in users if user is not None), reason)
 

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import SourceText
+from linkwright.packages.readers.python_values import called_name
 from linkwright.review.sources.interface_uses import WHOLE, InterfaceUse, LostInterface
 from linkwright.review.sources.passed_variables import find_passed
 from linkwright.review.sources.python import parse_source
@@ -47,8 +48,7 @@ class _UseFinder:
             for part in node.body
             for inner in ast.walk(part)
         }
-        handlers = (node.type for node in self._nodes if isinstance(node, ast.ExceptHandler))
-        self._handles_missing_fields = any("AttributeError" in ast.unparse(node) for node in handlers if node)
+        self._handled = set(self._find_handled())
         self._tested = {
             argument.value
             for node in self._nodes
@@ -72,7 +72,7 @@ class _UseFinder:
         if self._interface.is_removed:
             yield from self._find_attributes_of_modules()
             return
-        if self._handles_missing_fields or not (self._classes or self._modules):
+        if not (self._classes or self._modules):
             return
         yield from self._find_constructors()
         variables = list(self._find_variables())
@@ -80,6 +80,21 @@ class _UseFinder:
             yield from self._find_accesses(function, variable, part)
             passed = [(item, name, part) for item, name in find_passed(self._tree, function, variable)]
             variables += [item for item in passed if item not in variables]
+
+    def _find_handled(self) -> Iterator[int]:
+        """Yield the identities of nodes whose ``AttributeError`` is handled, also in functions called there."""
+        bodies = [
+            inner
+            for node in self._nodes
+            if isinstance(node, ast.Try)
+            and any("AttributeError" in ast.unparse(handler.type) for handler in node.handlers if handler.type)
+            for part in node.body
+            for inner in ast.walk(part)
+        ]
+        called = {called_name(node).rpartition(".")[2] for node in bodies if isinstance(node, ast.Call)}
+        functions = [node for node in self._nodes if isinstance(node, _Function) and node.name in called]
+        yield from (id(node) for node in bodies)
+        yield from (id(inner) for function in functions for inner in ast.walk(function))
 
     def _read_import(self, node: ast.ImportFrom) -> Iterator[InterfaceUse]:
         package, _, module = (node.module or "").partition(".")
@@ -192,7 +207,9 @@ class _UseFinder:
     def _report(self, node: ast.stmt | ast.expr, name: str, alias: ast.alias | None = None) -> Iterator[InterfaceUse]:
         place = alias or node
         field = name.rpartition(" ")[2]
-        is_guarded = id(node) in self._guarded if self._interface.is_removed else field in self._tested
+        is_guarded = id(node) in self._guarded
+        if not self._interface.is_removed:
+            is_guarded = field in self._tested or id(node) in self._handled
         if not is_guarded:
             yield InterfaceUse(self._interface, name, place.lineno, place.col_offset + 1)
 

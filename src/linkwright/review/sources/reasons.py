@@ -95,6 +95,11 @@ def find_removal_reason(
     return names_reason(item_names)
 
 
+def make_reader_reason(name: str, path: str) -> Phrase:
+    """Return the reason why a source fails that gets a parameter which nothing declares any more."""
+    return phrase("'{file}' still gets '{name}', which no source declares", file=PurePosixPath(path).name, name=name)
+
+
 def make_member_reason(names: Sequence[str]) -> Phrase:
     """Return the reason why removed attributes of a class in Python are breaking."""
     return phrase("programs that set or read {names} fail", names=quote_first(names))

@@ -11,6 +11,7 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.installed_paths import find_python_packages, read_package_facts
+from linkwright.review.sources.cpp_text import blank_comments
 from linkwright.review.sources.names import (
     CPP_SUFFIXES,
     HEADER_SUFFIXES,
@@ -24,6 +25,9 @@ from linkwright.review.versions import TEST_FOLDERS, Version
 
 _SOURCE_SEARCH = re.compile(r"\bGLOB(?:_RECURSE)?\b|\baux_source_directory\b", re.IGNORECASE)
 """The commands of CMake that find sources by patterns."""
+_PYTHON_COMMENT = re.compile(r"#.*")
+_UNDECLARED = re.compile(r"\b(?:allow_undeclared_parameters|automatically_declare_parameters_from_overrides)\b")
+"""The options of nodes whose parameters need no declaration."""
 _COUNTERPARTS = {
     NameKind.PUBLISHER: NameKind.SUBSCRIPTION,
     NameKind.SUBSCRIPTION: NameKind.PUBLISHER,
@@ -53,6 +57,24 @@ class UnchangedSources:
     def has_text(self, name: str) -> bool:
         """Return whether one of the sources contains a text in quotation marks."""
         return any(True for _ in self._find_paths(name))
+
+    def find_undeclared_reader(self, name: str) -> str | None:
+        """Return a source that gets a parameter of ROS 2 although no source of the package may declare it, or None.
+
+        Args:
+            name: the name of a parameter that no changed source has.
+        """
+        texts = {
+            path: blank_comments(text) if path.endswith(CPP_SUFFIXES) else _PYTHON_COMMENT.sub("", text)
+            for path, text in ((path, self._texts[path]) for path in self._find_paths(name))
+        }
+        quoted = re.compile(rf"[\"']{re.escape(name)}[\"']")
+        getting = re.compile(rf"\bget_parameter\s*\(\s*{quoted.pattern}\s*\)")
+        counts = {path: (len(quoted.findall(text)), len(getting.findall(text))) for path, text in texts.items()}
+        is_declared = any(mentions > gets for mentions, gets in counts.values())
+        if is_declared or any(map(_UNDECLARED.search, self._texts.values())):
+            return None
+        return next((path for path, (mentions, _) in counts.items() if mentions), None)
 
     def has_name(self, item: SourceName) -> bool:
         """Return whether one of the sources has a name of the same kind."""

@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import package_name
-from linkwright.review.breaking import frame_reason, frames_reason, joint_name_reason
+from linkwright.review.breaking import frame_reason, frames_reason, joint_name_reason, transform_reason
 from linkwright.review.changes import Change, Effect, Location, Subject, SubjectKind
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.yaml_values import read_yaml_values
@@ -115,6 +115,7 @@ def _list_lost_names(subjects: Sequence[Subject]) -> Iterator[_LostName]:
     templates = {
         frame_reason("").template: True,
         frames_reason(["", ""]).template: True,
+        transform_reason("").template: True,
         joint_name_reason("").template: False,
     }
     for subject in subjects:

@@ -1,9 +1,9 @@
-"""Find launch files and scripts that still name removed controllers."""
+"""Find launch files, scripts and configurations of MoveIt that still name removed controllers."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import phrase
@@ -12,10 +12,13 @@ from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.parameter_names import find_all_controllers
 from linkwright.review.files.yaml_values import read_yaml_values
+from linkwright.review.list_changes import list_items
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _SETTINGS = (".yaml", ".yml")
 _READER_SUFFIXES = (".py", ".sh", ".launch", ".launch.xml")
+_LISTED = re.compile(r"(?:^|[._])controller_(?:names$|list\[[^\]]*\]\.name$)")
+"""The parameters of MoveIt that list the controllers to which it sends trajectories."""
 _COMMENT = re.compile(r"^[ \t]*#[^\n]*|<!--.*?-->", re.MULTILINE | re.DOTALL)
 _CONTROLLER = re.compile(r"controller|broadcaster|spawner")
 """A word in the line or the name that marks the name as the name of a controller."""
@@ -33,11 +36,30 @@ def find_lost_controllers(versions: Versions, changed_files: Sequence[ChangedFil
         if path.endswith(_SETTINGS):
             for name in _read_controller_names(versions.new, path):
                 lost.pop(name, None)
-    for path in files:
-        text = versions.new.text(path) if path.endswith(_READER_SUFFIXES) else ""
+    for path in files if lost else ():
+        if path.endswith(_SETTINGS):
+            yield from ((path, change) for change in _find_in_settings(path, versions.new.text(path), lost))
+            continue
+        text = versions.new.text(path)
         text = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
         for name, source in lost.items():
             yield from ((path, change) for change in _find_use(path, text, name, source))
+
+
+def _find_in_settings(path: str, text: str, lost: Mapping[str, str]) -> Iterator[Change]:
+    """Yield the changes about controllers that a configuration of MoveIt still lists."""
+    if not any(name in text for name in lost):
+        return
+    try:
+        values = read_yaml_values(text)
+    except UnreadableFileError:
+        return
+    for parameter, value in values.items():
+        if _LISTED.search(parameter) is None:
+            continue
+        for name in (item.strip("/") for item in list_items(value.text)):
+            if name in lost:
+                yield _make_change(name, lost[name], Location(path, value.line, value.column))
 
 
 def _find_use(path: str, text: str, name: str, source: str) -> Iterator[Change]:
@@ -47,11 +69,14 @@ def _find_use(path: str, text: str, name: str, source: str) -> Iterator[Change]:
         start = text.rfind("\n", 0, match.start()) + 1
         line = text[start:].partition("\n")[0]
         if _CONTROLLER.search(line):
-            sentence = phrase("names the controller '{name}', which '{file}' no longer has", name=name, file=source)
-            reason = phrase("the controller '{name}' is not found", name=name)
             location = Location(path, text.count("\n", 0, start) + 1, match.start() - start + 1)
-            yield Change(sentence, Effect.BREAKING, reason, location)
+            yield _make_change(name, source, location)
             return
+
+
+def _make_change(name: str, source: str, location: Location) -> Change:
+    sentence = phrase("names the controller '{name}', which '{file}' no longer has", name=name, file=source)
+    return Change(sentence, Effect.BREAKING, phrase("the controller '{name}' is not found", name=name), location)
 
 
 def _find_controllers(version: Version, changed_files: Sequence[ChangedFile]) -> dict[str, str]:

@@ -55,8 +55,8 @@ def find_undeclared_description_arguments(
 ) -> Iterator[tuple[str, Change]]:
     """Yield the changed launch files that newly pass an argument which the description neither declares nor reads.
 
-    If a file that the description includes is not there, it may declare the argument. Then only an argument counts
-    whose name the description has with a further word, such as ``use_gpu`` instead of ``gpu``.
+    If the description includes a file that does not exist, that file may declare the argument. Then only an argument
+    counts whose name the description has with a further word, such as ``use_gpu`` instead of ``gpu``.
     """
     changed = {
         file.new_path: versions.old.text(file.old_path)
