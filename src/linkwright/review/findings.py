@@ -40,7 +40,7 @@ class Findings:
 def find_findings(version: Version, targets: Targets) -> Findings:
     """Return the findings of a version about some files and packages.
 
-    A declared dependency that only this computer lacks is no finding.
+    Declared dependencies that only this computer lacks are left out.
     """
     files: set[str] = set()
     errors: set[tuple[str, str]] = set()
