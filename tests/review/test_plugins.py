@@ -104,6 +104,19 @@ def test_relative_topic_of_a_plugin_in_the_root_namespace_has_the_same_name(
     assert bool(breaking(result)) is is_breaking
 
 
+def test_topics_and_frames_of_a_long_plugin_come_first(repository, compare):
+    values = "".join(f"<gain{letter}>1</gain{letter}>" for letter in "abcdefghijklm")
+    names = "<topicName>imu</topicName><frameName>base</frameName>"
+    repository.commit({PATH: robot_text()})
+    repository.write(
+        {PATH: robot_text(f"<gazebo><plugin name='p' filename='libp.so'>{values}{names}</plugin></gazebo>")}
+    )
+    (line,) = sentences(subject(compare(repository), PATH))
+    assert line.startswith(
+        "extension 'gazebo' added: plugin 'p' (filename=libp.so, topicName imu, frameName base, gaina 1"
+    )
+
+
 BLOCKS = """
     <gazebo reference="base"><collision/></gazebo>
     <gazebo reference="base">
