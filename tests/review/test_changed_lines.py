@@ -21,6 +21,12 @@ LONG_OPTIONS = " ".join(f"_option_{number}:=value" for number in range(15))
         ("start.sh", "a b\n", "a b\n" + "".join(f"echo {n} x\n" for n in range(7)) + "ros2 run arm driver\n",
          "`ros2 run arm driver`, `echo 0 x`, `echo 1 x`, `echo 2 x`, 4 more lines added"),
         ("notes.md", "a\n", "b\n", None),
+        ("op.robot", "[ control ]\ncycle = 12 # ms\n", "[ control ]\ncycle = 8 # ms\n",
+         "cycle = 12 # ms -> cycle = 8 # ms"),
+        ("map.lua", "-- a\nx = {\n  min_range = 0.1,\n}\n", "-- b\nx = {\n  min_range = 0.3,\n}\n",
+         "min_range = 0.1, -> min_range = 0.3,"),
+        ("ports.ini", "; old\n[a]\nport=1\n", "; new\n[a]\nport=1\nrate=2\n", "rate=2 added"),
+        ("tox.ini", "[a]\nport=1\n", "[a]\nport=2\n", None),
     ],
 )  # fmt: skip
 def test_lines_that_a_text_file_gains_and_loses(repository, compare, path, old, new, expected):

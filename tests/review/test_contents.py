@@ -291,3 +291,30 @@ def test_array_of_interfaces_whose_last_item_has_no_name_is_lost(repository, com
     repository.write({URDF: INTERFACES.format(name="arm", interface=interfaces)})
     (change,) = [change for _, change in compare(repository).breaking_changes]
     assert str(change.sentence) == "extension 'ros2_control arm': joint a command_interface out removed: size=4"
+
+
+CALLS = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="pair" params="">
+  <xacro:wheel prefix="left" {more}/><xacro:wheel prefix="right" {more}/><xacro:tower side="front" {more}/>
+</xacro:macro></robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("more", "expected"),
+    [
+        ('size="1"', [("wheel size 1", ("tower size",))]),
+        ('size="1" mass="2"', [("wheel prefix=left: size 1, mass 2", ("wheel prefix=right",)),
+                             ("tower side=front: size 1, mass 2", ())]),
+    ],
+)  # fmt: skip
+def test_values_that_a_call_gains_or_loses_are_one_line(repository, compare, more, expected):
+    path = "arm/urdf/pair.xacro"
+    repository.commit({"arm/package.xml": PACKAGE_XML, path: CALLS.replace("{more}", "")})
+    repository.write({path: CALLS.replace("{more}", more)})
+    added = subject(compare(repository), path).changes
+    lines = [(f"macro 'pair': {text} added", names) for text, names in expected]
+    assert [(str(change.sentence), change.other_names) for change in added] == lines
+    repository.commit({path: CALLS.replace("{more}", more)})
+    repository.write({path: CALLS.replace("{more}", "")})
+    removed = subject(compare(repository), path).changes
+    assert [str(change.sentence) for change in removed] == [line.replace("added", "removed") for line, _ in lines]

@@ -283,3 +283,12 @@ def test_finding_in_an_unchanged_file_is_not_new_if_its_xacro_file_gets_another_
     package.commit({"arm_description/robots/arm.urdf": generated})
     package.write({"arm_description/urdf/robot.urdf.xacro": ARM, PATH: None})
     assert finding_codes(compare(package).new_findings) == []
+
+
+@pytest.mark.parametrize(("declared", "codes"), [(True, []), (False, ["PKG101", "LW848"])])
+def test_declared_package_that_this_computer_lacks_is_no_finding(package, compare, declared, codes):
+    depend = "<exec_depend>sensor_of_others</exec_depend>" if declared else ""
+    package.commit({"arm_description/package.xml": PACKAGE_XML.replace("</package>", f"{depend}</package>")})
+    include = '<xacro:include filename="$(find sensor_of_others)/urdf/sensor.xacro"/>'
+    package.write({PATH: ARM.replace("<link name=", f"{include}<link name=", 1)})
+    assert finding_codes(compare(package).new_findings) == codes

@@ -252,3 +252,10 @@ def test_types_that_contain_a_changed_message_in_another_one_are_named(repositor
     repository.write({"arm/msg/A.msg": "int64 a\n", "arm/msg/C.msg": "B b\nint64 c\n"})
     (change,) = subject(compare(repository), "arm/msg/A.msg").changes
     assert str(change.reason).endswith("; the same holds for the types that contain it: 'B.msg', 'D.srv'")
+
+
+def test_removed_interface_is_shown_with_its_fields(repository, compare):
+    repository.commit({"a/srv/SetLoad.srv": "float64 load\n---\nbool success\n"})
+    repository.write({"a/srv/SetLoad.srv": None})
+    (change,) = subject(compare(repository), "a/srv/SetLoad.srv").changes
+    assert str(change.sentence) == "interface removed: float64 request load, bool response success"

@@ -44,6 +44,41 @@ def test_a_plugin_of_an_undeclared_package_is_breaking(repository, compare, text
     assert [str(change.reason) for _, change in result.breaking_changes] == reasons
 
 
+LAYER = "costmap:\n  ros__parameters:\n    layer:\n      plugin: {}\n"
+VOXELS = "nav2_costmap_2d::VoxelLayer"
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "reason"),
+    [
+        (LAYER, VOXELS, "nav2_costmap_2d/VoxelLayer",
+         f"there is no plugin 'nav2_costmap_2d/VoxelLayer', only '{VOXELS}'"),
+        (LAYER, "nav2_costmap_2d/VoxelLayer", VOXELS, None),
+        (LAYER, "nav2_costmap_2d/VoxelLayer", "nav2_costmap_2d/StaticLayer", None),
+        (LAYER, "nav2_navfn_planner::NavfnPlanner", "nav2_navfn_planner/NavfnPlanner", None),
+        ("arm:\n  kinematics_solver: {}\n", "kdl_kinematics_plugin/KDLKinematicsPlugin",
+         "kdl_kinematics_plugin/IKFastKinematics",
+         ("there is no plugin 'kdl_kinematics_plugin/IKFastKinematics', "
+          "only 'kdl_kinematics_plugin/KDLKinematicsPlugin'")),
+    ],
+)  # fmt: skip
+def test_a_plugin_that_its_known_package_does_not_have_is_breaking(repository, compare, text, old, new, reason):
+    depends = "".join(DEPENDENCY.format(name) for name in ("nav2_costmap_2d", "nav2_navfn_planner"))
+    repository.commit({"lamp/package.xml": MANIFEST.format(depends), "lamp/config/a.yaml": text.format(old)})
+    repository.write({"lamp/config/a.yaml": text.format(new)})
+    reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
+    assert reasons == ([] if reason is None else [reason])
+
+
+def test_an_added_plugin_that_its_known_package_does_not_have_is_breaking(repository, compare):
+    manifest = MANIFEST.format(DEPENDENCY.format("nav2_costmap_2d"))
+    repository.commit({"lamp/package.xml": manifest, "lamp/config/a.yaml": LAYER.format(VOXELS)})
+    added = "    other:\n      plugin: nav2_costmap_2d/StaticLayer\n"
+    repository.write({"lamp/config/a.yaml": LAYER.format(VOXELS) + added})
+    (change,) = [change for _, change in compare(repository).breaking_changes]
+    assert str(change.sentence) == "costmap.ros__parameters.other.plugin nav2_costmap_2d/StaticLayer added"
+
+
 @pytest.mark.parametrize(
     ("path", "text"),
     [

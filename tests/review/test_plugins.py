@@ -73,8 +73,7 @@ def test_digits_that_a_computation_adds_are_neither_compared_nor_shown(repositor
     repository.write({path: text("0.3", "${0.1 + 0.7}").replace("3456<", "3457<")})
     (found,) = compare(repository).subjects
     assert sentences(found) == [
-        "extension 'gazebo base': mu2 1.0 -> 0.8",
-        "extension 'gazebo base': dampingFactor 1234567890123456 -> 1234567890123457",
+        "extension 'gazebo base': mu2 1.0 -> 0.8, dampingFactor 1234567890123456 -> 1234567890123457",
     ]
 
 
@@ -102,6 +101,39 @@ def test_relative_topic_of_a_plugin_in_the_root_namespace_has_the_same_name(
         [f"extension 'gazebo': plugin dock commandTopic {old} -> {new}"]
     ]
     assert bool(breaking(result)) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("<mu1>1</mu1><kp>5</kp><kd>2</kd>", "<mu1>2</mu1><kd>2</kd><maxVel>0.1</maxVel>",
+         ["extension 'gazebo base': mu1 1 -> 2, maxVel 0.1 added, kp 5 removed"]),
+        ("<sensor name='s'><rate>1</rate><ray><max>5</max></ray><topic>a</topic></sensor>",
+         "<sensor name='s'><rate>2</rate><ray><max>6</max></ray><topic>b</topic></sensor>",
+         ["extension 'gazebo base': sensor s: rate 1 -> 2, ray max 5 -> 6",
+          "extension 'gazebo base': sensor s topic a -> b"]),
+        ("<mu1>1</mu1><material>Red</material>", "<mu1>2</mu1><material>Blue</material>",
+         ["extension 'gazebo base': mu1 1 -> 2", "extension 'gazebo base': material Red -> Blue"]),
+    ],
+)  # fmt: skip
+def test_numbers_of_a_plugin_or_sensor_are_one_line(repository, compare, old, new, expected):
+    text = "<gazebo reference='base'>{}</gazebo>"
+    repository.commit({PATH: robot_text(text.format(old))})
+    repository.write({PATH: robot_text(text.format(new))})
+    assert sorted(sentences(subject(compare(repository), PATH))) == sorted(expected)
+
+
+def test_topics_and_frames_of_a_long_plugin_come_first(repository, compare):
+    values = "".join(f"<gain{letter}>1</gain{letter}>" for letter in "abcdefghijklm")
+    names = "<topicName>imu</topicName><frameName>base</frameName>"
+    repository.commit({PATH: robot_text()})
+    repository.write(
+        {PATH: robot_text(f"<gazebo><plugin name='p' filename='libp.so'>{values}{names}</plugin></gazebo>")}
+    )
+    (line,) = sentences(subject(compare(repository), PATH))
+    assert line.startswith(
+        "extension 'gazebo' added: plugin 'p' (filename=libp.so, topicName imu, frameName base, gaina 1"
+    )
 
 
 BLOCKS = """

@@ -310,3 +310,19 @@ def test_part_that_shares_few_values_with_one_in_a_group_has_not_moved(review_ch
     other = SCAN_LAYER.replace("LaserScan", "PointCloud2").replace("marking", "mark").replace("clearing", "clear")
     changed, _ = review_changes(SCAN, other)
     assert any(sentence.startswith("scan removed: ") for sentence in sentences(changed))
+
+
+@pytest.mark.parametrize(
+    ("values", "renamed"),
+    [
+        ("h_min: 1\nh_max: 255\ns_min: 90\ns_max: 255\n", False),
+        ("h_min: 160\nh_max: 255\ns_min: 90\ns_max: 255\n", True),
+        ("h_min: 1\nh_max: 255\n", True),
+    ],
+)
+def test_one_of_several_new_groups_is_no_renamed_one(repository, compare, values, renamed):
+    path = "a/config/a.yaml"
+    repository.commit({"a/package.xml": PACKAGE_XML.replace("arm_description", "a"), path: "r_min: 160\nr_max: 255\n"})
+    repository.write({path: values})
+    found = [line for line in sentences(subject(compare(repository), path)) if "renamed" in line]
+    assert found == (["r_min renamed to h_min"] if renamed else [])

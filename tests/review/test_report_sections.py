@@ -340,3 +340,31 @@ def test_other_parameters_are_named_by_what_differs(first, names, expected):
 def test_place_in_the_old_version_is_marked():
     change = Change(phrase("link removed"), location=Location("a.urdf", 3, 1, is_old=True))
     assert "    a.urdf:3:1 (old)\n" in as_text(Review("main", "topic", [make_subject("a.urdf", [change])]))
+
+
+def make_value_changes(name: str) -> list[Change]:
+    return [
+        Change(phrase("{parameter} {old} -> {new}", parameter=f"{name}_arm.{key}", old=1, new=2), location=None)
+        for key in ("rate", "gain")
+    ]
+
+
+def test_sections_that_differ_in_a_word_of_the_path_are_one_with_the_words():
+    names = {
+        "config/left.yaml": "left",
+        "config/right.yaml": "right",
+        "sim/right.yaml": "right",
+        "config/b.yaml": "left",
+    }
+    subjects = [
+        make_subject(path, make_value_changes(name), SubjectKind.PARAMETERS) for path, name in names.items()
+    ] + [make_subject("config/up.yaml", make_value_changes("other"), SubjectKind.PARAMETERS)]
+    lines = as_text(Review("main", "topic", subjects)).splitlines()
+    assert [line for line in lines if line in {subject.path for subject in subjects}] == [
+        "config/left.yaml",
+        "config/up.yaml",
+    ]
+    renamed = " (with 'right' instead of 'left')"
+    alike = f"config/right.yaml{renamed}, sim/right.yaml{renamed}, config/b.yaml"
+    assert f"  = the same in 3 more files: {alike}" in lines
+    assert lines[-1].startswith("0 breaking changes, 10 changes,")

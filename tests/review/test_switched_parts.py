@@ -49,13 +49,20 @@ def test_removed_parts_that_an_added_argument_brings_back_name_it(review_robot):
     ("visual", "argument"),
     [
         (IF.format(VISUAL.format(3)), ARGUMENT),  # another part
-        (IF.format(VISUAL.format(1)), ARGUMENT.replace("false", "no")),  # not a boolean
         ("", ARGUMENT),
     ],
 )
 def test_removed_part_that_no_added_argument_brings_back_is_removed(review_robot, visual, argument):
-    if "no" in argument:
-        visual = visual.replace("$(arg tower)", "${'$(arg tower)' == 'yes'}")
     (line,) = review_robot(visual, HEAD, argument)
     assert line.startswith("link 'base': visual 2 removed")
     assert "only with" not in line
+
+
+@pytest.mark.parametrize(("value", "note"), [("tall", "; now only with tower:=tall"), ("short", "")])
+def test_removed_part_that_another_value_of_an_added_argument_brings_back_names_it(review_robot, value, note):
+    argument = '<xacro:arg name="tower" default="none"/><xacro:property name="kind" value="$(arg tower)"/>'
+    compared = f"<xacro:if value=\"${{kind == '{value}'}}\">{VISUAL.format(1 if value == 'tall' else 3)}</xacro:if>"
+    (line,) = review_robot(compared, HEAD, argument)
+    assert (
+        line == f"link 'base': visual 2 removed: origin xyz 0 0 0 m, origin rpy 0 0 0 rad, geometry box 1 1 1 m{note}"
+    )

@@ -86,3 +86,17 @@ def test_items_of_other_lists_have_no_names(repository, compare):
     repository.commit(path)
     repository.write({PATH: "weights: [1, 2, 4]\n"})
     assert sentences(subject(compare(repository), PATH)) == ["weights [1, 2, 3] -> [1, 2, 4]"]
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        ("ab", ["arm.a 1 added", "arm.b 1 added"]),
+        ("abcd", ["arm: a 1, b 1, c 1, d 1 added"]),
+        ("abcdefghijkl", ["arm: a 1, b 1, c 1, d 1, e 1, f 1, g 1, h 1, i 1, j 1 added", "arm: k 1, l 1 added"]),
+    ],
+)
+def test_many_values_that_a_part_gains_or_loses_are_listed_together(lines, names, expected):
+    old, new = "arm:\n  rate: 5\n", "arm:\n  rate: 5\n" + "".join(f"  {name}: 1\n" for name in names)
+    assert [line for line, _ in lines(old, new)] == expected
+    assert [line for line, _ in lines(new, old)] == [line.replace("added", "removed") for line in expected]

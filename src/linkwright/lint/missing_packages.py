@@ -37,6 +37,11 @@ def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnos
         yield diagnostic.with_changes(severity=Severity.WARNING, hint=hint)
 
 
+def is_missing_here(diagnostic: Diagnostic) -> bool:
+    """Return whether a finding is about a declared dependency that this computer lacks."""
+    return diagnostic.code == _MISSING_PACKAGE_CODE and diagnostic.severity is Severity.WARNING
+
+
 def is_declared(package: PackageContext, name: str) -> bool:
     """Return whether a package or a neighbor in its workspace declares a dependency."""
     neighbors = (PackageContext(manifest.parent) for manifest in sorted(package.folder.parent.glob(f"*/{MANIFEST}")))

@@ -1,4 +1,4 @@
-"""Report the changed lines of scripts, device rules, container files and lists of packages."""
+"""Report the changed lines of scripts, settings, device rules, container files and lists of packages."""
 
 from __future__ import annotations
 
@@ -17,6 +17,11 @@ from linkwright.review.versions import Version, Versions
 _SHELL_SUFFIXES = frozenset({".sh", ".bash", ".zsh"})
 UNIT_SUFFIX = ".service"
 """The end of the names of units of systemd that start programs."""
+_SETTINGS_SUFFIXES = frozenset({".ini", ".cfg", ".conf", ".properties", ".lua", ".toml", ".robot"})
+"""The ends of the names of files with settings of programs and devices."""
+_SETTINGS_OF_TOOLS = re.compile(r"\..*|(tox|pytest|mypy|ruff|pylint|flake8|setup|cspell|doxygen|poetry).*")
+"""The names of files with settings of tools for developers, which no robot reads."""
+_SETTINGS_COMMENT = re.compile(r"[#;]|//|--")
 _SUFFIXES = _SHELL_SUFFIXES | {".rules", UNIT_SUFFIX, ".dockerfile"}
 _HEAD_BYTES = 100
 _FILE_NAME = re.compile(
@@ -53,6 +58,8 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
         if any(text.stat().st_size > _MAX_BYTES for text in paths):
             return None
         old, new = ([*_split_content_lines(text.read_text("utf-8"))] for text in paths)
+        if _has_settings(file.path):
+            old, new = ([line for line in lines if not _SETTINGS_COMMENT.match(line)] for lines in (old, new))
     except (OSError, ValueError):
         return None
     removed, added = (list((Counter(a) - Counter(b)).elements()) for a, b in ((old, new), (new, old)))
@@ -111,7 +118,12 @@ def _format_lines(added: Phrase | str, removed: Phrase | str) -> Phrase:
 def _has_lines(version: Version, path: str) -> bool:
     name = PurePosixPath(path).name.lower()
     is_known = PurePosixPath(name).suffix in _SUFFIXES or _FILE_NAME.fullmatch(name) is not None
-    return is_known or is_shell_script(version, path)
+    return is_known or _has_settings(path) or is_shell_script(version, path)
+
+
+def _has_settings(path: str) -> bool:
+    name = PurePosixPath(path).name.lower()
+    return PurePosixPath(name).suffix in _SETTINGS_SUFFIXES and _SETTINGS_OF_TOOLS.fullmatch(name) is None
 
 
 def is_shell_script(version: Version, path: str) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 
 from linkwright.descriptions.comparison import round_numbers
 from linkwright.diagnostics import Phrase, joined_first
+from linkwright.review.names_in_plugins import NAME_TAGS
 from linkwright.xmltree import Element
 
 _NAMED_BY_CHILD = "include"
@@ -25,12 +26,16 @@ def format_own_content(element: Element, skipped: Collection[str] = ()) -> str:
 def format_values(element: Element, limit: int, skipped: Collection[str] = ()) -> Phrase | None:
     """Return the values in an element, or None if there are none.
 
+    If there are more values than the limit, topics, frames and other names come first.
+
     Args:
         element: the XML element.
         limit: the maximum number of values to show.
         skipped: the tags of the elements to leave out.
     """
     values = list(_list_values(element, "", skipped))
+    if len(values) > limit:
+        values.sort(key=lambda value: NAME_TAGS.search(value.rpartition(" ")[0]) is None)
     return joined_first(values, limit) if values else None
 
 

@@ -11,6 +11,7 @@ from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.lint.engine import Checked
 from linkwright.lint.finding import Finding
 from linkwright.lint.known_findings import Key, count_keys, find_new_findings
+from linkwright.lint.missing_packages import is_missing_here
 from linkwright.lint.targets import DESCRIPTION_SUFFIXES, Targets
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.folders import finding_without_folders, without_folder
@@ -37,7 +38,10 @@ class Findings:
 
 
 def find_findings(version: Version, targets: Targets) -> Findings:
-    """Return the findings of a version about some files and packages."""
+    """Return the findings of a version about some files and packages.
+
+    Declared dependencies that only this computer lacks are left out.
+    """
     files: set[str] = set()
     errors: set[tuple[str, str]] = set()
 
@@ -53,7 +57,11 @@ def find_findings(version: Version, targets: Targets) -> Findings:
         files.update(path for file in (checked.path, *included) if (path := version.relative(file)) is not None)
 
     diagnostics, _ = version.checker().check(targets, [version.root], add_files)
-    findings = [finding_without_folders(finding, version.root, version.installed_shares) for finding in diagnostics]
+    findings = [
+        finding_without_folders(finding, version.root, version.installed_shares)
+        for finding in diagnostics
+        if not is_missing_here(finding)
+    ]
     return Findings(findings, frozenset(files), frozenset(errors))
 
 

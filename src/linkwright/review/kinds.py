@@ -151,6 +151,7 @@ _RULES = (
         phrase("interface removed"),
         phrase("programs that use the type do not build or start"),
         contents=interface_contents,
+        shows_removed=True,
     ),
     KindRule(
         SubjectKind.MANIFEST,

@@ -100,6 +100,8 @@ from linkwright.review.versions import Version, Versions
 _Pair = tuple[KindRule, "str | None", "str | None"]
 """The rule for a file, its old path and its new path."""
 _Result = TypeVar("_Result")
+_NODE_PARAMETERS = "ros__parameters"
+"""The key above the parameters of a node in a YAML file of ROS 2."""
 _MIN_PARALLEL_DESCRIPTIONS = 4
 """The minimum number of descriptions that are compared by several processes."""
 _LISTED_KINDS = (
@@ -413,14 +415,17 @@ class _Reviewer:
     def _belongs_to_robot(self, rule: KindRule, file: ChangedFile) -> bool:
         """Return whether a file belongs to a robot.
 
-        Hidden files, and YAML files outside all packages, are settings of tools. Build files of CMake in packages that
-        are built without it have no effect.
+        Hidden files, and YAML files outside all packages without parameters of nodes, are settings of tools. Build
+        files of CMake in packages that are built without it have no effect.
         """
         sides = ((self._versions.old, file.old_path), (self._versions.new, file.new_path))
         if not self._is_used(file):
             return False
         return rule.kind is not SubjectKind.PARAMETERS or any(
-            version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST)) is not None for version, path in sides if path
+            version.package_of(path, (MANIFEST, ROSBUILD_MANIFEST)) is not None
+            or _NODE_PARAMETERS in version.text(path)
+            for version, path in sides
+            if path
         )
 
     def _is_used(self, file: ChangedFile) -> bool:

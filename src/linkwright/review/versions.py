@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
@@ -27,6 +27,14 @@ from linkwright.xmltree import Overlay
 TEST_FOLDERS = frozenset({"test", "tests"})
 """The names of test folders, whose files do not belong to a robot."""
 _MAX_SEARCHED_BYTES = 1 << 20
+_FILLED_SUFFIXES = (
+    *(".urdf", ".xacro", ".srdf", ".sdf", ".world", ".launch", ".xml", ".yaml", ".yml", ".rviz"),
+    *(".py", ".cpp", ".cc", ".c", ".h", ".hpp", ".sh", "CMakeLists.txt"),
+)
+"""The name endings of files that are of no use while they are empty."""
+_INIT_FILE = "__init__.py"
+_MAX_EMPTY_BYTES = 64
+"""The maximum size of a file that has only blanks."""
 _DEFAULT_BRANCHES = ("origin/HEAD", "origin/main", "origin/master", "main", "master")
 
 
@@ -289,7 +297,21 @@ def open_versions(folder: Path, range_text: str) -> Versions:
             stack.callback(new_files.close)
             new = Version(new_name, new_files.root, new_files, repository, is_old=False)
         stack.pop_all()
-        return Versions(old, new, _drop_files_of_submodules(changed_files))
+        files = _drop_files_of_submodules(changed_files)
+        return Versions(old, new, [_without_empty_version(old, file) for file in files])
+
+
+def _without_empty_version(old: Version, file: ChangedFile) -> ChangedFile:
+    """Return a file whose old version is empty as an added file.
+
+    Messages and ``__init__.py`` may be empty, and so may be the files with which tools mark folders.
+    """
+    path = file.old_path
+    if path is None or file.new_path is None or not path.endswith(_FILLED_SUFFIXES) or path.endswith(_INIT_FILE):
+        return file
+    is_small = old.file(path).is_file() and old.file(path).stat().st_size < _MAX_EMPTY_BYTES
+    is_empty = is_small and not old.text(path).strip()
+    return replace(file, old_path=None) if is_empty else file
 
 
 def _open_repository(folder: Path) -> GitRepository:

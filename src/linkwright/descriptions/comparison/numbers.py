@@ -10,6 +10,8 @@ _NUMBER = lazy_pattern(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 _DIGITS = 14
 """The number of digits to compare and to show. Sums of 64-bit numbers differ in the digits behind them."""
+_MIN_REMOVED = 5
+"""The minimum number of characters, such as zeros, that a rounded number saves. Others are shown as written."""
 
 
 def normalize_numbers(text: str) -> str:
@@ -22,7 +24,8 @@ def normalize_numbers(text: str) -> str:
 
 def round_numbers(text: str) -> str:
     """Return a text with single spaces, without the last digits of numbers that a computation has added."""
-    return " ".join(word if len(word) <= _DIGITS else _round_word(word) for word in text.split())
+    pairs = ((word, _round_word(word) if len(word) > _DIGITS else word) for word in text.split())
+    return " ".join(rounded if len(word) - len(rounded) >= _MIN_REMOVED else word for word, rounded in pairs)
 
 
 def _normalize_word(word: str) -> str:

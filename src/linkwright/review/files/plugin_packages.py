@@ -1,4 +1,4 @@
-"""Find plugins of packages that a parameter file needs for the first time and that no ``package.xml`` names."""
+"""Find plugins that a parameter file newly loads, and that do not exist or whose package no ``package.xml`` names."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.files.lost_groups import LAUNCH_SUFFIXES
 from linkwright.review.files.yaml_values import YamlValue
 from linkwright.review.required_packages import is_undeclared_and_new
@@ -32,6 +32,23 @@ _OTHER_NAMES = frozenset(
 """The first names of classes that belong to packages with other names."""
 
 
+_NAMES_WITH_COLONS = frozenset(
+    {
+        *("dwb_core", "dwb_plugins", "nav2_controller", "nav2_costmap_2d", "nav2_graceful_controller"),
+        *("nav2_mppi_controller", "nav2_regulated_pure_pursuit_controller", "nav2_rotation_shim_controller"),
+        *("nav2_smoother", "nav2_waypoint_follower"),
+    }
+)
+"""Packages whose plugins pluginlib knows by the C++ name, such as ``nav2_costmap_2d::VoxelLayer``, and by no other."""
+_KINEMATICS = {
+    "kdl_kinematics_plugin": ("KDLKinematicsPlugin",),
+    "lma_kinematics_plugin": ("LMAKinematicsPlugin",),
+    "srv_kinematics_plugin": ("SrvKinematicsPlugin",),
+}
+"""The names of the plugins behind those of the packages of MoveIt."""
+_SLASH, _COLONS = "/", "::"
+
+
 @dataclass(frozen=True)
 class PluginPackages:
     """The packages of the plugins that a parameter file loads.
@@ -49,6 +66,9 @@ class PluginPackages:
 
         A class with the same name may only have moved into a package that replaces the old one.
         """
+        reason = find_unknown_class_reason(parameter, new.text)
+        if reason is not None:
+            return reason if find_unknown_class_reason(parameter, old.text) is None else None
         package = find_plugin_package(parameter, new.text)
         if package is None or package in _split(old.text) or _split(old.text)[-1] == _split(new.text)[-1]:
             return None
@@ -60,6 +80,10 @@ class PluginPackages:
         An added controller, which has a type, counts if a launch file names it, because others may not be started.
         """
         plugins = {name: value for name, value in values.items() if _PLUGIN.search(name) or self._is_started(name)}
+        for name, value in plugins.items():
+            reason = find_unknown_class_reason(name, value.text)
+            if reason is not None:
+                return reason
         packages = dict.fromkeys(find_plugin_package(name, value.text) for name, value in plugins.items())
         reasons = (self.explain_missing_package(package) for package in packages if package is not None)
         return next((reason for reason in reasons if reason is not None), None)
@@ -76,6 +100,21 @@ class PluginPackages:
         if not is_undeclared_and_new(self.versions, self.path, package):
             return None
         return phrase("package.xml does not name '{name}', without which the plugin is not loaded", name=package)
+
+
+def find_unknown_class_reason(parameter: str, text: str) -> Phrase | None:
+    """Return the reason why pluginlib does not find a plugin of a known package, or None if it may exist."""
+    if not _CLASS_PARAMETER.search(parameter):
+        return None
+    package, slash, name = text.partition(_SLASH)
+    known: tuple[str, ...] = ()
+    if slash and package in _NAMES_WITH_COLONS:
+        known = (f"{package}{_COLONS}{name}",)
+    elif slash and name not in _KINEMATICS.get(package, (name,)):
+        known = tuple(f"{package}{_SLASH}{other}" for other in _KINEMATICS[package])
+    if not known:
+        return None
+    return phrase("there is no plugin '{name}', only {others}", name=text, others=quoted_names(known))
 
 
 def find_plugin_package(parameter: str, text: str) -> str | None:

@@ -91,7 +91,7 @@ def _find_equal_renames(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) ->
     """Yield sibling parts that are renamed in the same way.
 
     An example is a new prefix of all joints of a controller. The edit of the most names comes first, and among equally
-    many, the one that keeps the most values.
+    many, the one that keeps the most values. Several edits that are equally good tell nothing.
     Unless the edit covers all old or all new parts and their keys are equal, their values must also be similar.
     """
     old_groups, new_groups = _group_siblings(old), _group_siblings(new)
@@ -100,9 +100,14 @@ def _find_equal_renames(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) ->
         if any(_ITEM.search(name) for name in (*removed, *added)):
             continue
         used_names: set[str] = set()
-        groups = _group_pairs_by_edit(removed, added)
-        groups.sort(key=lambda pairs: (len(pairs), _count_equal(pairs, old, new)), reverse=True)
-        for group in groups:
+        ranked = [
+            ((len(group), _count_equal(group, old, new)), group) for group in _group_pairs_by_edit(removed, added)
+        ]
+        ranked.sort(key=lambda item: item[0], reverse=True)
+        for rank, group in ranked:
+            rivals = [other for other_rank, other in ranked if other_rank == rank and other is not group]
+            if rank[1] < len(group) and any(_share_old_names(group, other) for other in rivals):
+                continue
             pairs = _select_unused_pairs(group, used_names)
             covers_all = len(pairs) in (len(removed), len(added))
             if not (covers_all and all(_get_names(old[first]) == _get_names(new[second]) for first, second in pairs)):
@@ -110,6 +115,11 @@ def _find_equal_renames(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) ->
             if len(pairs) >= _MIN_EQUAL_EDITS:
                 used_names.update(name for pair in pairs for name in pair)
                 yield from pairs
+
+
+def _share_old_names(pairs: Sequence[tuple[str, str]], others: Sequence[tuple[str, str]]) -> bool:
+    """Return whether two groups of pairs give other new names to the same parts."""
+    return {old for old, _ in pairs} == {old for old, _ in others}
 
 
 def _group_pairs_by_edit(removed: Sequence[str], added: Sequence[str]) -> list[list[tuple[str, str]]]:

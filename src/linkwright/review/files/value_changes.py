@@ -24,6 +24,10 @@ _MIN_EQUAL_COMPONENTS = 3
 """The minimum number of components with equal changes that are listed by name only."""
 _MIN_SIBLINGS = 4
 """The minimum number of sibling parts that gain or lose values with the same name in one line."""
+_MAX_LISTED_VALUES = 10
+"""The maximum number of added or removed values in a line."""
+_MAX_LISTED_CHARACTERS = 40
+"""The maximum number of characters of a value that is listed with others."""
 _MAX_ITEM_CHANGES = 6
 """The maximum number of changed list items that are shown separately."""
 
@@ -111,20 +115,25 @@ def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
             singles.append(change)
             groups.setdefault(change.key, []).append(change)
     vectors = _find_vectors(singles)
-    rest = [single for group in groups.values() if (single := [item for item in group if item.name not in vectors])]
+    rest = [single for group in groups.values() if (single := [item for item in group if id(item) not in vectors])]
     sibling_groups: dict[Hashable, list[ValueChange]] = {}
     for group in rest:
         sibling_groups.setdefault(group[0].sibling_key, []).extend(group)
-    merged: dict[str, Change] = {}
+    lines: dict[int, Change] = {}
     for alike in _group_equal_vectors(vectors.values()):
-        merged[alike[0][0][1].name] = _join_components(alike)
+        lines[id(alike[0][0][1])] = _join_components(alike)
+    lone: list[ValueChange] = []
     for group in rest:
         siblings = sibling_groups[group[0].sibling_key]
-        if group[0].sibling_key is None or len({change.key for change in siblings}) < _MIN_SIBLINGS:
-            merged[group[0].name] = _merge_group(group)
-        elif group[0] is siblings[0]:
-            merged[group[0].name] = _merge_siblings(siblings)
-    yield from (merged[change.name] for group in groups.values() for change in group if change.name in merged)
+        if group[0].sibling_key is not None and len({change.key for change in siblings}) >= _MIN_SIBLINGS:
+            lines.update([(id(group[0]), _merge_siblings(siblings))] if group[0] is siblings[0] else [])
+        elif len(group) == 1:
+            lone += group
+        else:
+            lines[id(group[0])] = _merge_group(group)
+    for together in _group_by_parent(lone):
+        lines[id(together[0])] = _merge_group(together) if len(together) == 1 else _list_values(together)
+    yield from (lines[id(change)] for group in groups.values() for change in group if id(change) in lines)
     for name, group in lists.items():
         yield from (
             [_merge_group([change]) for change in group]
@@ -137,23 +146,45 @@ _Vector = list[tuple[Component, ValueChange]]
 """The changed components of one pose, matrix or other group of numbers, each with its change."""
 
 
-def _find_vectors(changes: Iterable[ValueChange]) -> dict[str, _Vector]:
-    """Return the groups in which several numbers change, by the name of each number."""
+def _group_by_parent(changes: Iterable[ValueChange]) -> Iterator[list[ValueChange]]:
+    """Yield the changes; many single values that one part gains or loses are together."""
+    groups: dict[Hashable, list[ValueChange]] = {}
+    for change in changes:
+        is_short = len(change.values) == 1 and len(change.values[0]) <= _MAX_LISTED_CHARACTERS
+        is_value = change.kind != "changed" and is_short and change.reason is None is change.note
+        groups.setdefault((change.kind, change.name.rpartition(".")[0]) if is_value else id(change), []).append(change)
+    for group in groups.values():
+        size = _MAX_LISTED_VALUES if len(group) >= _MIN_SIBLINGS else 1
+        yield from (group[start : start + size] for start in range(0, len(group), size))
+
+
+def _list_values(changes: Sequence[ValueChange]) -> Change:
+    """Return one line about values that a part gains or loses."""
+    parent = changes[0].name.rpartition(".")[0]
+    items = joined([f"{change.name.rpartition('.')[2]} {change.values[0]}" for change in changes])
+    text = items if not parent else phrase("{parameter}: {changes}", parameter=parent, changes=items)
+    is_added = changes[0].kind == "added"
+    text = phrase("{part} added", part=text) if is_added else phrase("{part} removed", part=text)
+    return Change(text, location=changes[0].location)
+
+
+def _find_vectors(changes: Iterable[ValueChange]) -> dict[int, _Vector]:
+    """Return the groups in which several numbers change, by the identity of the change of each number."""
     vectors: dict[Hashable, _Vector] = {}
     for change in changes:
         component = find_component(change.name)
         is_number = change.kind == "changed" and all(map(_NUMBER.fullmatch, change.values))
         if component is not None and is_number and change.reason is None and change.note is None:
             vectors.setdefault((component.parent, component.family), []).append((component, change))
-    return {change.name: vector for vector in vectors.values() if len(vector) > 1 for _, change in vector}
+    return {id(change): vector for vector in vectors.values() if len(vector) > 1 for _, change in vector}
 
 
 def _group_equal_vectors(vectors: Iterable[_Vector]) -> list[list[_Vector]]:
     """Return lists of different groups that change alike."""
-    alike: dict[Hashable, dict[str, _Vector]] = {}
+    alike: dict[Hashable, dict[int, _Vector]] = {}
     for vector in vectors:
         key = tuple((component.name, change.values) for component, change in vector)
-        alike.setdefault(key, {})[vector[0][1].name] = vector
+        alike.setdefault(key, {})[id(vector)] = vector
     return [list(group.values()) for group in alike.values()]
 
 
@@ -165,11 +196,9 @@ def _join_components(vectors: Sequence[_Vector]) -> Change:
     if len(first) >= _MIN_EQUAL_COMPONENTS and len({change.values for _, change in first}) == 1:
         names = [change.name for vector in vectors for _, change in vector]
         return Change(first[0][1].sentence, Effect.CHANGED, None, location, (), tuple(names[1:]), locations)
-    text = phrase(
-        "{parameter}: {changes}",
-        parameter=first[0][0].parent,
-        changes=joined([str(replace(change, name=component.name).sentence) for component, change in first]),
-    )
+    text = joined([replace(change, name=component.name).sentence for component, change in first])
+    if first[0][0].parent:
+        text = phrase("{parameter}: {changes}", parameter=first[0][0].parent, changes=text)
     names = [vector[0][0].parent for vector in others]
     return Change(text, Effect.CHANGED, None, location, (), tuple(names), locations)
 

@@ -46,8 +46,6 @@ def find_component(path: str) -> Component | None:
     """Return what a value of a parameter file is a component of, by its path; None for other values."""
     parent, _, name = path.rpartition(".")
     outer, _, part = parent.rpartition(".")
-    if not parent:
-        return None
     if part in _POSE_PARTS and outer:
         return Component(outer, (), f"{part}.{name}")
     words = [word.lower() for word in _WORD.findall(name)]

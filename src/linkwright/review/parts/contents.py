@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Hashable, Iterator, Mapping
+from collections.abc import Container, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference
-from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
+from linkwright.diagnostics import Phrase, counted, joined, phrase, quoted_names
 from linkwright.review.breaking import (
     MOVING_TYPES,
     call_reason,
@@ -237,11 +237,32 @@ class _ReportedDifference:
     def change(self) -> Change:
         """The change in one line."""
         collector = replace(self.pair, changes=[])
-        text = self._describe()
-        if self.macro is not None:
-            text = phrase("macro '{macro}': {text}", macro=self.macro, text=text)
+        text = self.add_macro(self._describe())
         collector.add(text, self.difference.old_element, self.difference.new_element, self.reason)
         return collector.changes[0]
+
+    @property
+    def present_value(self) -> str:
+        """The value of the version that has one."""
+        return (self.difference.new if self.difference.old is None else self.difference.old) or ""
+
+    def add_macro(self, text: Phrase) -> Phrase:
+        """Return a sentence about the difference with the macro that contains it."""
+        return text if self.macro is None else phrase("macro '{macro}': {text}", macro=self.macro, text=text)
+
+    @property
+    def call_key(self) -> Hashable | None:
+        """A key that is equal for values that one call of a macro newly passes, or no longer passes.
+
+        None for other and for breaking changes.
+        """
+        difference = self.difference
+        element, tag = difference.new_element or difference.old_element, difference.path[-1].partition(" ")[0]
+        is_call = element is not None and element.tag.startswith(_XACRO) and element.tag not in STATEMENTS
+        is_value = is_call and not difference.is_whole and difference.value not in ("", "text", "conditions")
+        if not is_value or None not in (difference.old, difference.new) or self.reason is not None:
+            return None
+        return id(element), difference.old is None, tag
 
     @property
     def key(self) -> Hashable:
@@ -292,7 +313,7 @@ class _ReportedDifference:
     def _describe_presence(self) -> Phrase:
         """Return the sentence about an added or removed value or element."""
         difference = self.difference
-        value = _truncate((difference.new if difference.old is None else difference.old) or "")
+        value = _truncate(self.present_value)
         name = f"{self.element} {value}".strip()
         text = phrase("{element} added", element=name)
         if difference.new is None:
@@ -438,10 +459,14 @@ class _ReportedDifference:
 
 def _merge_differences(differences: list[_ReportedDifference]) -> Iterator[Change]:
     """Yield the changes, equal ones in one line, and the number of changes beyond the limit."""
+    calls: dict[Hashable, list[_ReportedDifference]] = {}
     groups: dict[Hashable, list[_ReportedDifference]] = {}
     for difference in differences:
-        groups.setdefault(difference.key, []).append(difference)
-    changes = []
+        calls.setdefault(difference.call_key, []).append(difference)
+    changes = list(_join_call_values([group for key, group in calls.items() if key is not None and len(group) > 1]))
+    for difference in differences:
+        if difference.call_key is None or len(calls[difference.call_key]) == 1:
+            groups.setdefault(difference.key, []).append(difference)
     for first, *others in groups.values():
         if len({str(difference.contents) for difference in (first, *others)}) > 1:
             shows_contents = len(others) < _MAX_WITH_CONTENTS
@@ -456,6 +481,34 @@ def _merge_differences(differences: list[_ReportedDifference]) -> Iterator[Chang
     if len(not_breaking) > _MAX_LINES:
         text = counted("{count} more change", "{count} more changes", len(not_breaking) - _MAX_LINES)
         yield replace(not_breaking[_MAX_LINES], sentence=text, other_names=())
+
+
+def _join_call_values(calls: Sequence[Sequence[_ReportedDifference]]) -> Iterator[Change]:
+    """Yield a line about the values that calls of a macro newly pass, or no longer pass; equal ones in one line."""
+    groups: dict[Hashable, list[Sequence[_ReportedDifference]]] = {}
+    for call in calls:
+        tag = call[0].difference.path[-1].partition(" ")[0]
+        values = tuple((item.difference.value, item.difference.old, item.difference.new) for item in call)
+        groups.setdefault((call[0].macro, tag, values), []).append(call)
+    for first, *others in groups.values():
+        is_added = first[0].difference.old is None
+        values_text = joined([f"{item.difference.value} {_truncate(item.present_value)}" for item in first])
+        text = phrase("{element}: {items} removed", element=_title_call(first), items=values_text)
+        if is_added:
+            text = phrase("{element}: {items} added", element=_title_call(first), items=values_text)
+        names = tuple(map(_title_call, others))
+        yield replace(first[0].change, sentence=first[0].add_macro(text), other_names=names)
+
+
+def _title_call(call: Sequence[_ReportedDifference]) -> str:
+    """Return the name of a call, or else its macro with the first value that it passes in both versions."""
+    difference = call[0].difference
+    element = difference.new_element or difference.old_element
+    assert element is not None
+    own = {item.difference.value for item in call}
+    kept = next((f"{name}={_truncate(value)}" for name, value in element.attributes.items() if name not in own), "")
+    has_name = " " in difference.path[-1]
+    return " ".join(filter(None, (*difference.path, "" if has_name else kept)))
 
 
 def _collect_words(root: Element) -> set[str]:

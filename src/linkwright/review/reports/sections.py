@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 
 from linkwright.diagnostics import Phrase, counted, joined, phrase
 from linkwright.review.changes import Change, Effect, Review, Subject, SubjectKind
@@ -20,6 +22,12 @@ _MIN_NAMES = 3
 """The minimum number of sentences that differ only in a name and are merged."""
 
 
+_WORD = re.compile(r"[^\W_]*[^\W\d_][^\W_]*")
+"""A word in a path with at least one letter."""
+_TextKey = tuple[Effect, str, str, tuple[str, ...]]
+"""The effect of a change, its sentence, its reason and its argument sets."""
+
+
 @dataclass(frozen=True)
 class Section:
     """A subject in a report.
@@ -28,13 +36,14 @@ class Section:
         subject: the reviewed file.
         changes: its changes, breaking changes first, without the changes listed in an earlier section.
         repeated: the changes that earlier sections list.
-        alike: the paths of other subjects of the same kind with the same changes. They have no section.
+        alike: the paths of other subjects of the same kind with the same changes, perhaps with another name. They have
+            no section.
     """
 
     subject: Subject
     changes: Sequence[Change]
     repeated: Sequence[Repeat]
-    alike: list[str] = field(default_factory=list)
+    alike: list[str | Phrase] = field(default_factory=list)
 
     @property
     def has_only_code(self) -> bool:
@@ -58,14 +67,52 @@ def divide_report(review: Review) -> list[Section]:
 def _divide_unfolded(review: Review) -> list[Section]:
     """Return the sections, also those that only repeat changes of shared files."""
     sections: list[Section] = []
-    sections_by_key: dict[Hashable, Section] = {}
+    firsts: dict[Hashable, tuple[Section, tuple[str, str] | None]] = {}
+    by_form: dict[Hashable, list[Section]] = {}
     for section in _make_sections(review):
-        first = sections_by_key.setdefault(_make_comparison_key(section), section)
-        if first is section:
-            sections.append(section)
-        else:
-            first.alike.append(section.subject.path)
+        key, path = _make_comparison_key(section), section.subject.path
+        if key not in firsts:
+            is_alone = key == path or len(section.changes) < _MIN_REPEATED
+            forms = [] if is_alone else by_form.setdefault(_make_form_key(section), [])
+            renamed = ((other, names) for other in forms if (names := _find_renaming(other, section)) is not None)
+            firsts[key] = next(renamed, (section, None))
+            if firsts[key][0] is section:
+                sections.append(section)
+                forms.append(section)
+                continue
+        first, names = firsts[key]
+        first.alike.append(
+            path
+            if names is None
+            else phrase("{path} (with '{new}' instead of '{old}')", path=path, old=names[0], new=names[1])
+        )
     return list(_replace_repeated(sections))
+
+
+def _make_form_key(section: Section) -> Hashable:
+    """Return a key that is equal for sections whose changes may differ only in names."""
+    return section.subject.kind, *((change.effect, change.sentence.template) for change in section.changes)
+
+
+def _find_renaming(first: Section, section: Section) -> tuple[str, str] | None:
+    """Return the words of the paths whose replacement makes the changes of both sections equal, or None.
+
+    Files for several robots often have the name of the robot in their path and in the names of their parts.
+    """
+    if first.subject.figures or section.subject.figures:
+        return None
+    old_words, new_words = (
+        {word for name in _WORD.findall(item.subject.path) for word in (name, name.rstrip("0123456789")) if word}
+        for item in (first, section)
+    )
+    old_keys, new_keys = (list(map(_make_text_key, item.changes)) for item in (first, section))
+    pairs = product(sorted(old_words - new_words, key=len), sorted(new_words - old_words, key=len))
+    return next((pair for pair in pairs if [_replace_name(key, *pair) for key in old_keys] == new_keys), None)
+
+
+def _replace_name(key: _TextKey, old: str, new: str) -> _TextKey:
+    effect, text, reason, cases = key
+    return effect, text.replace(old, new), reason.replace(old, new), tuple(case.replace(old, new) for case in cases)
 
 
 def separate_code(sections: Sequence[Section]) -> tuple[list[Section], list[Section]]:
@@ -96,7 +143,7 @@ def _has_contents(subject: Subject, changes: Sequence[Change]) -> bool:
     return is_lone and (len(changes) > 1 or any("items" in change.sentence.arguments for change in changes))
 
 
-def _make_text_key(change: Change) -> Hashable:
+def _make_text_key(change: Change) -> _TextKey:
     return change.effect, str(format_change(change)), str(change.reason), change.cases
 
 

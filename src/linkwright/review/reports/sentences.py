@@ -201,7 +201,7 @@ def format_location(location: Location, path: str) -> Phrase | str:
     return f"{location.file}:{location.line}"
 
 
-def format_alike(paths: Sequence[str]) -> Phrase | None:
+def format_alike(paths: Sequence[str | Phrase]) -> Phrase | None:
     """Return the line for other files with the same changes, or None if there are none."""
     if not paths:
         return None

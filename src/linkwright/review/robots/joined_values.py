@@ -1,16 +1,24 @@
-"""Join the changes in the inertial of a link, or in the limits of a joint, in one line."""
+"""Join the changes in the inertial of a link, the limits of a joint or the numbers of a plugin in one line."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
-from linkwright.descriptions.comparison import Difference
-from linkwright.diagnostics import Phrase, phrase, term
+from linkwright.descriptions.comparison import GAZEBO, Difference
+from linkwright.diagnostics import Phrase, joined, phrase, term
 
 _BLOCK_TAGS = ("inertial", "limit")
 """The elements whose values are joined: ``<inertial>`` and ``<limit>``."""
+_PART_OF_GAZEBO = re.compile(r"(?P<part>(?:(?:plugin|sensor) \S+ )?)(?P<name>[^@()]+)")
+"""The plugin or sensor of a value in ``<gazebo>``, and the rest of its path.
+
+Plugins with the joint in parentheses are merged with those of other joints instead.
+"""
+_NUMBERS = re.compile(r"[-+.\deE ]*\d[-+.\deE ]*|true|false", re.IGNORECASE)
+"""The values that are joined. Names, such as topics, can be breaking."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +35,10 @@ class JoinedDifferences(Difference):
 
     def sentence(self) -> Phrase:
         """Return the differences in one line."""
+        if self.subject == "extension":
+            changes = joined([_format_value_of_gazebo(value) for value in self.values])
+            changes = phrase("{property}: {changes}", property=self.property, changes=changes) if self.property else changes
+            return phrase("{subject} '{name}': {new}", subject=term(self.subject), name=self.name, new=changes)
         return phrase(
             "{subject} '{name}': {property}: {new}",
             subject=term(self.subject),
@@ -37,7 +49,7 @@ class JoinedDifferences(Difference):
 
 
 def join_value_differences(differences: Iterable[Difference]) -> Iterator[Difference]:
-    """Yield the differences, with those in an inertial, or in a joint's limits, joined."""
+    """Yield the differences, with those in an inertial, a joint's limits, or a plugin, joined."""
     for key, group in groupby(differences, _find_block):
         values = tuple(group)
         if key is None or len(values) == 1:
@@ -60,9 +72,30 @@ def _find_block(difference: Difference) -> tuple[str, str] | None:
 
     The result is None if the value cannot be joined with others.
     """
+    if difference.subject == "extension":
+        return _find_part_of_gazebo(difference)
     block = difference.property.partition(" ")[0]
     is_value = difference.kind == "changed" and block in _BLOCK_TAGS and block != difference.property
     return (difference.name, block) if is_value and difference.old and difference.new else None
+
+
+def _find_part_of_gazebo(difference: Difference) -> tuple[str, str] | None:
+    """Return the ``<gazebo>`` element and the plugin or sensor in it whose number differs, or None for other values."""
+    match = _PART_OF_GAZEBO.fullmatch(difference.property)
+    is_of_gazebo = difference.name.partition(" ")[0] == GAZEBO and difference.kind == "changed"
+    values = [value for value in (difference.old, difference.new) if value is not None]
+    is_number = all(map(_NUMBERS.fullmatch, values))
+    return (difference.name, match["part"].strip()) if match is not None and is_of_gazebo and is_number else None
+
+
+def _format_value_of_gazebo(difference: Difference) -> Phrase:
+    match = _PART_OF_GAZEBO.fullmatch(difference.property)
+    name = difference.property if match is None else match["name"]
+    if difference.old is None:
+        return phrase("{part} added", part=f"{name} {difference.new}")
+    if difference.new is None:
+        return phrase("{part} removed", part=f"{name} {difference.old}")
+    return phrase("{parameter} {old} -> {new}", parameter=name, old=difference.old, new=difference.new)
 
 
 def _format_value(difference: Difference) -> str:

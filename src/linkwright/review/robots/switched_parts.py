@@ -1,17 +1,22 @@
-"""Find removed parts that the robot still has with the opposite value of an added boolean argument."""
+"""Find removed parts that the robot still has with another value of an argument."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from functools import cached_property
+from itertools import islice
 from typing import NamedTuple
 
+from linkwright.descriptions import Description
+from linkwright.descriptions.argument_sets import compared_values
 from linkwright.descriptions.comparison import Difference
 from linkwright.descriptions.pairs import Pair
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.file_pair import FilePair
 from linkwright.review.robots.cases import MAX_SWITCHES, OPPOSITES, Case, list_unused_arguments, try_read
 
+_MAX_COMPARED = 3
+"""The maximum number of values of arguments to try because a condition compares them."""
 _CONTENTS = "{change}: {contents}"
 """The form of the line about a removed element of an extension."""
 _SHAPE = " geometry"
@@ -21,7 +26,7 @@ _Part = tuple[str, str, str]
 
 
 class _Switch(NamedTuple):
-    """An added argument with the opposite of its default.
+    """An argument with another value than in the compared robots.
 
     Attributes:
         text: the argument with its value, as on a command line.
@@ -33,7 +38,7 @@ class _Switch(NamedTuple):
 
 
 class SwitchedParts:
-    """The parts that a robot only has with a value of an added argument.
+    """The parts that a robot only has with another value of an argument.
 
     Args:
         pair: both versions of the description.
@@ -67,14 +72,28 @@ class SwitchedParts:
             return
         old_arguments = case.old.expansion.arguments.keys() - list_unused_arguments(case.old)
         added = {name: value for name, value in case.new.expansion.arguments.items() if name not in old_arguments}
-        switched = {name: OPPOSITES[value] for name, value in added.items() if value in OPPOSITES}
-        for name, value in list(switched.items())[:MAX_SWITCHES]:
+        switched = [(name, OPPOSITES[value]) for name, value in added.items() if value in OPPOSITES]
+        switched += islice(dict.fromkeys(self._find_compared_values(case.new, added)), _MAX_COMPARED)
+        for name, value in switched[:MAX_SWITCHES]:
             model = self._pair.versions.new.model(self._pair.new_path, {**case.models.new.values, name: value})
             new = try_read(model)
             new_robot = getattr(new, "robot", None)
             if new_robot is not None:
                 comparison = Pair(case.models.old, model).compare(robot, new_robot)
                 yield _Switch(f"{name}:={value}", frozenset(_list_lacking_parts(comparison.differences)))
+
+
+    def _find_compared_values(self, new: Description, added: Collection[str]) -> Iterator[tuple[str, str]]:
+        """Yield the other values to which conditions compare added arguments, or changed files compare any argument."""
+        version = self._pair.versions.new
+        changed = {file.new_path for file in self._pair.versions.changed_files}
+        arguments = {} if new.expansion is None else new.expansion.arguments
+        for compared in compared_values(new.sources.values()):
+            is_in_changed = compared.span is not None and version.relative(compared.span.file) in changed
+            for name, value in compared.values.items():
+                is_other = arguments.get(name, value) != value and value not in OPPOSITES
+                if is_other and (name in added or is_in_changed):
+                    yield name, value
 
 
 def _is_removal(difference: Difference) -> bool:
