@@ -59,3 +59,18 @@ def test_removed_part_that_no_added_argument_brings_back_is_removed(review_robot
     (line,) = review_robot(visual, HEAD, argument)
     assert line.startswith("link 'base': visual 2 removed")
     assert "only with" not in line
+
+
+PLUGIN = '<gazebo><plugin name="drive" filename="libdrive.so">{}</plugin></gazebo>'
+
+
+@pytest.mark.parametrize(("value", "end"), [("false", "; with odometry:=false, it is false"), ("true", "")])
+def test_value_that_an_added_argument_brings_back_is_named_if_it_is_another_one(repository, compare, value, end):
+    lines = OLD.replace("</robot>", PLUGIN.format("<publish>true</publish>") + "</robot>")
+    element = f'<xacro:unless value="$(arg odometry)"><publish>{value}</publish></xacro:unless>'
+    argument = '<xacro:arg name="odometry" default="true"/>'
+    new = ROBOT.format(argument=argument, visual=VISUAL.format(1), head=HEAD + PLUGIN.format(element))
+    repository.commit({"arm_description/package.xml": PACKAGE_XML, PATH: lines})
+    repository.write({PATH: new})
+    (line,) = [line for line in sentences(subject(compare(repository), PATH)) if "publish" in line]
+    assert line == "extension 'gazebo': plugin drive publish removed: true" + (end or "; now only with odometry:=false")

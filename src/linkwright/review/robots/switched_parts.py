@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
 
@@ -26,10 +26,12 @@ class _Switch(NamedTuple):
     Attributes:
         text: the argument with its value, as on a command line.
         lacking: the parts that the new robot lacks with this value, or that have another shape there.
+        values: the values that differ from the old robot with this value of the argument.
     """
 
     text: str
     lacking: frozenset[_Part]
+    values: Mapping[_Part, str]
 
 
 class SwitchedParts:
@@ -49,12 +51,15 @@ class SwitchedParts:
         if not _is_removal(difference):
             return text
         key = _make_key(difference)
-        switch = next((switch.text for switch in self._switches if key not in switch.lacking), None)
+        switch = next((switch for switch in self._switches if key not in switch.lacking), None)
         if switch is None:
             return text
+        if key in switch.values:
+            value = switch.values[key]
+            return phrase("{change}; with {switch}, it is {value}", change=text, switch=switch.text, value=value)
         if text.template == _CONTENTS:
-            return phrase("{change}: {contents}; now only with {switch}", **text.arguments, switch=switch)
-        return phrase("{change}; now only with {switch}", change=text, switch=switch)
+            return phrase("{change}: {contents}; now only with {switch}", **text.arguments, switch=switch.text)
+        return phrase("{change}; now only with {switch}", change=text, switch=switch.text)
 
     @cached_property
     def _switches(self) -> list[_Switch]:
@@ -74,7 +79,10 @@ class SwitchedParts:
             new_robot = getattr(new, "robot", None)
             if new_robot is not None:
                 comparison = Pair(case.models.old, model).compare(robot, new_robot)
-                yield _Switch(f"{name}:={value}", frozenset(_list_lacking_parts(comparison.differences)))
+                lacking = frozenset(_list_lacking_parts(comparison.differences))
+                changed = (difference for difference in comparison.differences if difference.kind == "changed")
+                values = {_make_key(difference): difference.new or "''" for difference in changed}
+                yield _Switch(f"{name}:={value}", lacking, values)
 
 
 def _is_removal(difference: Difference) -> bool:
