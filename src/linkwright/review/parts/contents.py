@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
@@ -25,6 +26,7 @@ from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
+from linkwright.review.parts.default_values import is_same_by_default
 from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
 from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
@@ -287,7 +289,8 @@ class _ReportedDifference:
         if difference.new is None or difference.old is None:
             return self._describe_presence()
         old, new = _shorten_values(difference.old, difference.new)
-        return phrase("{element}: {old} -> {new}", element=self.element, old=old or "-", new=new or "-")
+        text = phrase("{element}: {old} -> {new}", element=self.element, old=old or "-", new=new or "-")
+        return phrase("{change} (the same by default)", change=text) if self._is_same_by_default else text
 
     def _describe_presence(self) -> Phrase:
         """Return the sentence about an added or removed value or element."""
@@ -306,10 +309,16 @@ class _ReportedDifference:
         element = self.difference.new_element or self.difference.old_element
         return format_values(element, _MAX_VALUES) if self.difference.is_whole and element is not None else None
 
+    @cached_property
+    def _is_same_by_default(self) -> bool:
+        return is_same_by_default(self.pair, self.macro, self.difference)
+
     @property
     def reason(self) -> Phrase | None:
         """The reason why the change is breaking, or None if it is not."""
         difference, old = self.difference, self.difference.old_element
+        if self._is_same_by_default:
+            return None
         if old is None:
             return self._find_default_topic_reason() or self._find_repeated_call_reason()
         if difference.value == "conditions":
