@@ -28,6 +28,7 @@ from linkwright.review.parts.name_substitution import CALL, ComparedContent
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.properties import compare_properties
+from linkwright.review.parts.readings import compare_readings
 from linkwright.review.unprefixed_calls import compare_prefixes
 from linkwright.review.versions import Version, Versions
 
@@ -185,6 +186,7 @@ class _Comparer:
         compare_properties(pair, self._graphs.new)
         compare_contents(pair, renamed)
         compare_moved_to_callers(pair, self._graphs, renamed)
+        compare_readings(pair, self._graphs)
 
     def _read_outline(self, version: Version, path: str | None) -> Outline | Phrase | None:
         """Return the outline of a file, the reason why it cannot be read, or None for other files."""

@@ -27,7 +27,7 @@ from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
 from linkwright.review.parts.default_values import is_same_by_default
-from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
+from linkwright.review.parts.elements import BLOCK, CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
 from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
@@ -109,6 +109,8 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
     sides = [is_old for is_old, element in zip((True, False), elements, strict=True) if element is not None]
     if difference.value == "conditions":
         return _is_condition_shown(pair, difference)
+    if difference.value == BLOCK:
+        return False  # it concerns all callers of the macro
     if difference.new is None and elements[1] is not None and pair.loses_parameter(elements[1], difference.value):
         return True  # the lost parameter is reported
     if None in (difference.old, difference.new) and f"${{{difference.value}}}" in (difference.old, difference.new):
@@ -231,7 +233,7 @@ class _ReportedDifference:
         words = [*self.difference.path]
         if len(words) > 1 and words[0] == f"gazebo {words[1]}":
             words[0] = "gazebo"
-        if self.difference.value not in ("", "text", "conditions"):
+        if self.difference.value not in ("", "text", "conditions", BLOCK):
             words.append(self.difference.value)
         return " ".join(words)
 
@@ -286,11 +288,24 @@ class _ReportedDifference:
                 text or phrase("always") for text in _shorten_values(difference.old or "", difference.new or "")
             )
             return phrase("{element}: condition {old} -> {new}", element=self.element, old=old, new=new)
+        if difference.value == BLOCK:
+            return self._describe_block()
         if difference.new is None or difference.old is None:
             return self._describe_presence()
         old, new = _shorten_values(difference.old, difference.new)
         text = phrase("{element}: {old} -> {new}", element=self.element, old=old or "-", new=new or "-")
         return phrase("{change} (the same by default)", change=text) if self._is_same_by_default else text
+
+    def _describe_block(self) -> Phrase:
+        """Return the sentence about an element that a block of the caller replaces, or the reverse."""
+        difference, old = self.difference, self.difference.old_element
+        if old is not None and old.tag == _INSERT:
+            name, value = old.attributes.get("name", ""), _truncate(difference.new or "")
+            return phrase(
+                "{element}: block '{name}' of the caller -> {new}", element=self.element, name=name, new=value
+            )
+        name, value = difference.path[-1].partition(" ")[0], _truncate(difference.old or "")
+        return phrase("{element}: {old} -> block '{name}' of the caller", element=self.element, name=name, old=value)
 
     def _describe_presence(self) -> Phrase:
         """Return the sentence about an added or removed value or element."""

@@ -10,7 +10,7 @@ from linkwright.descriptions.comparison import Difference
 from linkwright.descriptions.pairs import Pair
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.file_pair import FilePair
-from linkwright.review.robots.cases import MAX_SWITCHES, OPPOSITES, Case, list_unused_arguments, try_read
+from linkwright.review.robots.cases import MAX_SWITCHES, Case, find_opposites, list_unused_arguments, try_read
 
 _CONTENTS = "{change}: {contents}"
 """The form of the line about a removed element of an extension."""
@@ -72,7 +72,7 @@ class SwitchedParts:
             return
         old_arguments = case.old.expansion.arguments.keys() - list_unused_arguments(case.old)
         added = {name: value for name, value in case.new.expansion.arguments.items() if name not in old_arguments}
-        switched = {name: OPPOSITES[value] for name, value in added.items() if value in OPPOSITES}
+        switched = find_opposites(self._pair.versions.new, case.new, added)
         for name, value in list(switched.items())[:MAX_SWITCHES]:
             model = self._pair.versions.new.model(self._pair.new_path, {**case.models.new.values, name: value})
             new = try_read(model)
