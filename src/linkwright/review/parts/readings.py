@@ -20,7 +20,7 @@ _WORD = re.compile(r"\w+")
 def compare_readings(pair: PartPair, graphs: IncludeGraphs) -> None:
     """Report the environment variables that no description read before, and arguments that had no use.
 
-    Default values of arguments are in the lines about the arguments. A finding tells of an argument that certainly had
+    Default values of arguments are in the lines about the arguments. A finding names an argument that certainly had
     no effect.
 
     Args:

@@ -29,7 +29,7 @@ MAX_SWITCHES = 8
 """The maximum number of boolean arguments whose opposite value is tried."""
 _MISSING_CODES = ("PKG101", "XML101")
 """The codes of packages and files that are not found."""
-_OPPOSITES: Mapping[str, str] = {"true": "false", "false": "true", "True": "False", "False": "True"}
+OPPOSITES: Mapping[str, str] = {"true": "false", "false": "true", "True": "False", "False": "True"}
 _NUMERIC_OPPOSITES: Mapping[str, str] = {"0": "1", "1": "0"}
 """The values of arguments that are boolean if a condition uses them, such as ``$(optenv ROBOT_LASER 0)``."""
 _CONDITIONS = ("xacro:if", "xacro:unless")
@@ -147,7 +147,7 @@ def find_opposites(version: Version, description: Description, values: Mapping[s
     """
     numeric = {name for name, value in values.items() if value in _NUMERIC_OPPOSITES}
     conditional = numeric and numeric & _find_arguments_in_conditions(version, description)
-    opposites = {name: _OPPOSITES[value] for name, value in values.items() if value in _OPPOSITES}
+    opposites = {name: OPPOSITES[value] for name, value in values.items() if value in OPPOSITES}
     return opposites | {name: _NUMERIC_OPPOSITES[values[name]] for name in values if name in conditional}
 
 
