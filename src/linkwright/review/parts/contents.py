@@ -8,6 +8,7 @@ from functools import cached_property
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
+from linkwright.diagnostics.phrase import count_shown
 from linkwright.review.breaking import (
     MOVING_TYPES,
     call_reason,
@@ -476,10 +477,11 @@ def _merge_differences(differences: list[_ReportedDifference]) -> Iterator[Chang
     breaking = [change for change in changes if change.effect is Effect.BREAKING]
     not_breaking = [change for change in changes if change.effect is not Effect.BREAKING]
     yield from breaking
-    yield from not_breaking[:_MAX_LINES]
-    if len(not_breaking) > _MAX_LINES:
-        text = counted("{count} more change", "{count} more changes", len(not_breaking) - _MAX_LINES)
-        yield replace(not_breaking[_MAX_LINES], sentence=text, other_names=())
+    shown = count_shown(len(not_breaking), _MAX_LINES)
+    yield from not_breaking[:shown]
+    if len(not_breaking) > shown:
+        text = counted("{count} more change", "{count} more changes", len(not_breaking) - shown)
+        yield replace(not_breaking[shown], sentence=text, other_names=())
 
 
 def _collect_words(root: Element) -> set[str]:

@@ -323,11 +323,12 @@ def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
         elif not pair.cases:
             pair.add_unreadable(pair.versions.old, old)
     for (old, new), cases_of_fault in names.items():
-        callers = _find_callers(pair.versions.new, pair.new_path, cases_of_fault) if old is None and pair.cases else ()
+        callers = _find_callers(pair.versions.new, pair.new_path, cases_of_fault) if new and pair.cases else ()
         pair.add_faults(old, new, tuple(cases_of_fault) if pair.cases or len(names) > 1 else (), callers)
         if new is None:
             _report_contents(pair, next(failure.new for failure in failures if failure.name == cases_of_fault[0]))
-    pair.cases += (name for cases_of_fault in names.values() for name in cases_of_fault)
+    changed = (names_of_fault for faults, names_of_fault in names.items() if None in faults)
+    pair.cases += (name for names_of_fault in changed for name in names_of_fault)
 
 
 def _needs_other_files(result: Description | LinkwrightError) -> bool:
