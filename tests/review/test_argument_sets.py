@@ -101,6 +101,22 @@ def test_paths_in_values_lead_to_the_files_of_each_version(package, compare):
     assert sentences(review_subject) == ["joint probe_joint origin xyz: 0 0 0.2 -> 0 0 0.3"]
 
 
+def test_call_that_neither_version_can_read_is_named_and_the_changes_with_the_others_are_those_of_all(package, compare):
+    text = ARM.replace("</robot>", "<gazebo><topic>$(arg topic)</topic></gazebo></robot>")
+    good = LAUNCH.replace('mappings={"tool": tool}', 'mappings={"topic": "a"}')
+    bad = LAUNCH.replace('mappings={"tool": tool}', 'mappings={"tool": "probe"}')
+    package.commit(
+        {PATH: text, "arm_description/launch/arm.launch.py": good, "arm_description/launch/bad.launch.py": bad}
+    )
+    package.commit({PATH: text.replace('xyz="0 0 0.2"', 'xyz="0 0 0.3"')})
+    review_subject = subject(compare(package, "HEAD~1..HEAD"), PATH)
+    assert [change.cases for change in review_subject.changes] == [()]
+    (problem,) = review_subject.problems
+    assert str(problem.text).startswith(
+        "called by 'arm_description/launch/bad.launch.py', neither version can be read: "
+    )
+
+
 def test_paths_in_reports_are_relative(package, compare):
     text = ARM.replace(
         "</robot>", "<gazebo><plugin name='p'><config>$(find arm_description)/a.yaml</config></plugin></gazebo></robot>"

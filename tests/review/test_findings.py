@@ -226,6 +226,19 @@ def test_package_of_launch_files_is_declared_only_by_their_manifest(package, fil
     assert bool(find_fixed(package, "LW848", "arm_description/package.xml", message)) == is_fixed
 
 
+@pytest.mark.parametrize(("name", "is_new"), [("gripper_bringup", True), ("warehouse_ros_mongo", False)])
+def test_generated_launch_file_of_moveit_that_newly_uses_a_package_of_the_repository(package, compare, name, is_new):
+    """MoveIt generates launch files that start packages for every possible use."""
+    path, text = "arm_moveit/launch/demo.launch", '<launch><include file="$(find {})/launch/all.launch"/></launch>'
+    manifests = {
+        f"{each}/package.xml": PACKAGE_XML.replace("arm_description", each)
+        for each in ("arm_moveit", "gripper_bringup")
+    }
+    package.commit({**manifests, "arm_moveit/.setup_assistant": "", path: text.format("arm_moveit")})
+    package.commit({path: text.format(name)})
+    assert ("LW848" in finding_codes(compare(package, "HEAD~1..HEAD").new_findings)) is is_new
+
+
 SETUP = """from setuptools import setup
 
 setup(

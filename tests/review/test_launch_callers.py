@@ -373,7 +373,7 @@ def test_node_that_becomes_a_lifecycle_node_is_named(repository, compare):
     repository.write({path: new})
     assert sentences(subject(compare(repository), path)) == [
         "node 'arm/hand': lifecycle true added",
-        "other code added: start = EmitEvent(event=make(hand)) and 1 more statement",
+        "other code added: start = EmitEvent(event=make(hand)); ld.add_action(start)",
     ]
 
 

@@ -62,7 +62,7 @@ def test_all_remappings_of_an_added_node_are_shown(review_changes):
         "", f'<node pkg="cam" type="driver" name="cam">{node}<param name="a" value="1"/></node>'
     )
     assert change.count("remapping") == len(topics)
-    assert change.endswith("and 1 more")
+    assert change.endswith("parameter a 1")
 
 
 @pytest.mark.parametrize(

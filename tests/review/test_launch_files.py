@@ -148,7 +148,7 @@ def test_other_code_is_reported_besides_actions(review_changes):
     ("added", "code"),
     [
         ("    pose = swap(pose)\n", "pose = swap(pose)"),
-        ("    frame = Frame()\n    pose = frame.swap(pose)\n", "frame = Frame() and 1 more statement"),
+        ("    frame = Frame()\n    pose = frame.swap(pose)\n", "frame = Frame(); pose = frame.swap(pose)"),
     ],
 )
 def test_second_assignment_of_a_name_is_the_only_added_code(review_changes, added, code):
@@ -495,7 +495,7 @@ def generate_launch_description():
         ("    return L", '    if not model:\n        sys.exit("no model")\n    return L',
          "added: sys.exit('no model')", True),
         ("    return L", '    if model:\n        print(model)\n    return L',
-         "other code added: if model: ... and 1 more statement", False),
+         "other code added: if model: ...; print(model)", False),
         ('"rate": 10', '"rate": 10.0', "node 'arm/driver': parameter rate 10 -> 10.0", True),
         ('"rate": 10', '"rate": 20', "node 'arm/driver': parameter rate 10 -> 20", False),
         ('"id": "1"', '"id": 1', "node 'arm/driver': parameter id '1' -> 1", True),

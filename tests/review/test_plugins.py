@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.review.reports.sentences import format_change
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
@@ -247,4 +248,38 @@ def test_topics_of_a_source_that_an_added_plugin_has_are_not_lost(repository, co
     lost = "".join(f"    node.create_publisher(Odometry, '{name}', 1)\n" for name in names)
     repository.commit({PATH: robot_text(LIGHT), "arm_description/driver.py": source + lost})
     repository.write({PATH: robot_text(LIGHT, added), "arm_description/driver.py": source})
+    assert bool(breaking(compare(repository))) is is_breaking
+
+
+SPACE = """<gazebo><plugin name="{}" filename="lib{}.so"><ros><namespace>{}</namespace>
+  <remapping>~/out:={}</remapping></ros></plugin></gazebo>"""
+
+
+def test_another_namespace_of_several_plugins_is_one_change(repository, compare):
+    for space in ("arm", ""):
+        plugins = [SPACE.format(name, name, space, name) for name in ("camera", "laser", "drive")]
+        repository.write({PATH: robot_text(*plugins)})
+        if space:
+            repository.commit({PATH: robot_text(*plugins)})
+    (change,) = subject(compare(repository), PATH).changes
+    line = "extension 'gazebo': plugin camera ros namespace arm -> ''; also 'laser', 'drive'"
+    assert str(format_change(change)) == line
+    assert change.reason is not None
+
+
+@pytest.mark.parametrize(("old", "new"), [("//scan", "/scan"), ("//scan", "/laser")])
+def test_names_that_ros_2_refuses_break_nothing(repository, compare, old, new):
+    """An empty prefix in ``/$(arg prefix)/scan`` gives such a name."""
+    repository.commit({PATH: robot_text(SPACE.format("laser", "laser", "arm", old))})
+    repository.write({PATH: robot_text(SPACE.format("laser", "laser", "arm", new))})
+    result = compare(repository)
+    assert len(subject(result, PATH).changes) == 1
+    assert breaking(result) == []
+
+
+@pytest.mark.parametrize(("new", "is_breaking"), [("/scan", False), ("/laser", True)])
+def test_repeated_slashes_count_as_one(repository, compare, new, is_breaking):
+    drive = '<gazebo><plugin name="laser" filename="liblaser.so"><topicName>{}</topicName></plugin></gazebo>'
+    repository.commit({PATH: robot_text(drive.format("//scan"))})
+    repository.write({PATH: robot_text(drive.format(new))})
     assert bool(breaking(compare(repository))) is is_breaking

@@ -9,13 +9,13 @@ import pytest
 
 from linkwright.diagnostics import phrase
 from linkwright.review import Change, Effect, Review, Subject, SubjectKind
-from linkwright.review.changes import Location
+from linkwright.review.changes import Figure, Location
 from linkwright.review.reports import as_data, as_html, as_markdown, as_text
 from linkwright.review.reports.sentences import format_change
 
 
-def make_subject(path, changes, kind=SubjectKind.LAUNCH_FILE):
-    return Subject(kind, path, path, path, changes)
+def make_subject(path, changes, kind=SubjectKind.LAUNCH_FILE, **others):
+    return Subject(kind, path, path, path, changes, **others)
 
 
 def make_code_change(name, path="src/a.cpp"):
@@ -192,10 +192,42 @@ def test_changes_in_common_with_an_earlier_file_are_counted():
     ]
     review = Review("main", "topic", subjects)
     text = as_text(review)
-    assert "b.yaml\n  - rate 7 -> 8\n  - the same 2 changes as in a.yaml, but not: rate 5 -> 6\n" in text
+    assert "b.yaml\n  - rate 7 -> 8\n  - 2 of the 3 changes of a.yaml, but not: rate 5 -> 6\n" in text
     assert "c.yaml\n  - speed 1 -> 2\n" in text
     assert "0 breaking changes, 8 changes" in text
     assert [len(subject["changes"]) for subject in as_data(review)["subjects"]] == [3, 3, 2]
+
+
+@pytest.mark.parametrize(
+    ("count", "line"),
+    [(2, "b.yaml\n  - common 0 -> 1\n  - common 1 -> 2\n"), (4, "b.yaml\n  - 4 of the 7 changes of a.yaml\n")],
+)
+def test_few_changes_in_common_with_a_file_that_has_many_others_are_listed(count, line):
+    """A reader cannot tell which they are."""
+    common = [Change(phrase(f"common {number} -> {number + 1}")) for number in range(count)]
+    others = [Change(phrase(f"other {number} -> {number + 1}")) for number in range(3)]
+    subjects = [
+        make_subject("a.yaml", [*common, *others], SubjectKind.PARAMETERS),
+        make_subject("b.yaml", common, SubjectKind.PARAMETERS),
+    ]
+    assert line in as_text(Review("main", "topic", subjects))
+
+
+def test_long_arguments_are_not_repeated_in_successive_lines():
+    cases = ("", "tower:=true camera:=front namespace:=robot_in_the_hall")
+    changes = [Change(phrase(f"mass {number} -> 9"), cases=cases[1:]) for number in range(2)]
+    subjects = [make_subject("a.urdf.xacro", [*changes, Change(phrase("height 1 -> 2"))], cases=cases)]
+    text = as_text(Review("main", "topic", subjects))
+    assert f"mass 0 -> 9 (with {cases[1]})\n  - mass 1 -> 9 (with the same arguments)\n  - height 1 -> 2\n" in text
+
+
+def test_equal_figures_of_a_robot_and_an_included_one_are_shown_once():
+    change = Change(phrase("link 'arm' added"), location=Location("arm.urdf", 3, 1))
+    figures = [Figure(phrase("mass"), "1", "2", "kg")]
+    subjects = [make_subject(path, [change], figures=figures) for path in ("all.urdf.xacro", "arm.urdf")]
+    text = as_text(Review("main", "topic", subjects))
+    assert text.count("mass: 1 -> 2 kg") == 1
+    assert "  = the same in one more file: arm.urdf\n" in text
 
 
 def test_file_with_only_breaking_changes_has_no_section_of_its_own():

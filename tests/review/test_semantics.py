@@ -38,6 +38,8 @@ STATE = '  <group_state name="home" group="manipulator"><joint name="upper_joint
         ('  <end_effector name="tool" group="hand" parent_link="lower"/>\n', "",
          "end_effector 'tool' removed: group hand, parent_link lower",
          "programs that use the end effector 'tool' do not find it"),
+        ('group="hand" parent', 'group="manipulator" parent', "end_effector 'tool': group hand -> manipulator",
+         "programs that move the end effector 'tool' move the group 'manipulator' instead of 'hand'"),
         ('parent_frame="world"', 'parent_frame="map"', "virtual_joint 'fixed': parent_frame world -> map",
          "MoveIt no longer plans in the frame 'world'"),
         ('  <virtual_joint name="fixed" type="fixed" parent_frame="world" child_link="base_link"/>\n', "",
@@ -289,6 +291,16 @@ TWO_HANDS = """<robot name="arms">
   <end_effector name="right" group="hands" parent_link="r_hand"/>
 </robot>
 """
+
+
+def test_an_end_effector_that_follows_the_new_name_of_its_group_is_no_other_one(package, compare):
+    package.commit({PATH: SRDF})
+    package.write({PATH: SRDF.replace('"hand"', '"gripper"')})
+    changes = subject(compare(package), PATH).changes
+    reasons = [str(change.reason) for change in changes if "end_effector" in str(change.sentence)]
+    assert reasons == ["None"]
+
+
 OTHER_LINKS = TWO_HANDS.replace("_hand", "_tip")
 REASON = "grasps of the end effector 'left' move 'l_tip' instead of 'l_hand' to their poses"
 

@@ -66,3 +66,18 @@ def test_removed_part_that_another_value_of_an_added_argument_brings_back_names_
     assert (
         line == f"link 'base': visual 2 removed: origin xyz 0 0 0 m, origin rpy 0 0 0 rad, geometry box 1 1 1 m{note}"
     )
+
+
+PLUGIN = '<gazebo><plugin name="drive" filename="libdrive.so">{}</plugin></gazebo>'
+
+
+@pytest.mark.parametrize(("value", "end"), [("false", "; with odometry:=false, it is false"), ("true", "")])
+def test_value_that_an_added_argument_brings_back_is_named_if_it_is_another_one(repository, compare, value, end):
+    lines = OLD.replace("</robot>", PLUGIN.format("<publish>true</publish>") + "</robot>")
+    element = f'<xacro:unless value="$(arg odometry)"><publish>{value}</publish></xacro:unless>'
+    argument = '<xacro:arg name="odometry" default="true"/>'
+    new = ROBOT.format(argument=argument, visual=VISUAL.format(1), head=HEAD + PLUGIN.format(element))
+    repository.commit({"arm_description/package.xml": PACKAGE_XML, PATH: lines})
+    repository.write({PATH: new})
+    (line,) = [line for line in sentences(subject(compare(repository), PATH)) if "publish" in line]
+    assert line == "extension 'gazebo': plugin drive publish removed: true" + (end or "; now only with odometry:=false")

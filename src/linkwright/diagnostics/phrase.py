@@ -293,12 +293,21 @@ def joined(texts: Iterable[str], separator: str = ", ", last: str | None = None)
 
 
 def joined_first(texts: Iterable[str], limit: int) -> Phrase:
-    """Join the first `limit` texts, and add the number of the others: ``a, b and 3 more``."""
+    """Join the first `limit` texts, and add the number of the others: ``a, b and 3 more``.
+
+    A single other text is joined, too.
+    """
     all_texts = list(texts)
-    shown_texts = joined(all_texts[:limit])
-    if len(all_texts) <= limit:
+    shown = count_shown(len(all_texts), limit)
+    shown_texts = joined(all_texts[:shown])
+    if len(all_texts) == shown:
         return shown_texts
-    return phrase("{names} and {count} more", names=shown_texts, count=len(all_texts) - limit)
+    return phrase("{names} and {count} more", names=shown_texts, count=len(all_texts) - shown)
+
+
+def count_shown(count: int, limit: int) -> int:
+    """Return how many of some items to show: at most a limit, and one more instead of ``and 1 more``."""
+    return count if count <= limit + 1 else limit
 
 
 def quoted_names(names: Iterable[object], last: str | None = None) -> Phrase:

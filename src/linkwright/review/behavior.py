@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Phrase, counted, foreign, phrase
+from linkwright.diagnostics.phrase import count_shown
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.review.changes import Change, Effect, Problem, Subject, SubjectKind
 from linkwright.review.paths import PathComparison, find_differing_paths, read_paths
@@ -216,8 +217,9 @@ def _is_fixed(keys: Sequence[ParameterValues], index: int) -> bool:
 
 
 def _make_path_changes(comparisons: Sequence[PathComparison]) -> Iterator[Change]:
-    yield from map(_make_path_change, comparisons[:_MAX_DRAWN_COMPARISONS])
-    count = len(comparisons) - _MAX_DRAWN_COMPARISONS
+    shown = count_shown(len(comparisons), _MAX_DRAWN_COMPARISONS)
+    yield from map(_make_path_change, comparisons[:shown])
+    count = len(comparisons) - shown
     if count > 0:
         yield Change(
             counted(

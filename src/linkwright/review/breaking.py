@@ -180,9 +180,14 @@ def find_plugin_name_reason(difference: Difference) -> Phrase | None:
         return None if is_same_name else _namespace_reason(extract_used_name(difference.old or ""))
     if difference.old and _CAMERA_NAME.fullmatch(tag) and not is_same_name:
         return _namespace_reason(difference.old)
-    if difference.old and NAME_TAGS.search(tag) and not is_same_name:
+    if difference.old and NAME_TAGS.search(tag) and not is_same_name and not _is_refused(difference):
         return name_reason(extract_used_name(difference.old))
     return None
+
+
+def _is_refused(difference: Difference) -> bool:
+    """Return whether ROS 2 refuses the old name in the ``<ros>`` of a plugin, because it has an empty part."""
+    return "ros remapping" in difference.property and "//" in (difference.old or "")
 
 
 def _namespace_reason(name: str) -> Phrase:

@@ -9,6 +9,7 @@ from difflib import SequenceMatcher
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
+from linkwright.diagnostics.phrase import count_shown
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.excerpts import differing_excerpts, shorten
@@ -102,10 +103,11 @@ def _find_started_program(line: str) -> str:
 def _format_first(lines: list[str]) -> Phrase:
     """Return the first lines, those with commands of ROS before others."""
     ordered = sorted(lines, key=lambda line: _ROS_COMMAND.search(line) is None)
-    if len(ordered) > _MAX_SHOWN:
-        rest = counted("{count} more line", "{count} more lines", len(ordered) - _MAX_SHOWN)
-        return joined([*(f"`{shorten(line, _MAX_SHORT_LENGTH)}`" for line in ordered[:_MAX_SHOWN]), rest])
-    return joined([f"`{shorten(line, _MAX_SHORT_LENGTH)}`" for line in ordered])
+    shown = count_shown(len(ordered), _MAX_SHOWN)
+    texts: list[Phrase | str] = [f"`{shorten(line, _MAX_SHORT_LENGTH)}`" for line in ordered[:shown]]
+    if len(ordered) > shown:
+        texts.append(counted("{count} more line", "{count} more lines", len(ordered) - shown))
+    return joined(texts)
 
 
 def _format_lines(added: Phrase | str, removed: Phrase | str) -> Phrase:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from linkwright.diagnostics import LinkwrightError, Phrase, Span, foreign, phrase, quoted_names
+from linkwright.diagnostics import LinkwrightError, Phrase, Span, foreign, joined_first, phrase, quoted, quoted_names
 from linkwright.review.changes import Change, Effect, ExpandedElement, Figure, Location, Problem, RobotScene, ViewImages
 from linkwright.review.versions import Version, Versions
 
@@ -145,12 +145,19 @@ class FilePair:
             old: the fault of the old version; None if it can be read.
             new: the fault of the new version; None if it can be read.
             cases: the names of the argument sets with which the description cannot be read; empty for all.
-            callers: the files that can no longer use the description, if others can; else empty.
+            callers: the files that cannot use the description, if others can; else empty.
         """
         if old is not None and new is not None:
             is_same_file = (old.path, new.path) == (self.old_path, self.new_path) or old.path == new.path
             if is_same_file and old.reason == new.reason:
-                self._add(Problem(phrase("neither version can be read: {reason}", reason=new.text), is_of_both=True))
+                text = phrase("neither version can be read: {reason}", reason=new.text)
+                if callers:
+                    text = phrase(
+                        "called by {names}, neither version can be read: {reason}",
+                        names=joined_first(dict.fromkeys(map(quoted, callers)), _MAX_NAMES),
+                        reason=new.text,
+                    )
+                self._add(Problem(text, is_of_both=True))
             else:
                 self.add_unreadable(self.versions.old, old, is_of_both=True)
                 self.add_unreadable(self.versions.new, new, is_of_both=True)
@@ -182,14 +189,9 @@ class FilePair:
     def add_unevaluated(self, names: list[str]) -> None:
         """Report the problem that values of links and joints need definitions in missing files."""
         text = phrase(
-            "values that need definitions of missing files are not compared: {names}", names=quoted_names(names)
+            "values that need definitions of missing files are not compared: {names}",
+            names=joined_first(map(quoted, names), _MAX_NAMES),
         )
-        if len(names) > _MAX_NAMES:
-            text = phrase(
-                "values that need definitions of missing files are not compared: {names} and {count} more",
-                names=quoted_names(names[:_MAX_NAMES]),
-                count=len(names) - _MAX_NAMES,
-            )
         self.add_problem(text)
 
     def add_problem(self, text: Phrase) -> None:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import replace
 
+from linkwright.descriptions.comparison import ROS2_CONTROL
 from linkwright.diagnostics import phrase
 from linkwright.review.changes import REMOVED_VALUE, Change, Location
 from linkwright.review.merged_interfaces import merge_interfaces
@@ -13,6 +14,8 @@ from linkwright.review.merged_reasons import merge_reasons
 
 _PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+|plugin \S+ \((?P<joint>[^()]+)\)) (?P<property>.+)")
 """A property of hardware of ros2_control below one of its joints, GPIOs or sensors, or of a plugin for a joint."""
+_PLUGIN = re.compile(r"(?:.* )?plugin (?P<name>\S+) (?P<property>[^()]+)")
+"""A parameter of a plugin, perhaps in a sensor."""
 _PARAMETER = re.compile(r"(?P<parent>(?:.* )?)(?P<parameter>param \S+)")
 """A parameter of hardware of ros2_control, or of one of its joints, as a whole."""
 _TRANSMISSION = "transmission "
@@ -35,6 +38,7 @@ def merge_changes(changes: Iterable[Change]) -> list[Change]:
     for key, names in (
         (_make_content_key, _list_names),
         (_make_part_key, _list_part_names),
+        (_make_plugin_key, _list_plugin_names),
         (_make_parameter_key, _list_parameter_names),
     ):
         groups: dict[Hashable, list[Change]] = {}
@@ -128,6 +132,26 @@ def _list_part_names(change: Change) -> tuple[str, ...]:
         return (f"{change.property_name} -> {new_name}",)
     part = _PART.fullmatch(change.property_name)
     return (change.name,) if part is None else (part["joint"] or part["part"],)
+
+
+def _make_plugin_key(change: Change) -> Hashable | None:
+    """Return a key that is equal for the same change to the same parameter of other plugins; None for other changes."""
+    plugin = _PLUGIN.fullmatch(change.property_name)
+    if plugin is None or change.other_names or change.name.startswith(ROS2_CONTROL):
+        return None
+    arguments = change.sentence.arguments
+    return (
+        change.effect,
+        plugin["property"],
+        change.values,
+        change.sentence.template,
+        str(arguments.get("contents", "")),
+    )
+
+
+def _list_plugin_names(change: Change) -> tuple[str, ...]:
+    plugin = _PLUGIN.fullmatch(change.property_name)
+    return (change.name if plugin is None else plugin["name"],)
 
 
 def _make_parameter_key(change: Change) -> Hashable | None:

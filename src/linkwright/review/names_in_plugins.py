@@ -8,6 +8,7 @@ from linkwright.descriptions.comparison import Difference
 
 NAME_TAGS = re.compile(r"topic|namespace|frame(?!_?(rate|skip|count))|remapping|\bservice", re.IGNORECASE)
 """The tags of parameters with names in the graph or in tf."""
+_SLASHES = re.compile("//+")
 NAMESPACE_TAG = re.compile(r"namespace", re.IGNORECASE)
 """The tags of the namespaces of plugins."""
 
@@ -15,9 +16,10 @@ NAMESPACE_TAG = re.compile(r"namespace", re.IGNORECASE)
 def extract_used_name(value: str) -> str:
     """Return the name that other programs use.
 
-    For a remapping such as ``~/out:=scan``, it is the right side.
+    For a remapping such as ``~/out:=scan``, it is the right side. Repeated slashes, as in ``/$(arg prefix)/scan`` with
+    an empty prefix, count as one.
     """
-    return value.rpartition(":=")[2].strip()
+    return _SLASHES.sub("/", value.rpartition(":=")[2].strip())
 
 
 def find_old_path(difference: Difference, path: str) -> str | None:

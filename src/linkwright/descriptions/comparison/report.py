@@ -55,9 +55,14 @@ def sentence(difference: Difference, title: tuple[Phrase, str] | None = None) ->
         subject=subject,
         name=name,
         property=difference.property,
-        old="-" if difference.old is None else difference.old,
-        new=" ".join(filter(None, ("-" if difference.new is None else difference.new, difference.unit))),
+        old=_format_value(difference.old),
+        new=" ".join(filter(None, (_format_value(difference.new), difference.unit))),
     )
+
+
+def _format_value(value: str | None) -> str:
+    """Return a value, ``-`` for none, and quotation marks for an empty one."""
+    return "-" if value is None else value or "''"
 
 
 def as_data(comparison: Comparison, label: Label) -> list[dict[str, Any]]:

@@ -21,6 +21,7 @@ from linkwright.lint.rules.package_python import is_ament_python
 from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
+from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.share_layout import find_substituted_executables
 
 if TYPE_CHECKING:
@@ -78,7 +79,10 @@ _LAUNCH_FOLDER = "launch"
 """The folder of launch files. Those that others include are often called ``NAME.xml``."""
 _LAUNCH_ROOT = lazy_pattern(r"<launch[\s>]")
 _SETUP_ASSISTANT = ".setup_assistant"
-"""The file of a package whose launch files MoveIt generates; they start packages for every possible use."""
+"""The file of a package whose launch files MoveIt generates; they start packages for every possible use.
+
+They name no package next to their own, except the one with the robot, which MoveIt declares.
+"""
 _TEST_FOLDERS = frozenset({"test", "tests"})
 _COMMENT = lazy_pattern(r"<!--.*?-->", re.DOTALL)
 _STARTED_PACKAGE = lazy_pattern(r"""<(?:node|composable_node)\b[^>]*?\bpkg\s*=\s*["']([\w-]+)["']""")
@@ -324,13 +328,15 @@ def _find_used_packages(package: PackageContext) -> dict[str, Note]:
         for match in re.finditer(r"""Command\(\s*\[?\s*["']xacro\b""", file.source.text):
             span = file.source.span(match.end() - len("xacro"), match.end())
             first_uses.setdefault("xacro", Note(phrase("'xacro' is run here"), span))
-    for file_path in () if package.has(_SETUP_ASSISTANT) else package.files:
+    is_generated = package.has(_SETUP_ASSISTANT)
+    for file_path in package.files:
         if _may_be_launch_file(file_path):
             source = package.text(file_path)
             if source is not None and not file_path.endswith(_XML_SUFFIXES) and not _LAUNCH_ROOT.search(source.text):
                 continue
             for name, note in () if source is None else _find_packages_in_xml(source):
-                first_uses.setdefault(name, note)
+                if not is_generated or (package.folder.parent / name / MANIFEST).is_file():
+                    first_uses.setdefault(name, note)
     first_uses.pop(package.name, None)
     return {name: note for name, note in first_uses.items() if re.fullmatch(r"[a-zA-Z]\w*", name)}
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import Phrase, Span, phrase, quoted_names
+from linkwright.diagnostics import Phrase, Span, joined_first, phrase, quoted
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
 from linkwright.review.versions import Versions
@@ -273,10 +273,7 @@ def find_own_include_text(source: str) -> str:
 
 def list_names(names: Sequence[str]) -> Phrase:
     """Return the names as a list, or the first names and the number of the remaining ones."""
-    first = quoted_names(names[:MAX_NAMES])
-    if len(names) <= MAX_NAMES:
-        return first
-    return phrase("{names} and {count} more", names=first, count=len(names) - MAX_NAMES)
+    return joined_first(map(quoted, names), MAX_NAMES)
 
 
 def summarize_files(targets: Sequence[str], others: Mapping[str, str]) -> list[str]:

@@ -46,6 +46,10 @@ class GroupJoints:
         self._version = version
         self._groups = {group.attributes.get("name", ""): group for group in root.elements("group")}
 
+    def has_group(self, name: str) -> bool:
+        """Return whether the semantic description has a group."""
+        return name in self._groups
+
     def may_contain(self, group: str, joint: str) -> bool:
         """Return whether a group contains a joint, or whether this is unknown because a robot is missing."""
         return self._may_contain(group, _EXPRESSION.sub("", joint), 0)

@@ -10,6 +10,7 @@ from pathlib import Path
 import yaml
 
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase, quoted_names
+from linkwright.diagnostics.phrase import count_shown
 from linkwright.review.changes import MAX_NAMES, Location
 from linkwright.review.file_pair import FilePair, UnreadableFileError
 from linkwright.review.files.yaml_values import compose_yaml, read_yaml_values
@@ -205,7 +206,8 @@ def _compare_display(old: _Item, new: _Item) -> Iterator[Phrase]:
         if not _are_equal(old.properties[name], new.properties[name])
     ]
     if changes:
-        text = phrase("display '{name}': {changes}", name=new.name, changes=joined(changes[:_MAX_PROPERTIES]))
+        shown = joined(changes[: count_shown(len(changes), _MAX_PROPERTIES)])
+        text = phrase("display '{name}': {changes}", name=new.name, changes=shown)
         yield _join_changes(text, changes)
 
 
@@ -231,7 +233,7 @@ def _format_change(name: str, old: str | None, new: str | None) -> Phrase:
 
 def _join_changes(text: Phrase, changes: Sequence[Phrase]) -> Phrase:
     """Return a line with the first changes, and with the number of the others."""
-    hidden_count = len(changes) - _MAX_PROPERTIES
+    hidden_count = len(changes) - count_shown(len(changes), _MAX_PROPERTIES)
     if hidden_count <= 0:
         return text
     return counted("{change} and {count} more value", "{change} and {count} more values", hidden_count, change=text)

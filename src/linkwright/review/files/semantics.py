@@ -254,7 +254,7 @@ def _compare_entries(
         text = phrase("{entry}: {changes}", entry=_format_title(new), changes=joined_first(changes, MAX_NAMES))
         reason = _find_lost_joints_reason(pair.versions.old, old, new, passive_joints, joints)
         reason = reason or _find_tip_reason(old, new) or _find_planning_frame_reason(old, [new])
-        reason = reason or _find_parent_link_reason(old, new)
+        reason = reason or _find_parent_link_reason(old, new) or _find_other_group_reason(old, new, joints)
         pair.add(text, pair.location(new.element.span()), reason)
 
 
@@ -288,6 +288,22 @@ def _find_parent_link_reason(old: _Entry, new: _Entry) -> Phrase | None:
         name=new.name,
         new=links[1],
         old=links[0],
+    )
+
+
+def _find_other_group_reason(old: _Entry, new: _Entry, joints: GroupJoints) -> Phrase | None:
+    """Return the reason why another group of an end effector is breaking; None for other changes.
+
+    Programs open and close it by this group. If the old group is gone, that is the reported change.
+    """
+    groups = [entry.values.get("group", "") for entry in (old, new)]
+    if old.tag != "end_effector" or groups[0] == groups[1] or not all(map(joints.has_group, groups)):
+        return None
+    return phrase(
+        "programs that move the end effector '{name}' move the group '{new}' instead of '{old}'",
+        name=new.name,
+        new=groups[1],
+        old=groups[0],
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
+from linkwright.diagnostics.phrase import count_shown
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.files.value_vectors import Component, describe_items, find_component
 from linkwright.review.list_changes import change_text
@@ -232,9 +233,10 @@ def _summarize_list(name: str, group: Sequence[ValueChange]) -> Change:
     )
     counts_text = joined([text for text, count in zip(texts, counts, strict=True) if count])
     items = [str(change.sentence) for change in _merge_items(name, group)]
-    items_text = joined(items[:MAX_NAMES], "; ")
-    if len(items) > MAX_NAMES:
-        items_text = phrase("{names} and {count} more", names=items_text, count=len(items) - MAX_NAMES)
+    shown = count_shown(len(items), MAX_NAMES)
+    items_text = joined(items[:shown], "; ")
+    if len(items) > shown:
+        items_text = phrase("{names} and {count} more", names=items_text, count=len(items) - shown)
     text = phrase("list {name}: {changes}: {items}", name=name, changes=counts_text, items=items_text)
     return Change(text, location=group[0].location)
 

@@ -11,6 +11,7 @@ from difflib import SequenceMatcher
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Phrase, counted, joined_first, phrase
+from linkwright.diagnostics.phrase import count_shown
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import parse_python
@@ -513,8 +514,10 @@ def _format_code_change(removed: Sequence[CodePart], added: Sequence[CodePart], 
             names = joined_first([f"'{name}()'" for name in functions], MAX_NAMES)
             return phrase("other code changed in {names}, such as {code}", names=names, code=code)
         return phrase("other code changed, such as {code}", code=code)
+    if len(parts) == count_shown(len(parts), 1):
+        code = "; ".join(shorten_middle(part.source, _MAX_STATEMENT_CHARACTERS) for part in parts)
     text = phrase("other code added: {code}", code=code) if added else phrase("other code removed: {code}", code=code)
-    more = len(parts) - 1
+    more = len(parts) - count_shown(len(parts), 1)
     if not more:
         return text
     return counted("{change} and {count} more statement", "{change} and {count} more statements", more, change=text)

@@ -28,6 +28,7 @@ from linkwright.review.parts.name_substitution import CALL, ComparedContent
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.properties import compare_properties
+from linkwright.review.parts.readings import compare_readings
 from linkwright.review.unprefixed_calls import compare_prefixes
 from linkwright.review.versions import Version, Versions
 
@@ -145,6 +146,7 @@ class _Comparer:
             pair.find_new_macros = self._graphs.new.find_macro_outlines
             pair.find_old_calls = self._graphs.old.find_calls
             pair.robots = self._graphs.new.find_outlines_of_robots(file.new_path) or ()
+            pair.defaults = self._graphs.new.find_defaults(file.new_path)
             self._compare(pair)
             if includes_malformed_file(self._versions.old, file.old_path, pair.old):
                 pair.changes = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
@@ -184,6 +186,7 @@ class _Comparer:
         compare_properties(pair, self._graphs.new)
         compare_contents(pair, renamed)
         compare_moved_to_callers(pair, self._graphs, renamed)
+        compare_readings(pair, self._graphs)
 
     def _read_outline(self, version: Version, path: str | None) -> Outline | Phrase | None:
         """Return the outline of a file, the reason why it cannot be read, or None for other files."""

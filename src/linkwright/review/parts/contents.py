@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Container, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from linkwright.descriptions.comparison import ROS2_CONTROL, Difference
 from linkwright.diagnostics import Phrase, counted, joined, phrase, quoted_names
+from linkwright.diagnostics.phrase import count_shown
 from linkwright.review.breaking import (
     MOVING_TYPES,
     call_reason,
@@ -25,7 +27,8 @@ from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
-from linkwright.review.parts.elements import CONDITION_SEPARATOR, ItemComparison, PartDifference
+from linkwright.review.parts.default_values import is_same_by_default
+from linkwright.review.parts.elements import BLOCK, CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
 from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
@@ -107,6 +110,8 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
     sides = [is_old for is_old, element in zip((True, False), elements, strict=True) if element is not None]
     if difference.value == "conditions":
         return _is_condition_shown(pair, difference)
+    if difference.value == BLOCK:
+        return False  # it concerns all callers of the macro
     if difference.new is None and elements[1] is not None and pair.loses_parameter(elements[1], difference.value):
         return True  # the lost parameter is reported
     if None in (difference.old, difference.new) and f"${{{difference.value}}}" in (difference.old, difference.new):
@@ -229,7 +234,7 @@ class _ReportedDifference:
         words = [*self.difference.path]
         if len(words) > 1 and words[0] == f"gazebo {words[1]}":
             words[0] = "gazebo"
-        if self.difference.value not in ("", "text", "conditions"):
+        if self.difference.value not in ("", "text", "conditions", BLOCK):
             words.append(self.difference.value)
         return " ".join(words)
 
@@ -305,10 +310,24 @@ class _ReportedDifference:
                 text or phrase("always") for text in _shorten_values(difference.old or "", difference.new or "")
             )
             return phrase("{element}: condition {old} -> {new}", element=self.element, old=old, new=new)
+        if difference.value == BLOCK:
+            return self._describe_block()
         if difference.new is None or difference.old is None:
             return self._describe_presence()
         old, new = _shorten_values(difference.old, difference.new)
-        return phrase("{element}: {old} -> {new}", element=self.element, old=old or "-", new=new or "-")
+        text = phrase("{element}: {old} -> {new}", element=self.element, old=old or "-", new=new or "-")
+        return phrase("{change} (the same by default)", change=text) if self._is_same_by_default else text
+
+    def _describe_block(self) -> Phrase:
+        """Return the sentence about an element that a block of the caller replaces, or the reverse."""
+        difference, old = self.difference, self.difference.old_element
+        if old is not None and old.tag == _INSERT:
+            name, value = old.attributes.get("name", ""), _truncate(difference.new or "")
+            return phrase(
+                "{element}: block '{name}' of the caller -> {new}", element=self.element, name=name, new=value
+            )
+        name, value = difference.path[-1].partition(" ")[0], _truncate(difference.old or "")
+        return phrase("{element}: {old} -> block '{name}' of the caller", element=self.element, name=name, old=value)
 
     def _describe_presence(self) -> Phrase:
         """Return the sentence about an added or removed value or element."""
@@ -327,10 +346,16 @@ class _ReportedDifference:
         element = self.difference.new_element or self.difference.old_element
         return format_values(element, _MAX_VALUES) if self.difference.is_whole and element is not None else None
 
+    @cached_property
+    def _is_same_by_default(self) -> bool:
+        return is_same_by_default(self.pair, self.macro, self.difference)
+
     @property
     def reason(self) -> Phrase | None:
         """The reason why the change is breaking, or None if it is not."""
         difference, old = self.difference, self.difference.old_element
+        if self._is_same_by_default:
+            return None
         if old is None:
             return self._find_default_topic_reason() or self._find_repeated_call_reason()
         if difference.value == "conditions":
@@ -477,10 +502,11 @@ def _merge_differences(differences: list[_ReportedDifference]) -> Iterator[Chang
     breaking = [change for change in changes if change.effect is Effect.BREAKING]
     not_breaking = [change for change in changes if change.effect is not Effect.BREAKING]
     yield from breaking
-    yield from not_breaking[:_MAX_LINES]
-    if len(not_breaking) > _MAX_LINES:
-        text = counted("{count} more change", "{count} more changes", len(not_breaking) - _MAX_LINES)
-        yield replace(not_breaking[_MAX_LINES], sentence=text, other_names=())
+    shown = count_shown(len(not_breaking), _MAX_LINES)
+    yield from not_breaking[:shown]
+    if len(not_breaking) > shown:
+        text = counted("{count} more change", "{count} more changes", len(not_breaking) - shown)
+        yield replace(not_breaking[shown], sentence=text, other_names=())
 
 
 def _join_call_values(calls: Sequence[Sequence[_ReportedDifference]]) -> Iterator[Change]:

@@ -7,11 +7,15 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from linkwright.descriptions.comparison import GAZEBO
+from linkwright.review.element_values import format_own_content
 from linkwright.review.parts.name_substitution import CALL, NameSubstitution
 from linkwright.review.parts.outline import STATEMENTS, Item, iterate_items, join_items
 from linkwright.xmltree import Element
 
 CONDITION_SEPARATOR = " and "
+BLOCK = "block"
+"""The value of a difference between an element and a block that the caller of a macro passes."""
+_INSERT = "xacro:insert_block"
 _MIN_SIMILARITY = 0.5
 """The minimum share of equal children of a renamed element."""
 
@@ -22,7 +26,8 @@ class PartDifference:
 
     Attributes:
         path: the keys of the enclosing elements, the outermost first, and of the element itself.
-        value: the name of the attribute, ``text``, ``conditions``, or empty for the whole element.
+        value: the name of the attribute, ``text``, ``conditions``, `BLOCK` if a block of the caller takes the
+            place of the element or the reverse, or empty for the whole element.
         old: the old value, or None if there is none.
         new: the new value, or None if there is none.
         old_element: the old element, or None if there is none.
@@ -56,7 +61,8 @@ class ItemComparison:
 
     def differences(self, old: Element, new: Element, path: tuple[str, ...] = ()) -> Iterator[PartDifference]:
         """Yield the differences between the contents of two elements."""
-        for old_item, new_item in self._match_items(list(iterate_items(old)), list(iterate_items(new))):
+        matches = list(self._match_items(list(iterate_items(old)), list(iterate_items(new))))
+        for old_item, new_item in _pair_blocks(matches):
             item = new_item or old_item
             assert item is not None
             item_path = (*path, item.key)
@@ -64,6 +70,11 @@ class ItemComparison:
                 yield _make_whole_difference(item_path, old_item, new_item)
                 continue
             yield from self._compare_conditions(old_item, new_item, item_path)
+            if (old_item.element.tag == _INSERT) != (new_item.element.tag == _INSERT):
+                path_of_part = (*path, (old_item if new_item.element.tag == _INSERT else new_item).key)
+                old_text, new_text = (format_own_content(each.element) for each in (old_item, new_item))
+                yield PartDifference(path_of_part, BLOCK, old_text, new_text, old_item.element, new_item.element)
+                continue
             yield from self._compare_values(old_item.element, new_item.element, item_path)
             yield from self.differences(old_item.element, new_item.element, item_path)
 
@@ -223,6 +234,29 @@ class ItemComparison:
         ]
         total = sum(content.total() for content in contents)
         return 2 * (contents[0] & contents[1]).total() / total if total else 0.0
+
+
+_Match = tuple[Item | None, Item | None]
+
+
+def _pair_blocks(matches: Sequence[_Match]) -> Iterator[_Match]:
+    """Yield the matches, with a block of the caller as the other version of the element that it replaces.
+
+    Such a block has the tag of the element as its name, as in ``params="*origin"``.
+    """
+    lone = {is_old: [match[not is_old] for match in matches if match[is_old] is None] for is_old in (True, False)}
+    pairs: dict[int, Item] = {}
+    for is_old in (True, False):
+        for block in lone[is_old]:
+            tag = None if block is None or block.element.tag != _INSERT else block.element.attributes.get("name")
+            candidates = [item for item in lone[not is_old] if item is not None and item.element.tag == tag]
+            if block is not None and len(candidates) == 1:
+                pairs[id(block)], pairs[id(candidates[0])] = candidates[0], block
+    for old, new in matches:
+        if old is None and new is not None and id(new) in pairs:
+            yield pairs[id(new)], new
+        elif old is None or new is not None or id(old) not in pairs:
+            yield old, new
 
 
 def _make_whole_difference(path: tuple[str, ...], old: Item | None, new: Item | None) -> PartDifference:

@@ -45,6 +45,24 @@ class IncludeGraph:
         paths = {reachable for robot in robots for reachable in self._find_reachable(robot, self._included)}
         return [self._outlines[reachable] for reachable in sorted(paths)]
 
+    def find_defaults(self, path: str) -> dict[str, str]:
+        """Return the arguments with their defaults that all top-level files which include a file declare alike."""
+        declared = [self._find_declared_defaults(robot) for robot in self.find_robots_with(path) or [path]]
+        return {
+            name: default
+            for name, default in declared[0].items()
+            if default is not None and all(defaults.get(name) == default for defaults in declared)
+        }
+
+    def _find_declared_defaults(self, robot: str) -> dict[str, str | None]:
+        """Return the arguments of a file and its includes with their defaults; None if there are several or none."""
+        defaults: dict[str, str | None] = {}
+        for path in self._find_reachable(robot, self._included):
+            for name, element in self._outlines[path].arguments.items():
+                default = element.attributes.get("default")
+                defaults[name] = default if defaults.get(name, default) == default else None
+        return defaults
+
     def find_unknown_includes(self, path: str) -> set[str]:
         """Return the names of the files that a file may include, directly or indirectly, without those here."""
         return {

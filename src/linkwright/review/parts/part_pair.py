@@ -28,6 +28,7 @@ class PartPair:
         expanded: the elements of changed files that the compared robots show.
         renamed_macros: the new names of the macros that changed files rename, by old name.
         robots: the new outlines of all files of the robots that include the file; empty if some are not known.
+        defaults: the arguments that all robots of the new version which include the file declare with one default.
         find_old_macros: a function that returns the definitions of a macro in the old repository.
         find_new_macros: a function that returns the definitions of a macro in the new repository.
         find_old_calls: a function that returns the calls of a macro in the old repository.
@@ -43,6 +44,7 @@ class PartPair:
     expanded: Collection[ExpandedElement]
     renamed_macros: Mapping[str, str] = field(default_factory=dict)
     robots: Sequence[Outline] = ()
+    defaults: Mapping[str, str] = field(default_factory=dict)
     find_old_macros: Callable[[str], Sequence[MacroOutline]] = field(default=lambda _name: ())
     find_new_macros: Callable[[str], Sequence[MacroOutline]] = field(default=lambda _name: ())
     find_old_calls: Callable[[str], Sequence[Element]] = field(default=lambda _name: ())

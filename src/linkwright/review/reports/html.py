@@ -22,6 +22,7 @@ from linkwright.review.reports.sections import (
 from linkwright.review.reports.sentences import (
     format_alike,
     format_cases,
+    format_cases_of,
     format_change,
     format_code_heading,
     format_figure_name,
@@ -116,13 +117,14 @@ def _render_breaking_changes(review: Review) -> Iterator[str]:
     for paths, change in merge_breaking_changes(review):
         line = f":{change.location.line}" if change.location is not None and [change.location.file] == paths else ""
         place = f"{localized(format_paths(paths))}{line}"
-        items.append(f"{_render_change(change, subjects[paths[0]])} <code class='soft'>{escape(place)}</code>")
+        cases = format_cases(change, subjects[paths[0]])
+        items.append(f"{_render_change(change, cases)} <code class='soft'>{escape(place)}</code>")
     yield from _render_list(phrase("Breaking changes"), items)
 
 
 def _render_section(section: Section, scenes: Scenes) -> str:
     subject = section.subject
-    items = [_render_change(change, subject) + _render_place(change, subject) for change in section.changes]
+    items = _render_changes(section)
     items += [_escape_text(format_repeated(repeat)) for repeat in section.repeated]
     alike = format_alike(section.alike)
     items += [] if alike is None else [_escape_text(alike)]
@@ -138,7 +140,7 @@ def _render_section(section: Section, scenes: Scenes) -> str:
 def _render_code_section(section: Section) -> str:
     """Return the functions of a source with other code, in one item."""
     subject = section.subject
-    changes = "; ".join(_render_change(change, subject) + _render_place(change, subject) for change in section.changes)
+    changes = "; ".join(_render_changes(section))
     alike = format_alike(section.alike)
     path = _render_path(subject.path, get_path_state(subject))
     return f"{path}: {changes}{'' if alike is None else f'; {_escape_text(alike)}'}"
@@ -152,13 +154,21 @@ def _render_long_text(text: str) -> str:
     return f"<details class='long'><summary>{escape(start)}</summary>{escape(text)}</details>"
 
 
-def _render_change(change: Change, subject: Subject) -> str:
+def _render_changes(section: Section) -> list[str]:
+    subject = section.subject
+    cases = format_cases_of(section.changes, subject)
+    return [
+        _render_change(change, case) + _render_place(change, subject)
+        for change, case in zip(section.changes, cases, strict=True)
+    ]
+
+
+def _render_change(change: Change, cases: Phrase | None) -> str:
     text = _render_long_text(localized(format_change(change)))
     if change.effect is Effect.BREAKING:
         text = f"<strong class='breaking'>{text}</strong>"
     if change.reason is not None:
         text += f": {_escape_text(change.reason)}"
-    cases = format_cases(change, subject)
     if cases is not None:
         text += f" <span class='soft' title='{escape(', '.join(change.cases))}'>{_escape_text(cases)}</span>"
     return text

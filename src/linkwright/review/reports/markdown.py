@@ -20,7 +20,7 @@ from linkwright.review.reports.sections import (
 )
 from linkwright.review.reports.sentences import (
     format_alike,
-    format_cases,
+    format_cases_of,
     format_change,
     format_code_heading,
     format_figure_name,
@@ -127,7 +127,7 @@ def _format_section(section: Section) -> str:
     if subject.figures:
         lines += [*_format_figures(subject.figures), ""]
     others = [change for change in section.changes if change.effect is not Effect.BREAKING]
-    changes = [_format_change(change, subject) for change in _join_actions(others)]
+    changes = _format_changes(_join_actions(others), subject)
     lines += _fold(changes, _MAX_OPEN_CHANGES, _count_more_changes)
     lines += [f"- {_escape(format_repeated(repeat))}" for repeat in section.repeated]
     lines += [f"> {_escape(problem.text)}" for problem in subject.problems]
@@ -142,7 +142,7 @@ def _format_section(section: Section) -> str:
 def _format_code_section(section: Section) -> str:
     """Return the functions of a source with other code, in one line."""
     subject = section.subject
-    changes = "; ".join(_format_change(change, subject).removeprefix("- ") for change in section.changes)
+    changes = "; ".join(line.removeprefix("- ") for line in _format_changes(section.changes, subject))
     alike = format_alike(section.alike)
     path = _format_path(subject.path, get_path_state(subject))
     return f"- {path}: {changes}{'' if alike is None else f'; {_escape(alike)}'}"
@@ -168,8 +168,12 @@ def _count_more_findings(count: int) -> Phrase:
     return counted("{count} more finding", "{count} more findings", count)
 
 
-def _format_change(change: Change, subject: Subject) -> str:
-    cases = format_cases(change, subject)
+def _format_changes(changes: Sequence[Change], subject: Subject) -> list[str]:
+    cases = format_cases_of(changes, subject)
+    return [_format_change(change, subject, case) for change, case in zip(changes, cases, strict=True)]
+
+
+def _format_change(change: Change, subject: Subject, cases: Phrase | None) -> str:
     place = None if change.location is None else format_location(change.location, subject.path)
     location = "" if place is None else f" ({_escape(place) if isinstance(place, Phrase) else _format_code(place)})"
     text = _escape(format_change(_shorten_values(change)), _MAX_LINE)

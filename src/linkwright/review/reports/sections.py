@@ -16,6 +16,8 @@ from linkwright.review.reports.sentences import Repeat, format_change
 _ORDER = {kind: number for number, kind in enumerate(SubjectKind)}
 _MIN_REPEATED = 2
 """The minimum number of changes that a section replaces by the path of another section with the same changes."""
+_MIN_UNCLEAR = 4
+"""The minimum number of such changes if the other section has several more, so that they are only counted."""
 _MIN_CODE_SECTIONS = 3
 """The minimum number of sources with only other code that share a section."""
 _MIN_NAMES = 3
@@ -130,8 +132,7 @@ def _make_comparison_key(section: Section) -> Hashable:
         return subject.path
     if _has_contents(subject, section.changes):
         return subject.path
-    figures = ((str(figure.name), figure.old, figure.new) for figure in subject.figures)
-    return subject.kind, *(_make_text_key(change) for change in section.changes), *figures
+    return subject.kind, *(_make_text_key(change) for change in section.changes), *_list_figures(section)
 
 
 def _has_contents(subject: Subject, changes: Sequence[Change]) -> bool:
@@ -195,14 +196,29 @@ def _replace_repeated(sections: Sequence[Section]) -> Iterator[Section]:
             else listed.setdefault((subject.kind, _make_text_key(change)), subject.path)
             for change in section.changes
         ]
-        counts = Counter(path for path in first_paths if path not in {None, subject.path})
-        repeated = {path: count for path, count in counts.items() if path is not None and count >= _MIN_REPEATED}
+        counts = Counter(path for path in first_paths if path is not None and path != subject.path)
+        candidates = (_make_repeat(by_path[path], section, count) for path, count in counts.items())
+        repeats = [repeat for repeat in candidates if _is_clear(repeat)]
+        repeated = {repeat.path for repeat in repeats}
         changes = [change for change, path in zip(section.changes, first_paths, strict=True) if path not in repeated]
-        repeats = [
-            Repeat(path, count, False, missing=_list_missing(by_path[path], section))
-            for path, count in repeated.items()
-        ]
         yield replace(section, changes=changes, repeated=[*section.repeated, *repeats])
+
+
+def _make_repeat(first: Section, section: Section, count: int) -> Repeat:
+    """Return the changes that a section has in common with an earlier one."""
+    total = sum(map(_is_repeatable, first.changes))
+    return Repeat(first.subject.path, count, False, missing=_list_missing(first, section), total=total)
+
+
+def _is_clear(repeat: Repeat) -> bool:
+    """Return whether a line about repeated changes tells which they are, or takes the place of many lines."""
+    if repeat.change_count < _MIN_REPEATED:
+        return False
+    return not repeat.missing or repeat.names_missing or repeat.change_count >= _MIN_UNCLEAR
+
+
+def _is_repeatable(change: Change) -> bool:
+    return change.effect is not Effect.BREAKING and not change.is_code
 
 
 def _list_missing(first: Section, section: Section) -> tuple[Phrase, ...]:
@@ -215,7 +231,7 @@ def _list_missing(first: Section, section: Section) -> tuple[Phrase, ...]:
     return tuple(
         change.sentence
         for change in first.changes
-        if change.effect is not Effect.BREAKING and not change.is_code and _make_text_key(change) not in keys
+        if _is_repeatable(change) and _make_text_key(change) not in keys
         if change.sentence.arguments.get("parameter") not in parameters
     )
 
@@ -227,14 +243,14 @@ def _fold_repeats(sections: Iterable[Section]) -> list[Section]:
     for section in sections:
         subject = section.subject
         first = by_path.get(section.repeated[0].path) if len(section.repeated) == 1 else None
-        has_more = section.changes or section.alike or subject.figures or subject.problems
+        has_more = section.changes or section.alike or subject.problems
         if (
             first is None
             or has_more
             or subject.images
             or subject.scene
             or first.repeated
-            or first.subject.figures
+            or _list_figures(first) != _list_figures(section)
             or first.subject.kind is not subject.kind
             or section.repeated[0].change_count != len(first.changes)
             or section.repeated[0].more_names
@@ -244,6 +260,10 @@ def _fold_repeats(sections: Iterable[Section]) -> list[Section]:
         else:
             first.alike.append(subject.path)
     return folded
+
+
+def _list_figures(section: Section) -> list[tuple[str, str, str, str]]:
+    return [(str(figure.name), figure.old, figure.new, figure.arguments) for figure in section.subject.figures]
 
 
 def _merge_alike(subject: Subject, changes: Sequence[Change]) -> list[Change]:

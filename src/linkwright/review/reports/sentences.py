@@ -27,6 +27,8 @@ _MAX_MISSING = 100
 """The maximum number of characters of a change that a file does not share with another."""
 _MAX_NAMED_MISSING = 2
 """The maximum number of such changes that a line names. A reader does not take files with more of them for equal."""
+_MAX_REPEATED_CASES = 40
+"""The maximum number of characters of argument sets that several lines in succession repeat."""
 _MAX_NAMED_CASES = 1
 """The maximum number of argument sets that a line names."""
 
@@ -40,6 +42,7 @@ class Repeat(NamedTuple):
         is_shared: whether they are changes to files that both subjects include.
         more_names: the names of links, joints or parts that change here and not there.
         missing: the changes of that section that this one lacks.
+        total: the number of changes of that section that are not breaking; 0 for changes in shared files.
     """
 
     path: str
@@ -47,6 +50,12 @@ class Repeat(NamedTuple):
     is_shared: bool
     more_names: tuple[str, ...] = ()
     missing: tuple[Phrase, ...] = ()
+    total: int = 0
+
+    @property
+    def names_missing(self) -> bool:
+        """Whether the line names the changes that are missing."""
+        return 0 < len(self.missing) <= min(_MAX_NAMED_MISSING, self.change_count - 1)
 
 
 def get_path_state(subject: Subject) -> Phrase | None:
@@ -67,8 +76,10 @@ def format_change(change: Change) -> Phrase:
     is_breaking = change.effect is Effect.BREAKING
     limit = _MAX_BREAKING_NAMES if is_breaking else _MAX_NAMES
     shown = [[name] for name in names] if is_breaking else find_runs(names)
-    listed = joined(map(_quote_run, shown[:limit]))
     more = sum(map(len, shown[limit:]))
+    if more == 1:
+        limit, more = len(shown), 0
+    listed = joined(map(_quote_run, shown[:limit]))
     if not more:
         return phrase("{change}; also {names}", change=change.sentence, names=listed)
     return phrase("{change}; also {names} and {count} more", change=change.sentence, names=listed, count=more)
@@ -103,6 +114,17 @@ def format_cases(change: Change, subject: Subject) -> Phrase | None:
     if len(names) <= _MAX_NAMED_CASES:
         return phrase("with {arguments}", arguments=", ".join(names))
     return phrase("with {count} of {total} argument sets", count=len(names), total=len(subject.cases))
+
+
+def format_cases_of(changes: Sequence[Change], subject: Subject) -> list[Phrase | None]:
+    """Return the argument sets of changes in the order of a report. Long ones are not repeated in the next line."""
+    texts = [format_cases(change, subject) for change in changes]
+    return [
+        phrase("with the same arguments")
+        if text is not None and text == previous and len(str(text)) > _MAX_REPEATED_CASES
+        else text
+        for previous, text in zip([None, *texts], texts, strict=False)
+    ]
 
 
 def _find_common_cause(cases: Sequence[str], all_cases: Sequence[str]) -> Phrase | None:
@@ -144,10 +166,7 @@ def format_figure_name(figure: Figure) -> Phrase:
 def format_image_notes(images: Sequence[ViewImages]) -> Phrase | None:
     """Return what is special about images, such as meshes that are not drawn, or None."""
     notes = list({str(note): note for view in images for note in view.notes}.values())
-    shown = joined(notes[:_MAX_IMAGE_NOTES])
-    if len(notes) > _MAX_IMAGE_NOTES:
-        return phrase("{names} and {count} more", names=shown, count=len(notes) - _MAX_IMAGE_NOTES)
-    return shown if notes else None
+    return joined_first(notes, _MAX_IMAGE_NOTES) if notes else None
 
 
 def format_repeated(repeat: Repeat) -> Phrase:
@@ -163,10 +182,12 @@ def format_repeated(repeat: Repeat) -> Phrase:
         if repeat.more_names:
             return phrase("{change}, here also {names}", change=text, names=quoted_names(repeat.more_names))
         return text
-    text = phrase("the same {count} changes as in {path}", path=path, count=count)
-    missing = [shorten(str(item), _MAX_MISSING) for item in repeat.missing]
-    if not 0 < len(missing) <= min(_MAX_NAMED_MISSING, count - 1):
+    if not repeat.missing:
+        return phrase("the same {count} changes as in {path}", path=path, count=count)
+    text = phrase("{count} of the {total} changes of {path}", path=path, count=count, total=repeat.total)
+    if not repeat.names_missing:
         return text
+    missing = [shorten(str(item), _MAX_MISSING) for item in repeat.missing]
     return phrase("{change}, but not: {changes}", change=text, changes=joined(missing))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Phrase, counted, phrase
+from linkwright.diagnostics.phrase import count_shown
 from linkwright.diagnostics.render import make_printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Effect, Review
@@ -12,7 +13,7 @@ from linkwright.review.excerpts import shorten
 from linkwright.review.reports.sections import Section, divide_report, format_summary
 from linkwright.review.reports.sentences import (
     format_alike,
-    format_cases,
+    format_cases_of,
     format_change,
     format_figure_name,
     format_repeated,
@@ -40,9 +41,10 @@ def _format_report(review: Review) -> Iterator[str]:
     if review.other_files:
         yield localized(phrase("other changed files"))
         files = list_other_files(review)
-        for path, state in files[:_MAX_OTHER_FILES]:
+        shown = count_shown(len(files), _MAX_OTHER_FILES)
+        for path, state in files[:shown]:
             yield f"  {path}" if state is None else f"  {path} ({localized(state)})"
-        remaining_count = len(files) - _MAX_OTHER_FILES
+        remaining_count = len(files) - shown
         if remaining_count > 0:
             yield f"  {localized(counted('{count} more file', '{count} more files', remaining_count))}"
         yield ""
@@ -63,9 +65,8 @@ def _format_section(section: Section) -> Iterator[str]:
     subject = section.subject
     state = get_path_state(subject)
     yield subject.path if state is None else f"{subject.path} ({localized(state)})"
-    for change in section.changes:
+    for change, cases in zip(section.changes, format_cases_of(section.changes, subject), strict=True):
         mark = "!" if change.effect is Effect.BREAKING else "-"
-        cases = format_cases(change, subject)
         text = shorten(localized(format_change(change)), _MAX_CHARACTERS)
         yield f"  {mark} {text}{f' ({localized(cases)})' if cases else ''}"
         if change.reason is not None:

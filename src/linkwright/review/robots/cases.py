@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from linkwright.descriptions import Description
 from linkwright.descriptions.argument_sets import ArgumentSet
@@ -14,6 +16,7 @@ from linkwright.lint.argument_sets import UNDECLARED_CODE, UNUSED_CODE
 from linkwright.review.changes import Change
 from linkwright.review.file_pair import Fault, FilePair
 from linkwright.review.folders import without_folder
+from linkwright.review.parts.outline import PROPERTY, try_read_outline
 from linkwright.review.robots.partial_robots import PartialPair, find_missing_names, read_partial_robot
 from linkwright.review.robots.unpaired_robots import format_robot
 from linkwright.review.versions import Version
@@ -27,6 +30,11 @@ MAX_SWITCHES = 8
 _MISSING_CODES = ("PKG101", "XML101")
 """The codes of packages and files that are not found."""
 OPPOSITES: Mapping[str, str] = {"true": "false", "false": "true", "True": "False", "False": "True"}
+_NUMERIC_OPPOSITES: Mapping[str, str] = {"0": "1", "1": "0"}
+"""The values of arguments that are boolean if a condition uses them, such as ``$(optenv ROBOT_LASER 0)``."""
+_CONDITIONS = ("xacro:if", "xacro:unless")
+_ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
+_WORD = re.compile(r"[A-Za-z_]\w*")
 
 
 @dataclass(frozen=True)
@@ -119,17 +127,44 @@ def find_switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Ca
         return
     arguments, old_arguments = base_case.new.expansion.arguments, base_case.old.expansion.arguments
     unused = {*list_unused_arguments(base_case.old), *list_unused_arguments(base_case.new)}
-    opposites = {
-        name: OPPOSITES[value]
-        for name, value in arguments.items()
-        if value in OPPOSITES and name in old_arguments and name not in unused
-    }
+    known = {name: value for name, value in arguments.items() if name in old_arguments and name not in unused}
+    opposites = find_opposites(pair.versions.new, base_case.new, known)
     for name, value in list(opposites.items())[:MAX_SWITCHES]:
         new = {**base_case.models.new.values, name: value}
         values = _ArgumentValues({**base_case.models.old.values, name: value}, new, 1)
         result = _make_case(pair, _format_values(new, pair.versions.new), values)
         if isinstance(result, Case):
             yield result
+
+
+def find_opposites(version: Version, description: Description, values: Mapping[str, str]) -> dict[str, str]:
+    """Return the opposite values of boolean arguments, by name.
+
+    Args:
+        version: the version with the description.
+        description: the description.
+        values: the values of some of its arguments.
+    """
+    numeric = {name for name, value in values.items() if value in _NUMERIC_OPPOSITES}
+    conditional = numeric and numeric & _find_arguments_in_conditions(version, description)
+    opposites = {name: OPPOSITES[value] for name, value in values.items() if value in OPPOSITES}
+    return opposites | {name: _NUMERIC_OPPOSITES[values[name]] for name in values if name in conditional}
+
+
+def _find_arguments_in_conditions(version: Version, description: Description) -> set[str]:
+    """Return the arguments that conditions name, directly or by a property."""
+    values: list[str] = []
+    properties: dict[str, set[str]] = {}
+    for file in description.files:
+        outline = try_read_outline(Path(file), version.overlay)
+        for element in () if outline is None else outline.root.walk():
+            if element.tag in _CONDITIONS:
+                values.append(element.attributes.get("value", ""))
+            elif element.tag == PROPERTY and (names := _ARGUMENT.findall(element.attributes.get("value", ""))):
+                properties.setdefault(element.attributes.get("name", ""), set()).update(names)
+    words = {word for value in values for word in _WORD.findall(value)}
+    direct = {name for value in values for name in _ARGUMENT.findall(value)}
+    return direct.union(*(names for name, names in properties.items() if name in words))
 
 
 def list_unused_arguments(description: Description) -> set[str]:
@@ -288,11 +323,12 @@ def _report_failures(pair: FilePair, failures: list[_Failure]) -> None:
         elif not pair.cases:
             pair.add_unreadable(pair.versions.old, old)
     for (old, new), cases_of_fault in names.items():
-        callers = _find_callers(pair.versions.new, pair.new_path, cases_of_fault) if old is None and pair.cases else ()
+        callers = _find_callers(pair.versions.new, pair.new_path, cases_of_fault) if new and pair.cases else ()
         pair.add_faults(old, new, tuple(cases_of_fault) if pair.cases or len(names) > 1 else (), callers)
         if new is None:
             _report_contents(pair, next(failure.new for failure in failures if failure.name == cases_of_fault[0]))
-    pair.cases += (name for cases_of_fault in names.values() for name in cases_of_fault)
+    changed = (names_of_fault for faults, names_of_fault in names.items() if None in faults)
+    pair.cases += (name for names_of_fault in changed for name in names_of_fault)
 
 
 def _needs_other_files(result: Description | LinkwrightError) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import islice
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from linkwright.descriptions.comparison import Difference
 from linkwright.descriptions.pairs import Pair
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.file_pair import FilePair
-from linkwright.review.robots.cases import MAX_SWITCHES, OPPOSITES, Case, list_unused_arguments, try_read
+from linkwright.review.robots.cases import MAX_SWITCHES, OPPOSITES, Case, find_opposites, list_unused_arguments, try_read
 
 _MAX_COMPARED = 3
 """The maximum number of values of arguments to try because a condition compares them."""
@@ -31,10 +31,12 @@ class _Switch(NamedTuple):
     Attributes:
         text: the argument with its value, as on a command line.
         lacking: the parts that the new robot lacks with this value, or that have another shape there.
+        values: the values that differ from the old robot with this value of the argument.
     """
 
     text: str
     lacking: frozenset[_Part]
+    values: Mapping[_Part, str]
 
 
 class SwitchedParts:
@@ -54,12 +56,15 @@ class SwitchedParts:
         if not _is_removal(difference):
             return text
         key = _make_key(difference)
-        switch = next((switch.text for switch in self._switches if key not in switch.lacking), None)
+        switch = next((switch for switch in self._switches if key not in switch.lacking), None)
         if switch is None:
             return text
+        if key in switch.values:
+            value = switch.values[key]
+            return phrase("{change}; with {switch}, it is {value}", change=text, switch=switch.text, value=value)
         if text.template == _CONTENTS:
-            return phrase("{change}: {contents}; now only with {switch}", **text.arguments, switch=switch)
-        return phrase("{change}; now only with {switch}", change=text, switch=switch)
+            return phrase("{change}: {contents}; now only with {switch}", **text.arguments, switch=switch.text)
+        return phrase("{change}; now only with {switch}", change=text, switch=switch.text)
 
     @cached_property
     def _switches(self) -> list[_Switch]:
@@ -72,7 +77,7 @@ class SwitchedParts:
             return
         old_arguments = case.old.expansion.arguments.keys() - list_unused_arguments(case.old)
         added = {name: value for name, value in case.new.expansion.arguments.items() if name not in old_arguments}
-        switched = [(name, OPPOSITES[value]) for name, value in added.items() if value in OPPOSITES]
+        switched = list(find_opposites(self._pair.versions.new, case.new, added).items())
         switched += islice(dict.fromkeys(self._find_compared_values(case.new, added)), _MAX_COMPARED)
         for name, value in switched[:MAX_SWITCHES]:
             model = self._pair.versions.new.model(self._pair.new_path, {**case.models.new.values, name: value})
@@ -80,7 +85,10 @@ class SwitchedParts:
             new_robot = getattr(new, "robot", None)
             if new_robot is not None:
                 comparison = Pair(case.models.old, model).compare(robot, new_robot)
-                yield _Switch(f"{name}:={value}", frozenset(_list_lacking_parts(comparison.differences)))
+                lacking = frozenset(_list_lacking_parts(comparison.differences))
+                changed = (difference for difference in comparison.differences if difference.kind == "changed")
+                values = {_make_key(difference): difference.new or "''" for difference in changed}
+                yield _Switch(f"{name}:={value}", lacking, values)
 
 
     def _find_compared_values(self, new: Description, added: Collection[str]) -> Iterator[tuple[str, str]]:
