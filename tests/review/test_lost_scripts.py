@@ -113,29 +113,3 @@ def test_lost_program_of_ros1_is_breaking(repository, compare, is_executable, ne
     repository.commit({PATH: SCRIPT})
     repository.root.joinpath(PATH).chmod(0o755 if is_executable else 0o644)
     assert find_breaking(repository, compare, {"arm/package.xml": manifest, **build}, new) == expected
-
-
-@pytest.mark.parametrize(
-    ("command", "is_missing"),
-    [
-        ("ros2 launch arm other.launch.py use:=true", True),
-        ("sleep 5; roslaunch arm other.launch &", True),
-        ("ros2 run arm other.py", True),
-        ("ros2 launch arm arm.launch.py", False),
-        ("ros2 launch elsewhere other.launch.py", False),
-        ("ros2 launch arm launch/other.launch.py", False),
-        ("ros2 launch arm $FILE", False),
-        ("ros2 run arm other", False),
-        ("# ros2 launch arm other.launch.py", False),
-    ],
-)
-def test_command_that_newly_starts_what_the_package_does_not_have(repository, compare, command, is_missing):
-    files = {"arm/launch/arm.launch.py": "", "run.sh": "#!/bin/sh\n"}
-    found = find_breaking(repository, compare, files, {"run.sh": f"#!/bin/sh\n{command}\n"})
-    assert [line for line in found if line.endswith("of 'arm', which does not exist")] == (found if is_missing else [])
-    assert bool(found) is is_missing
-
-
-def test_command_that_failed_before_is_not_told(repository, compare):
-    text = "#!/bin/sh\nros2 launch arm other.launch.py\n"
-    assert find_breaking(repository, compare, {"run.sh": text}, {"run.sh": f"{text}sleep 1\n"}) == []

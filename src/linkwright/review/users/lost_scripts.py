@@ -26,10 +26,6 @@ _SUFFIXES = ("", ".py", ".sh", ".bash", ".pl", ".rb")
 _PATH = re.compile(r"(?<![\w./$}~*-])(?P<path>(?:\.{1,2}/)*(?:[\w.-]+/)*[\w-][\w.-]*)(?![\w/*])")
 _RUN = re.compile(r"\b(?:ros2\s+run|rosrun)\s+(?P<package>[\w-]+)\s+(?P<program>[\w.-]+)")
 _LAUNCH = re.compile(r"\b(?:ros2\s+launch|roslaunch)\s+(?P<package>[\w-]+)\s+(?P<file>[\w.-]+)")
-_START = re.compile(
-    r"\b(?P<kind>ros2\s+run|rosrun|ros2\s+launch|roslaunch)\s+(?P<package>[\w-]+)\s+(?P<name>[\w-]+\.[\w.]+)(?=[\s\"';&|)]|$)"
-)
-_LAUNCH_COMMANDS = ("ros2 launch", "roslaunch")
 _BIN_FOLDERS = r"/(?:[\w.-]+/)*(?:s?bin|lib/[\w-]+)/"
 """The beginning of the absolute path of an installed program."""
 _LIST_ITEM = re.compile(r"\s*-\s*[\"']?[\w./*-]+[\"']?\s*")
@@ -72,32 +68,6 @@ def find_lost_scripts(versions: Versions, changed_files: Sequence[ChangedFile]) 
         text = versions.new.text(path)
         if any(word in text for word in lost.words):
             yield from ((path, change) for change in _find_commands(versions, path, text, lost))
-
-
-def find_missing_starts(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
-    """Yield the changed files with commands that newly start what a package of the repository never had."""
-    old_paths = {file.new_path: file.old_path for file in changed_files if file.new_path and not file.is_submodule}
-    for path in dict.fromkeys(list_command_files(versions.new)) if old_paths else ():
-        if path not in old_paths:
-            continue
-        old_path = old_paths[path]
-        known = set() if old_path is None else {name for name, _ in _list_missing(versions.old, old_path)}
-        for (package, name), number in _list_missing(versions.new, path):
-            old = find_packages(versions.old).get(package)
-            if (package, name) not in known and (old is None or name not in old.names):
-                text = phrase("starts '{name}' of '{package}', which does not exist", name=name, package=package)
-                yield path, _make_change(text, path, number)
-
-
-def _list_missing(version: Version, path: str) -> Iterator[tuple[tuple[str, str], int]]:
-    """Yield the packages and names of launch files and scripts that a file starts but that do not exist, with lines."""
-    packages = find_packages(version)
-    for number, line in enumerate(version.text(path).splitlines(), 1):
-        for match in () if _NO_USE.match(line) else _START.finditer(line):
-            owner = packages.get(match["package"])
-            is_script = match["kind"] in _LAUNCH_COMMANDS or match["name"].endswith(_SUFFIXES[1:])
-            if owner is not None and is_script and match["name"] not in owner.names and not owner.may_generate:
-                yield (match["package"], match["name"]), number
 
 
 def _is_lost_launch_file(file: ChangedFile) -> bool:

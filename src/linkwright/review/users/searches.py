@@ -33,7 +33,7 @@ from linkwright.review.users.lost_libraries import find_lost_libraries
 from linkwright.review.users.lost_lifecycles import find_lost_lifecycles
 from linkwright.review.users.lost_programs import find_lost_programs
 from linkwright.review.users.lost_registrations import find_lost_registrations
-from linkwright.review.users.lost_scripts import find_lost_scripts, find_missing_starts
+from linkwright.review.users.lost_scripts import find_lost_scripts
 from linkwright.review.users.lost_sources import find_lost_sources
 from linkwright.review.users.lost_states import find_lost_states
 from linkwright.review.users.lost_units import find_lost_units
@@ -69,6 +69,6 @@ SEARCHES: tuple[Search, ...] = (
         find_left_types,
         find_missing_fields,
     ),
-    *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts, find_missing_starts),
+    *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),
     *(find_unusable_programs, find_undeclared_plugins, find_left_remappings, find_ignored_packages),
 )
