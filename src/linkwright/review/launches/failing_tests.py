@@ -38,10 +38,13 @@ def _find_tests(
     python: PythonFile, node: ast.AST, tests: tuple[FailingTest, ...], scope: _Scope
 ) -> Iterator[tuple[int, tuple[FailingTest, ...]]]:
     if isinstance(node, ast.If):
-        for test, body in ((node.test, node.body), (_negate(node.test), node.orelse)):
-            inner = _append_test(tests, _read_test(python, test, scope))
-            yield from ((id(statement), inner) for statement in body if _ends_launch(statement))
-            yield from _find_tests_in_body(python, body, inner, scope)
+        inner = (*tests, _read_test(python, node.test, scope))
+        for statement in node.body:
+            if _ends_launch(statement):
+                yield id(statement), inner
+        yield from _find_tests_in_body(python, node.body, inner, scope)
+        negated = ast.UnaryOp(ast.Not(), node.test)
+        yield from _find_tests_in_body(python, node.orelse, (*tests, FailingTest(_unparse(negated))), scope)
     else:
         children = [child for child in ast.iter_child_nodes(node) if not isinstance(child, ast.expr)]
         if isinstance(node, _FUNCTIONS):
@@ -54,24 +57,6 @@ def _find_tests_in_body(
 ) -> Iterator[tuple[int, tuple[FailingTest, ...]]]:
     for child in body:
         yield from _find_tests(python, child, tests, scope)
-
-
-def _append_test(tests: tuple[FailingTest, ...], test: FailingTest) -> tuple[FailingTest, ...]:
-    """Return the tests that hold together. Two that reject all but a few values of a subject become one."""
-    last = tests[-1] if tests else None
-    if last is None or not test.subject or last.subject != test.subject:
-        return (*tests, test)
-    text, accepted = f"{last.text} and {test.text}", last.accepted | test.accepted
-    is_known = last.is_known and test.is_known
-    return (*tests[:-1], FailingTest(text, test.subject, accepted, last.arguments | test.arguments, is_known))
-
-
-def _negate(test: ast.expr) -> ast.expr:
-    """Return the test that holds if another one does not."""
-    operators: dict[type[ast.cmpop], type[ast.cmpop]] = {ast.Eq: ast.NotEq, ast.In: ast.NotIn}
-    if isinstance(test, ast.Compare) and len(test.ops) == 1 and type(test.ops[0]) in operators:
-        return ast.Compare(test.left, [operators[type(test.ops[0])]()], test.comparators)
-    return ast.UnaryOp(ast.Not(), test)
 
 
 def _bind_parameters(python: PythonFile, function: ast.FunctionDef | ast.AsyncFunctionDef) -> _Scope:
