@@ -9,7 +9,6 @@ from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import find_addition_reason, offers_nothing
-from linkwright.review.launches.name_effects import find_remapping_reason
 from linkwright.review.launches.outlines import CONDITION, REMAPPING, Entry, LaunchOutline, without_condition
 from linkwright.review.launches.package_lookups import looks_up_package
 from linkwright.review.required_packages import is_undeclared_and_new
@@ -32,24 +31,8 @@ def explain_addition(
     """
     if entry.kind == "argument" and _is_read_without_declaration(entry.name, old):
         return None  # callers had to pass it before, too
-    if entry.kind == "remapping":
-        return _find_group_remapping_reason(entry, old, new)
     reason = find_addition_reason(entry, new) or find_missing_package_reason(pair, entry, new)
     return reason or _find_remapping_reason(entry, removed, old, new)
-
-
-def _find_group_remapping_reason(entry: Entry, old: LaunchOutline, new: LaunchOutline) -> Phrase | None:
-    """Return the reason why an added remapping of all nodes that follow is breaking, or None if it is not.
-
-    If nodes were added, too, it may be only for these.
-    """
-    nodes = [
-        {(other.kind, other.name) for other in outline.entries if other.kind in ("node", "include")}
-        for outline in (old, new)
-    ]
-    if nodes[1] - nodes[0] or evaluate_condition(new.resolve(entry.settings.get(CONDITION, ""))) is False:
-        return None
-    return find_remapping_reason(entry.name, None, entry.settings.get("to"), old, new)
 
 
 def _is_read_without_declaration(name: str, outline: LaunchOutline) -> bool:

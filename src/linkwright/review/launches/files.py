@@ -43,7 +43,6 @@ from linkwright.review.launches.included import (
     find_moved_settings,
 )
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
-from linkwright.review.launches.incomplete_calls import report_incomplete_calls
 from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
@@ -147,7 +146,6 @@ def compare_launch_files(pair: FilePair) -> None:
             compare_imports(pair)
             report_object_tests(pair)
             report_object_texts(pair)
-            report_incomplete_calls(pair)
         report_undefined_names(pair)
     if any(NAMES_AS_REMAPPINGS in entry.settings for entry in old.entries):
         _mark_unbreaking(pair, keeps_renaming=True)  # the old file failed

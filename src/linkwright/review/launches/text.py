@@ -445,13 +445,8 @@ class ExpressionTexts:
         return owner.texts._find_item(owner.node) if isinstance(owner.node, ast.Subscript) else owner
 
     def _find_item(self, node: ast.Subscript) -> BoundExpression:
-        """Return the value of an item of a dictionary or list, or the expression itself if it is unknown."""
+        """Return the value of an item of a dictionary, or the expression itself if it is unknown."""
         owner = self._find_owner(node)
-        index = node.slice.value if isinstance(node.slice, ast.Constant) else None
-        items = owner.node.elts if isinstance(owner.node, (ast.List, ast.Tuple)) else []
-        is_literal = type(index) is int and not any(isinstance(item, ast.Starred) for item in items)
-        if isinstance(index, int) and is_literal and index < len(items):
-            return owner.texts.resolve(items[index])
         if isinstance(owner.node, ast.Dict):
             pairs = zip(owner.node.keys, owner.node.values, strict=True)
             values = [value for key, value in pairs if key is not None and ast.dump(key) == ast.dump(node.slice)]
