@@ -41,6 +41,8 @@ ALLOW_SUBSTITUTIONS = "allow_substs"
 """The argument and attribute of a parameter file that lets it contain substitutions."""
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
 _ENVIRONMENT_SUBSTITUTION = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
+_SPLIT_TEXT = re.compile(r"(?P<text>[^$()]*)\.split\((?P<separator>[^$()]*)\)")
+"""A call in Python that splits a known text."""
 _SETTING_CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
 """The condition of a setting after its name."""
 _TEST = re.compile(r"`(?P<source>[^`]*)`")
@@ -104,6 +106,12 @@ def extract_condition(setting: str) -> str:
     """Return the condition of a setting; empty if there is none."""
     match = _SETTING_CONDITION.search(setting)
     return "" if match is None else match["condition"]
+
+
+def split_text(text: str) -> str:
+    """Return the list into which a call of ``split`` splits a known text, and any other text unchanged."""
+    match = _SPLIT_TEXT.fullmatch(text)
+    return text if match is None else f"[{', '.join(match['text'].split(match['separator'] or None))}]"
 
 
 @dataclass(frozen=True)
@@ -181,7 +189,7 @@ class LaunchOutline:
         of these values. In ``$(eval ...)`` of ROS 1, names are replaced, too.
         """
         text = _TEST.sub(lambda match: self.tests.get(match["source"], match[0]), text)
-        resolved = self._replace_variables(text)
+        resolved = split_text(self._replace_variables(text))
         return replace_names_in_evaluations(resolved, self._find_value) if self.is_ros1 else resolved
 
     def _replace_variables(self, text: str) -> str:

@@ -62,3 +62,15 @@ def find_added_action(statement: ast.stmt) -> ast.expr | None:
     value = statement.value if isinstance(statement, ast.Expr) else None
     is_addition = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in ADD_METHODS
     return value.args[0] if is_addition and isinstance(value, ast.Call) and value.args else None
+
+
+def find_list_item(node: ast.List | ast.Tuple, index: ast.expr) -> ast.expr | None:
+    """Return the item of a literal list at an index, which may be negative, or None if it is unknown."""
+    if any(isinstance(item, ast.Starred) for item in node.elts):
+        return None
+    try:
+        number = ast.literal_eval(index)
+    except (ValueError, TypeError, SyntaxError, RecursionError):
+        return None
+    is_index = type(number) is int and -len(node.elts) <= number < len(node.elts)
+    return node.elts[number] if is_index else None

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
-from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, with_condition
+from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, split_text, with_condition
+from linkwright.review.launches.python_syntax import find_list_item
 from linkwright.review.launches.python_tests import SUBSTITUTIONS
 from linkwright.review.list_changes import EMPTY
 
@@ -390,7 +391,7 @@ class ExpressionTexts:
             result = self._find_result(node) if substitution is None else None
             if result is not None:
                 return result.texts.text(result.node, depth + 1)
-            return _format_call(node, part) if substitution is None else substitution
+            return split_text(_format_call(node, part)) if substitution is None else substitution
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
             return f"{part(node.left)}{'' if self._is_string(node) else ' + '}{part(node.right)}"
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
@@ -439,13 +440,17 @@ class ExpressionTexts:
         return owner.texts._find_item(owner.node) if isinstance(owner.node, ast.Subscript) else owner
 
     def _find_item(self, node: ast.Subscript) -> BoundExpression:
-        """Return the value of an item of a dictionary, or the expression itself if it is unknown."""
-        owner = self._find_owner(node)
+        """Return the value of an item of a dictionary or list, or the expression itself if it is unknown."""
+        owner, key = self._find_owner(node), self.resolve(node.slice).node
         if isinstance(owner.node, ast.Dict):
             pairs = zip(owner.node.keys, owner.node.values, strict=True)
-            values = [value for key, value in pairs if key is not None and ast.dump(key) == ast.dump(node.slice)]
+            values = [value for name, value in pairs if name is not None and ast.dump(name) == ast.dump(key)]
             if values:
                 return owner.texts.resolve(values[-1])
+        if isinstance(owner.node, (ast.List, ast.Tuple)):
+            item = find_list_item(owner.node, key)
+            if item is not None:
+                return owner.texts.resolve(item)
         return BoundExpression(self, node)
 
     def _format_substitution(self, node: ast.Call, part: _Formatter) -> str | None:
