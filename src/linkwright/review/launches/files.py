@@ -47,7 +47,7 @@ from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacement
 from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
 from linkwright.review.launches.object_texts import report_object_texts
 from linkwright.review.launches.outlines import (
-    NAMES_AS_REMAPPINGS,
+    FAILURES,
     READING,
     SERVER_PARAMETER,
     CodePart,
@@ -146,7 +146,7 @@ def compare_launch_files(pair: FilePair) -> None:
             report_object_tests(pair)
             report_object_texts(pair)
         report_undefined_names(pair)
-    if any(NAMES_AS_REMAPPINGS in entry.settings for entry in old.entries):
+    if any(not entry.settings.keys().isdisjoint(FAILURES) for entry in old.entries):
         _mark_unbreaking(pair, keeps_renaming=True)  # the old file failed
     if old.is_ros1 and not new.is_ros1 and PurePosixPath(pair.old_path).name != PurePosixPath(pair.new_path).name:
         _mark_unbreaking(pair, keeps_renaming=True)  # no user starts the file by its old name

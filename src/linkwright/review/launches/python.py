@@ -17,6 +17,7 @@ from linkwright.review.launches.node_settings import format_settings, split_choi
 from linkwright.review.launches.other_code import find_definitions, find_scope_sources, read_other_code
 from linkwright.review.launches.outlines import (
     CONDITION,
+    MISSING_ARGUMENT,
     Entry,
     LaunchOutline,
     Scope,
@@ -24,6 +25,7 @@ from linkwright.review.launches.outlines import (
 from linkwright.review.launches.python_syntax import (
     ADD_METHODS,
     find_added_action,
+    find_missing_argument,
     find_name_and_value,
     find_unused_values,
 )
@@ -464,6 +466,9 @@ class _Reader:
             condition = extra[CONDITION].texts.format_condition(extra[CONDITION].node)
         if condition:
             settings[CONDITION] = condition
+        missing = find_missing_argument(self.python, call, keywords)
+        if missing is not None:
+            settings[MISSING_ARGUMENT] = missing
         return Entry(kind, name, scope.add_to_settings(kind, settings), self.python.span(call))
 
     def _is_none(self, node: ast.expr) -> bool:
