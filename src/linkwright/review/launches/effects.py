@@ -221,7 +221,7 @@ def find_addition_reason(entry: Entry, outline: LaunchOutline) -> Phrase | None:
     """
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         return _explain_required_argument(entry)
-    if MISSING_ARGUMENT in entry.settings and _is_made_by_default(entry, outline):
+    if MISSING_ARGUMENT in entry.settings and is_made_by_default(entry, outline):
         return phrase("the launch file fails without '{name}'", name=entry.settings[MISSING_ARGUMENT])
     is_required = entry.kind == READING and not entry.settings and entry.name not in _STANDARD_VARIABLES
     if is_required and not _is_read_by_stopped_actions(entry.name, outline):
@@ -229,7 +229,7 @@ def find_addition_reason(entry: Entry, outline: LaunchOutline) -> Phrase | None:
     return None
 
 
-def _is_made_by_default(entry: Entry, outline: LaunchOutline) -> bool:
+def is_made_by_default(entry: Entry, outline: LaunchOutline) -> bool:
     """Return whether a Python file makes an action, unlike one below an ``if`` statement that may not hold.
 
     The condition of an action is evaluated after the action is made.

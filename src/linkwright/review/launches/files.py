@@ -24,7 +24,7 @@ from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.bridged_topics import explain_lost_topics
 from linkwright.review.launches.builders import separate_builders
-from linkwright.review.launches.effects import find_removal_reason
+from linkwright.review.launches.effects import find_removal_reason, is_made_by_default
 from linkwright.review.launches.environment_readers import find_reader, reads_variable
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.fixed_arguments import report_fixed_arguments
@@ -146,7 +146,7 @@ def compare_launch_files(pair: FilePair) -> None:
             report_object_tests(pair)
             report_object_texts(pair)
         report_undefined_names(pair)
-    if any(not entry.settings.keys().isdisjoint(FAILURES) for entry in old.entries):
+    if any(not entry.settings.keys().isdisjoint(FAILURES) and is_made_by_default(entry, old) for entry in old.entries):
         _mark_unbreaking(pair, keeps_renaming=True)  # the old file failed
     if old.is_ros1 and not new.is_ros1 and PurePosixPath(pair.old_path).name != PurePosixPath(pair.new_path).name:
         _mark_unbreaking(pair, keeps_renaming=True)  # no user starts the file by its old name
@@ -233,8 +233,11 @@ def _report_unpaired_entries(
                 continue
         file = file or other_file
         if file is None:
-            reason = explain_addition(pair, entry, removed, old_included.outline, new_included.outline)
-            pair.add(format_added_entry(entry), pair.location(entry.span), reason)
+            text, reason = format_added_entry(entry), explain_addition(pair, entry, removed, included)
+            if reason is not None and entry.kind == "remapping":
+                target = new_included.outline.resolve(entry.settings.get("to", ""))
+                text, reason = _explain_opposite_change(pair, entry, text, reason, (None, target))
+            pair.add(text, pair.location(entry.span), reason)
         else:
             moved.setdefault((file, False), []).append(entry)
     for entry in removed:
@@ -305,9 +308,7 @@ def _report_removed(
             text, reason = phrase("{change}; {file} sets it now", change=text, file=file), None
     if reason is not None and entry.kind in ("remapping", SERVER_PARAMETER):
         target = trees[0].resolve(entry.settings.get("to", ""))
-        includer = IncludingFiles(pair).find_opposite_change(entry, "", target, None)
-        if includer is not None:
-            text, reason = describe_opposite_change(text, reason, includer, is_removed=True)
+        text, reason = _explain_opposite_change(pair, entry, text, reason, (target, None))
     other = None if reason is None or entry.kind != "include" else find_other_include(entry, *trees)
     if other is not None and other[0].includer is not None:
         other_file, has_same_namespace = other
@@ -317,6 +318,24 @@ def _report_removed(
             text = phrase("{change}, in the namespace '{name}'", change=text, name=other_file.namespace)
             reason = phrase("programs that use the names of the node, its topics or its services do not find them")
     pair.add(text, pair.location(entry.span, is_old=True), reason)
+
+
+def _explain_opposite_change(
+    pair: FilePair, entry: Entry, text: Phrase, reason: Phrase, values: tuple[str | None, str | None]
+) -> tuple[Phrase, Phrase]:
+    """Return the line and the reason for a value that also moves to or from a file that includes this one.
+
+    Args:
+        pair: both versions of the launch file.
+        entry: the action that sets the value.
+        text: the line.
+        reason: the reason why the change is breaking.
+        values: the old and the new value; None for the version that does not set it.
+    """
+    includer = IncludingFiles(pair).find_opposite_change(entry, "", *values)
+    if includer is None:
+        return text, reason
+    return describe_opposite_change(text, reason, includer, is_removed=values[1] is None)
 
 
 def _is_unused_argument(pair: FilePair, entry: Entry, old: LaunchOutline) -> bool:
