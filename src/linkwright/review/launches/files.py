@@ -53,6 +53,7 @@ from linkwright.review.launches.outlines import (
     CodePart,
     Entry,
     LaunchOutline,
+    imply,
 )
 from linkwright.review.launches.python_tests import report_object_tests
 from linkwright.review.launches.reading import read_outline
@@ -78,6 +79,7 @@ from linkwright.review.sources.names import PYTHON_SUFFIX
 
 _MAX_STATEMENT_CHARACTERS = 120
 """The maximum number of characters of a statement that are shown."""
+_MAX_CONDITION_CHARACTERS = 240
 _MAX_SHOWN_STATEMENTS = 3
 """The maximum number of changed statements that are shown separately."""
 _CODE_NAME = re.compile(r"(?<=\bname )\w+\b|(?<=\barg=')\w+\b(?=')")
@@ -493,10 +495,11 @@ def _report_failures(
     other_statements = list(added)
     for part in added:
         tests = part.failing_tests
-        is_known = any(all(any(test.implies(other) for test in tests) for other in failure) for failure in old_failures)
+        is_known = any(all(imply(tests, other) for other in failure) for failure in old_failures)
         is_harmless = any(not test.is_known or test.arguments & (optional - old_names) for test in tests)
         if tests and not is_known and not is_harmless:
             condition = " and ".join(f"({test.text})" if " or " in test.text else test.text for test in tests)
+            condition = shorten_middle(condition, _MAX_CONDITION_CHARACTERS)
             reason = phrase("the launch file fails if `{condition}`", condition=condition)
             text = phrase("added: {code}", code=shorten_middle(part.source, _MAX_STATEMENT_CHARACTERS))
             pair.add(text, pair.location(part.span), reason)

@@ -136,10 +136,12 @@ class FailingTest:
     arguments: frozenset[str] = frozenset()
     is_known: bool = True
 
-    def implies(self, other: FailingTest) -> bool:
-        """Return whether the other test holds, too, when this one holds."""
-        is_narrower = bool(self.subject) and self.subject == other.subject and other.accepted <= self.accepted
-        return is_narrower or self.text == other.text
+
+def imply(tests: Sequence[FailingTest], other: FailingTest) -> bool:
+    """Return whether a test holds when several tests hold."""
+    accepted = frozenset[str]().union(*(test.accepted for test in tests if test.subject == other.subject))
+    is_narrower = bool(other.subject) and bool(other.accepted) and other.accepted <= accepted
+    return is_narrower or any(test.text == other.text for test in tests)
 
 
 @dataclass(frozen=True)
