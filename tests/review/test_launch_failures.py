@@ -69,7 +69,8 @@ def test_no_controller_is_lost_and_none_has_the_name_of_a_variable_if_a_list_is_
         ("    if kind:\n" + NESTED.replace("no such", "unknown"), []),
         (CHECK.replace(', "one"', "").replace("no such", "unknown"),
          ["added: raise RuntimeError('unknown kind')"]),
-        (CHECK + '    if kind == "both":\n        pass\n    elif kind == "one":\n        pass\n    else:\n        exit()\n', []),
+        (CHECK + "    if kind == 'both':\n        pass\n    elif kind == 'one':\n        pass\n    else:\n"
+         "        exit()\n", []),
         (CHECK + "    if kind == 'both':\n        pass\n    else:\n        exit()\n", ["added: exit()"]),
         (CHECK + "    if context:\n        if kind:\n            exit()\n", ["added: exit()"]),
     ],

@@ -373,7 +373,8 @@ def _find_parameter_reason(
     if (is_frame or is_topic) and old_name.strip("/") != new_name.strip("/") and not _UNKNOWN_NAME.search(new_name):
         return name_reason(old_name)
     parameter = without_condition(setting).removeprefix(PARAMETER).replace("/", ".")
-    switch_reason = find_switch_reason(parameter, old_name, new_name)
+    hardware_reason = find_hardware_reason(parameter.rpartition(".")[2], old_name, new_name)
+    switch_reason = find_switch_reason(parameter, old_name, new_name) or hardware_reason
     if switch_reason is not None and switches_transform(parameter) and _starts_other_programs(old_outline, new_outline):
         return None  # an added node may publish the transform
     if switch_reason is not None or new_outline.is_ros1:
