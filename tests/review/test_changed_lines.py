@@ -74,7 +74,15 @@ def test_shell_script_without_a_suffix_is_compared(repository, compare):
 
 
 def test_commands_of_ros_come_before_messages_and_pauses_in_a_long_added_script(repository, compare):
-    lines = ["cleanup() {", 'echo "bye"', "kill 0", "}", "trap cleanup EXIT", "sleep 1", "ros2 launch arm arm.launch.py"]
+    lines = [
+        "cleanup() {",
+        'echo "bye"',
+        "kill 0",
+        "}",
+        "trap cleanup EXIT",
+        "sleep 1",
+        "ros2 launch arm arm.launch.py",
+    ]
     repository.commit({"README": "arm\n"})
     repository.write({"arm/start.sh": "\n".join(["#!/bin/sh", *lines])})
     state = str(compare(repository).file_states["arm/start.sh"])
