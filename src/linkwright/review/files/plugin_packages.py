@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.required_packages import is_undeclared_and_new
 from linkwright.review.versions import Versions
 
@@ -20,6 +21,7 @@ _CLASS_PARAMETER = re.compile(
     r"(^|[._])(plugin|type|kinematics_solver|planning_plugin|base_\w+_planner|\w+_controller_manager)$"
 )
 _PLUGIN = re.compile(r"(^|[._])plugin$")
+_CONTROLLER_TYPE = re.compile(r"(?:^|\.)(?P<name>\w+)\.type$")
 _OTHER_NAMES = frozenset(
     {
         *("cached_ik_kinematics_plugin", "chomp_interface", "default_planner_request_adapters", "fake_components"),
@@ -55,12 +57,21 @@ class PluginPackages:
     def find_addition_reason(self, values: Mapping[str, YamlValue]) -> Phrase | None:
         """Return the reason why added values are breaking, or None if they are not.
 
-        An added controller, which has a type, may not be started.
+        An added controller, which has a type, counts only if a launch file names it. Otherwise, nothing may start it.
         """
-        plugins = {name: value for name, value in values.items() if _PLUGIN.search(name)}
+        plugins = {name: value for name, value in values.items() if _PLUGIN.search(name) or self._is_started(name)}
         packages = dict.fromkeys(find_plugin_package(name, value.text) for name, value in plugins.items())
         reasons = (self.explain_missing_package(package) for package in packages if package is not None)
         return next((reason for reason in reasons if reason is not None), None)
+
+    def _is_started(self, parameter: str) -> bool:
+        """Return whether a parameter is the type of a controller that a launch file names."""
+        controller = _CONTROLLER_TYPE.search(parameter)
+        if controller is None:
+            return False
+        name = re.compile(rf"(?<![\w/]){re.escape(controller['name'])}(?![\w/])")
+        version = self.versions.new
+        return any(name.search(version.text(path)) for path in find_launch_files(version))
 
     def explain_missing_package(self, package: str) -> Phrase | None:
         """Return the reason why a plugin of a package is not loaded, or None if the package may exist."""
