@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections import Counter
-from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 from pathlib import Path, PurePosixPath
@@ -46,6 +45,7 @@ from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
 from linkwright.review.launches.object_texts import report_object_texts
+from linkwright.review.launches.other_code import drop_common_parts, outside
 from linkwright.review.launches.outlines import (
     FAILURES,
     READING,
@@ -59,7 +59,12 @@ from linkwright.review.launches.python_tests import report_object_tests
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renamed_code import rename_packages_in_code
 from linkwright.review.launches.renamed_programs import find_renamed_programs
-from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
+from linkwright.review.launches.renames import (
+    find_renamed_names,
+    rename_commands,
+    rename_in_entry,
+    rename_in_outline,
+)
 from linkwright.review.launches.repeated_arguments import report_repeated_arguments
 from linkwright.review.launches.repeated_nodes import report_repeated_nodes
 from linkwright.review.launches.settings import SettingChanges
@@ -107,7 +112,7 @@ def compare_launch_files(pair: FilePair) -> None:
     removed: list[Entry] = []
     added: list[Entry] = []
     paired_old: list[Entry] = []
-    for old_entry, new_entry in match_entries(old.entries, new.entries):
+    for old_entry, new_entry in rename_commands(list(match_entries(old.entries, new.entries))):
         if old_entry is not None and new_entry is not None:
             settings.compare(old_entry, new_entry)
             choices.compare(old_entry, new_entry)
@@ -426,15 +431,15 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
     if [part.text for part in old.code] == [part.text for part in new.code]:
         return
     equal = {name for name, source in old.scope_sources.items() if new.scope_sources.get(name) == source}
-    removed, added = _drop_common_parts(old.code, new.code, equal), _drop_common_parts(new.code, old.code, equal)
+    removed, added = drop_common_parts(old.code, new.code, equal), drop_common_parts(new.code, old.code, equal)
     if _differ_in_names(removed, added):
         return
     common_sources = {part.source for part in removed} & {part.source for part in added}
     if common_sources:
         removed, added = ([part for part in parts if part.source not in common_sources] for parts in (removed, added))
         old_sources, new_sources = ({part.source for part in outline.definitions} for outline in (old, new))
-        removed += [part for part in _outside(old.definitions, equal) if part.source not in new_sources]
-        added += [part for part in _outside(new.definitions, equal) if part.source not in old_sources]
+        removed += [part for part in outside(old.definitions, equal) if part.source not in new_sources]
+        added += [part for part in outside(new.definitions, equal) if part.source not in old_sources]
     removed, added = _drop_definitions(removed, new), _drop_definitions(added, old)
     added = _report_failures(pair, added, old, new)
     if not removed and not added:
@@ -556,39 +561,3 @@ def _are_versions_of_one_statement(old: CodePart, new: CodePart) -> bool:
         old.source != new.source
         and SequenceMatcher(None, old.source, new.source, autojunk=False).ratio() >= MIN_SIMILARITY
     )
-
-
-def _outside(parts: Iterable[CodePart], equal_scopes: Collection[str]) -> list[CodePart]:
-    """Return the statements outside of the functions and classes that are equal in both versions."""
-    return [part for part in parts if not any(scope in equal_scopes for scope in part.scopes)]
-
-
-def _drop_common_parts(
-    parts: Sequence[CodePart], other_parts: Sequence[CodePart], equal_scopes: Collection[str]
-) -> list[CodePart]:
-    """Return the statements without those that the other version has, each counted once.
-
-    A statement is looked for in the same function first, and then in other functions, to which it may have moved. A
-    function that is equal in both versions keeps its statements.
-    """
-    unpaired = _subtract(parts, other_parts, lambda part: (part.scopes, part.text))
-    other_unpaired = _subtract(other_parts, parts, lambda part: (part.scopes, part.text))
-    changed = _subtract(
-        _outside(unpaired, equal_scopes), _outside(other_unpaired, equal_scopes), lambda part: part.text
-    )
-    kept = {id(part) for part in changed}
-    return [part for part in unpaired if id(part) in kept or not _outside([part], equal_scopes)]
-
-
-def _subtract(
-    parts: Iterable[CodePart], other_parts: Iterable[CodePart], find_key: Callable[[CodePart], Hashable]
-) -> list[CodePart]:
-    """Return the statements without those of another list that have the same key, each counted once."""
-    remaining_counts = Counter(map(find_key, other_parts))
-    unpaired = []
-    for part in parts:
-        if remaining_counts[find_key(part)]:
-            remaining_counts[find_key(part)] -= 1
-        else:
-            unpaired.append(part)
-    return unpaired

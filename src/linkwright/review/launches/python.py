@@ -27,6 +27,7 @@ from linkwright.review.launches.python_syntax import (
     find_added_action,
     find_missing_argument,
     find_name_and_value,
+    find_own_default,
     find_unused_values,
 )
 from linkwright.review.launches.python_tests import read_tests
@@ -438,7 +439,7 @@ class _Reader:
                 if key in names and not (key == "default_value" and self._is_none(value))
             }
             if "default" in settings:
-                settings["default"] = self.texts.format_joined(keywords["default_value"])
+                settings["default"] = find_own_default(name, self.texts.format_joined(keywords["default_value"]))
         elif function == "SetLaunchConfiguration":
             kind, name, settings = "variable", first_text, {"value": second_text}
         elif function == "SetRemap":

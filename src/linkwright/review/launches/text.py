@@ -29,7 +29,7 @@ _Formatter = Callable[[ast.expr | None], str]
 _COMPARISON_CONDITIONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
 _PATH_CLASSES = ("Path", "PurePath", "PosixPath", "PurePosixPath")
 _COMPARISON_SUBSTITUTIONS = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
-_STRING_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname")
+_STRING_FUNCTIONS = ("get_package_share_directory", "get_package_prefix", "join", "str", "getenv", "dirname")
 _PROGRAM_SEARCH = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """A command with an explicit search for the program. The text omits the search, which is the default."""
 _QUOTED_STRING = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
@@ -465,6 +465,8 @@ class ExpressionTexts:
             return f"$(var {' '.join(map(part, arguments))})"
         if function in ("FindPackageShare", "get_package_share_directory", "get_package_share_path"):
             return f"$(find-pkg-share {part(first)})"
+        if function in ("FindPackagePrefix", "get_package_prefix"):
+            return f"$(find-pkg-prefix {part(first)})"
         if function == "ThisLaunchFileDir":
             return "$(dirname)"
         if function == "find" and isinstance(node.func, ast.Attribute):
