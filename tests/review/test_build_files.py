@@ -56,6 +56,8 @@ FILES = {
          ["calls of find_package added: 'tf2_ros'"], False),
         ("STANDARD 14", "STANDARD 17", ["settings: 'CMAKE_CXX_STANDARD': 14 -> 17"], False),
         ("(driver rclcpp)", "(driver rclcpp tf2_ros)", ["'driver' linked to 'tf2_ros'"], False),
+        ("(driver rclcpp)", "(driver PUBLIC rclcpp ${PCL_LIBRARIES} VTK ${MORE} driver)",
+         ["'driver' linked to itself", "'driver' linked to 'PCL', 'VTK'"], False),
         ("find_package(rclcpp REQ", "find_package(Boost REQUIRED COMPONENTS thread)\nfind_package(rclcpp REQ",
          ["calls of find_package added: 'Boost', 'Boost thread'"], False),
         ("add_library(arm", "add_compile_options(-Wall)\nadd_library(arm", ["add_compile_options added: -Wall"], False),

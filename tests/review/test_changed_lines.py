@@ -77,3 +77,19 @@ def test_shell_script_without_a_suffix_is_compared(repository, compare):
     repository.commit({"arm/start": '#!/bin/sh\nros2 run arm driver "${@:1:$#-1}"\n'})
     repository.write({"arm/start": '#!/bin/sh\nros2 run arm driver "$@"\n'})
     assert str(compare(repository).file_states["arm/start"]).endswith('-> ros2 run arm driver "$@"')
+
+
+def test_commands_of_ros_come_before_messages_and_pauses_in_a_long_added_script(repository, compare):
+    lines = [
+        "cleanup() {",
+        'echo "bye"',
+        "kill 0",
+        "}",
+        "trap cleanup EXIT",
+        "sleep 1",
+        "ros2 launch arm arm.launch.py",
+    ]
+    repository.commit({"README": "arm\n"})
+    repository.write({"arm/start.sh": "\n".join(["#!/bin/sh", *lines])})
+    state = str(compare(repository).file_states["arm/start.sh"])
+    assert state.startswith("added: `ros2 launch arm arm.launch.py`, `kill 0`, `cleanup() {`, ")

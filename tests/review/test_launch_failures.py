@@ -69,6 +69,9 @@ def test_no_controller_is_lost_and_none_has_the_name_of_a_variable_if_a_list_is_
         ("    if kind:\n" + NESTED.replace("no such", "unknown"), []),
         (CHECK.replace(', "one"', "").replace("no such", "unknown"),
          ["added: raise RuntimeError('unknown kind')"]),
+        (CHECK + "    if kind == 'both':\n        pass\n    elif kind == 'one':\n        pass\n    else:\n"
+         "        exit()\n", []),
+        (CHECK + "    if kind == 'both':\n        pass\n    else:\n        exit()\n", ["added: exit()"]),
         (CHECK + "    if context:\n        if kind:\n            exit()\n", ["added: exit()"]),
     ],
 )  # fmt: skip
@@ -189,3 +192,20 @@ def generate_launch_description():
 def test_actions_that_are_not_defined_are_breaking(review_changes, new, expected):
     _, found = review_changes("arm.launch.py", ACTIONS, "[driver]", new)
     assert found == expected
+
+
+@pytest.mark.parametrize(
+    ("test", "condition"),
+    [
+        ("kind.endswith('.json')", "not kind.endswith('.json')"),
+        ("kind == 'both' or kind in load()", "kind != 'both' and kind not in load()"),
+        ("not kind", "kind"),
+        ("kind and context", "not (kind and context)"),
+    ],
+)
+def test_a_failure_in_an_else_branch_is_new_under_the_opposite_condition(repository, compare, test, condition):
+    repository.commit({"arm/launch/arm.launch.py": LAUNCH})
+    added = f"    if {test}:\n        print(kind)\n    else:\n        raise ValueError(kind)\n"
+    repository.write({"arm/launch/arm.launch.py": LAUNCH.replace(CHECK, CHECK + added)})
+    ((_, change),) = compare(repository).breaking_changes
+    assert str(change.reason) == f"the launch file fails if `{condition}`"

@@ -91,3 +91,15 @@ def test_value_that_takes_the_place_of_a_parameter_file_is_no_other_file(review_
     inline = '<param name="yaml_filename" value="$(find-pkg-share arm)/maps/arm.yaml"/>'
     found = review_reasons(text, '<param from="$(var params)"/>', inline)
     assert not [sentence for sentence in found if "no longer chooses" in sentence]
+
+
+def test_a_fixed_file_that_an_added_argument_chooses_is_told_with_the_setting(review_reasons):
+    text = FILE.format(viewer="arm_description")
+    path = "-d $(find-pkg-share $(var description))/config/view.rviz"
+    fixed = text.replace(path, "-d /config/view.rviz")
+    old, new = fixed[: fixed.index("</launch>")], fixed.replace("-d /config/view.rviz", "-d $(var view)")
+    argument = '  <arg name="view" default="/config/view.rviz"/>\n'
+    assert list(review_reasons(fixed, old, f"{new[: new.index('</launch>')]}{argument}")) == [
+        "node 'rviz2/rviz2': arguments -d /config/view.rviz -> -d $(var view) (the same by default)",
+        "argument 'view' added: default /config/view.rviz",
+    ]

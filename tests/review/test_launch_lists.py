@@ -90,6 +90,24 @@ def test_an_event_handler_is_told_by_the_commands_that_it_starts(repository, com
     assert change.location.line == MESSAGES[: MESSAGES.index(before)].count("\n") + 1
 
 
+def test_a_handler_that_starts_a_changed_process_is_no_other_change(review_changes):
+    found, _ = review_changes("arm.launch.py", MESSAGES, '"active", "right"', '"active", "arm"')
+    assert found == ["process 'ros2': command: arm added, right removed"]
+
+
+def test_actions_for_each_item_of_a_list_are_no_other_code(review_changes):
+    loop = 'LogInfo(msg=["camera ", name]) for name in ["front", "back"]'
+    found, _ = review_changes("arm.launch.py", MESSAGES, "        load,\n", f"        load,\n        *[{loop}],\n")
+    assert found == ["log message added: camera front", "log message added: camera back"]
+
+
+def test_the_default_of_an_argument_that_is_the_argument_itself(review_changes):
+    declared = 'DeclareLaunchArgument("port", default_value=LaunchConfiguration("port", default="{}"))'
+    text = MESSAGES.replace("        load,\n", f"        {declared.format('a')},\n        load,\n")
+    found, _ = review_changes("arm.launch.py", text, declared.format("a"), declared.format("b"))
+    assert found == ["argument 'port': default a -> b"]
+
+
 def test_log_messages_are_actions(review_changes):
     found, found_breaking = review_changes("arm.launch.py", MESSAGES, "        load,\n", f"        load,\n{LOG}")
     assert (found, found_breaking) == (["log message added: port $(var port)"], [])

@@ -278,10 +278,12 @@ def test_file_of_the_same_package_with_a_similar_name_replaces_an_include(review
     [
         ("use_sim", "true", "false", True),
         ("use_fake_hardware", "false", "true", True),
-        ("use_gazebo", "true", "false", True),
         ("paused", "false", "true", True),
         ("paused", "true", "false", False),
         ("use_mock_hardware", "True", "False", True),
+        ("use_gazebo", "true", "false", True),
+        ("fake_execution", "false", "true", True),
+        ("gazebo_gui", "true", "false", False),
         ("use_sim_time", "true", "false", False),
         ("use_sim", "true", "True", False),
         ("sim_config", "true", "false", False),
@@ -321,3 +323,15 @@ def test_value_for_an_included_file_that_switches_a_simulation(repository, compa
     repository.write({path: text.format(name, new)})
     reasons = [str(change.reason) for change in subject(compare(repository), path).changes if change.reason]
     assert reasons == ([] if reason is None else [reason])
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("gazebo", True), ("use_sim", True), ("gazebo_rate", False)])
+@pytest.mark.parametrize("parent", ['<node pkg="a" type="a" name="a"/>{}', '<node pkg="a" type="a" name="a">{}</node>'])
+def test_parameter_that_switches_between_hardware_and_simulation_is_breaking(
+    repository, compare, name, is_breaking, parent
+):
+    values = [f'<param name="{name}" value="{value}"/>' for value in ("true", "false")]
+    old, new = map(parent.format, values)
+    repository.commit({"arm/launch/arm.launch": f"<launch>{old}</launch>"})
+    repository.write({"arm/launch/arm.launch": f"<launch>{new}</launch>"})
+    assert bool(breaking(compare(repository))) is is_breaking

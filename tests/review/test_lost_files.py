@@ -140,3 +140,14 @@ install(TARGETS drive stop DESTINATION lib/${PROJECT_NAME})
     assert "installed executables removed: 'stop'" in lines
     assert "installed libraries removed: 'arm_core'" in lines
     assert not [line for line in lines if "'drive'" in line]
+
+
+@pytest.mark.parametrize("name", ["arm.launch.py", "bringup.py"])
+def test_a_removed_launch_file_is_one_line_whatever_its_name(repository, compare, name):
+    launch = "def generate_launch_description():\n    return LaunchDescription([])\n"
+    install = "install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})\nament_package()"
+    cmake = f"cmake_minimum_required(VERSION 3.8)\nproject(arm)\n{install}\n"
+    files = {"a/package.xml": FILES["a/package.xml"], "a/CMakeLists.txt": cmake, "a/launch/b.txt": "b\n"}
+    repository.commit({**files, f"a/launch/{name}": launch})
+    repository.commit({f"a/launch/{name}": None})
+    assert breaking(compare(repository, "HEAD~1..HEAD")) == ["launch file removed"]

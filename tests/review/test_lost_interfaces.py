@@ -177,3 +177,30 @@ def test_a_source_that_uses_a_lost_field_of_a_member_of_its_base_class_is_named(
     repository.write({"lamp_msgs/msg/Light.msg": MESSAGE.replace("string label\n", "")})
     lines = [line for line in breaking(compare(repository)) if line.startswith("uses")]
     assert lines == (["uses 'label', which 'lamp_msgs/Light' no longer has"] if is_named else [])
+
+
+GENERATED = """cmake_minimum_required(VERSION 3.0)
+project(house_msgs)
+find_package(catkin REQUIRED COMPONENTS lamp_msgs message_generation)
+add_message_files(FILES House.msg)
+generate_messages(DEPENDENCIES lamp_msgs)
+"""
+
+
+@pytest.mark.parametrize(
+    ("left", "build_tool", "is_found"),
+    [([], "catkin", True), (["lamp_msgs/srv/Name.srv"], "catkin", False), ([], "ament", False)],
+)
+def test_interfaces_that_depend_on_a_package_without_interfaces_are_not_built(
+    repository, compare, left, build_tool, is_found
+):
+    house = MANIFEST.format(name="house_msgs").replace(
+        "</package>", f"<buildtool_depend>{build_tool}</buildtool_depend></package>"
+    )
+    files = {"lamp_msgs/msg/Light.msg": MESSAGE, "lamp_msgs/srv/Name.srv": SERVICE}
+    build = {"house_msgs/package.xml": house, "house_msgs/CMakeLists.txt": GENERATED, "house_msgs/msg/House.msg": ""}
+    repository.commit({"lamp_msgs/package.xml": MANIFEST.format(name="lamp_msgs"), **files, **build})
+    repository.commit({path: None for path in files if path not in left})
+    found = breaking(compare(repository, "HEAD~..HEAD"))
+    line = "the interfaces depend on 'lamp_msgs', which no longer has any"
+    assert (line in found) is is_found

@@ -113,3 +113,27 @@ def test_lost_program_of_ros1_is_breaking(repository, compare, is_executable, ne
     repository.commit({PATH: SCRIPT})
     repository.root.joinpath(PATH).chmod(0o755 if is_executable else 0o644)
     assert find_breaking(repository, compare, {"arm/package.xml": manifest, **build}, new) == expected
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [
+        ("ros2 launch arm other.launch.py &", "other.launch.py"),
+        ("roslaunch arm other.launch", "other.launch"),
+        ("ros2 run arm drive.py", "drive.py"),
+        ("ros2 run arm driver", "driver"),
+        ("ros2 launch arm arm.launch.py", None),
+        ("ros2 run arm check.py", None),
+        ("ros2 launch nav2_bringup other.launch.py", None),
+        ("ros2 launch arm $FILE", None),
+        ("echo 'ros2 launch arm other.launch.py'", None),
+        ("# ros2 launch arm other.launch.py", None),
+    ],
+)
+@pytest.mark.parametrize("old", [None, "ros2 launch arm first.launch.py\n"])
+def test_a_new_command_that_starts_what_its_package_never_had_is_breaking(repository, compare, command, name, old):
+    build = "cmake_minimum_required(VERSION 3.8)\nproject(arm)\n"
+    install = "install(PROGRAMS scripts/check.py DESTINATION lib/${PROJECT_NAME})\n"
+    files = {"arm/CMakeLists.txt": build + install, "arm/launch/arm.launch.py": "", "start.sh": old or ""}
+    found = find_breaking(repository, compare, files, {"start.sh": f"{old or ''}{command}\n"})
+    assert found == ([] if name is None else [f"starts '{name}' of 'arm', which does not exist"])

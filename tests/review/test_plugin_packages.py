@@ -80,6 +80,23 @@ def test_an_added_plugin_that_its_known_package_does_not_have_is_breaking(reposi
 
 
 @pytest.mark.parametrize(
+    ("started", "type_", "reasons"),
+    [
+        ("arm", "sun_controllers/Sun", [REASON.format("sun_controllers")]),
+        ("wrist", "sun_controllers/Sun", []),
+        ("arm_2", "sun_controllers/Sun", []),
+        ("arm", "lamp/Lamp", []),
+    ],
+)
+def test_the_type_of_an_added_controller_that_a_launch_file_starts(repository, compare, started, type_, reasons):
+    spawner = f"<launch><node pkg='controller_manager' exec='spawner' args='{started}'/></launch>\n"
+    files = {"lamp/package.xml": MANIFEST.format(""), "lamp/launch/a.launch.xml": spawner}
+    repository.commit({"lamp/config/a.yaml": CONTROLLERS, **files})
+    repository.write({"lamp/config/a.yaml": f"{CONTROLLERS}    arm: {{type: {type_}}}\n"})
+    assert [str(change.reason) for _, change in compare(repository).breaking_changes] == reasons
+
+
+@pytest.mark.parametrize(
     ("path", "text"),
     [
         ("sun_planner/package.xml", "<package format='2'><name>sun_planner</name><version>1.0.0</version></package>\n"),

@@ -37,6 +37,12 @@ REMAP = '<remap from="scan" to="raw"/>'
             ["node 'pad/pad_node' removed: parameter odom_frame odom"],
         ),
         (
+            '<node pkg="map" exec="map_HeightMap" namespace="a" name="b"/>',
+            '<node pkg="see" exec="see_HeightMap"/>',
+            "node 'map/map_HeightMap' replaced by node 'see/see_HeightMap'",
+            ["node 'see/see_HeightMap': namespace a removed, name b removed"],
+        ),
+        (
             '<node pkg="map" exec="map_HeightMap"/>',
             '<node pkg="see" exec="see_HeightMap"/>',
             "node 'map/map_HeightMap' replaced by node 'see/see_HeightMap'",

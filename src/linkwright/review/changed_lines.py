@@ -35,6 +35,10 @@ _SHELL = re.compile(rb"#![^\n]*/(?:env[ \t]+)?(?:ba|z|da)?sh\b")
 _UNIT_COMMAND = re.compile(r"Exec\w+=")
 """The lines of a unit of systemd that start programs."""
 _ROS_COMMAND = re.compile(r"\b(?:ros2 (?:run|launch)|rosrun|roslaunch)\b.*")
+_SECONDARY_COMMAND = re.compile(
+    r"(?:echo|printf|sleep|wait|exit|trap|clear|set|return)\b.*|[{}]|\w+ ?\(\) ?\{?|(?:fi|done|else|then|do|esac);?"
+)
+"""A line of a script that writes a message, waits, or has no command."""
 _MAX_LINES = 6
 """The maximum number of changed lines that are shown, except in a list of packages."""
 _MAX_LINE_LENGTH = 160
@@ -85,6 +89,8 @@ def list_commands(version: Version, path: str) -> Phrase | None:
     if not is_unit and not is_shell_script(version, path):
         return None
     lines = list_started_programs(version, path) if is_unit else [*_split_content_lines(version.text(path))]
+    if len(lines) > _MAX_LINES:
+        lines.sort(key=_find_rank)
     return joined_first([f"`{shorten(line, _MAX_COMMAND_LENGTH)}`" for line in lines], _MAX_LINES) if lines else None
 
 
@@ -100,9 +106,16 @@ def _find_started_program(line: str) -> str:
     return line if match is None else match[0].rstrip("'\"")
 
 
+def _find_rank(line: str) -> int:
+    """Return the rank of a line of a script: commands of ROS come first, messages and pauses last."""
+    if _SECONDARY_COMMAND.fullmatch(line):
+        return 2
+    return 0 if _ROS_COMMAND.search(line) else 1
+
+
 def _format_first(lines: list[str]) -> Phrase:
-    """Return the first lines, those with commands of ROS before others."""
-    ordered = sorted(lines, key=lambda line: _ROS_COMMAND.search(line) is None)
+    """Return the first lines in the order of their ranks."""
+    ordered = sorted(lines, key=_find_rank)
     shown = count_shown(len(ordered), _MAX_SHOWN)
     texts: list[Phrase | str] = [f"`{shorten(line, _MAX_SHORT_LENGTH)}`" for line in ordered[:shown]]
     if len(ordered) > shown:

@@ -25,6 +25,12 @@ _TEST_PROGRAM_COMMAND = re.compile(r"(\w+_)?add_(\w*_)?(gtest|gmock|gbenchmark|g
 _TEST_SOURCE = re.compile(r".+\.(c|cc|cpp|cxx|cu|py)")
 """A source among the arguments of a test, which also has a launch file, a timeout and an environment."""
 _LINK_COMMANDS = frozenset({"target_link_libraries", "ament_target_dependencies", "rosbuild_link_boost"})
+_LINK_KEYWORDS = frozenset(
+    {
+        *("PUBLIC", "PRIVATE", "INTERFACE", "SYSTEM", "LINK_PUBLIC", "LINK_PRIVATE", "LINK_INTERFACE_LIBRARIES"),
+        *("LINK_INTERFACE_MULTIPLICITY", "OVERRIDE_INTERFACE"),
+    }
+)
 _LOADED = re.compile(
     r"\b[A-Z]\w*(?:REGISTER|EXPORT|DECLARE)\w*\s*\(|\b[A-Z]\w*_MODULE\w*\s*\(|\bextern\s+\"C\"|\bPyInit_"
 )
@@ -49,13 +55,20 @@ def read_targets(commands: Iterable[Command]) -> dict[str, TargetParts]:
         parts.is_test |= is_test
         parts.is_test_program |= is_test_program
         for argument in arguments:
-            if argument.text.isupper() or not re.search(r"\w", argument.text):
+            is_link = command.name in _LINK_COMMANDS
+            is_library = is_link and _is_library(argument.text)
+            if (argument.text.isupper() and not is_library) or not re.search(r"\w", argument.text):
                 continue  # a keyword, such as PUBLIC, or an unknown variable
-            if command.name in _LINK_COMMANDS:
+            if is_link:
                 parts.libraries.setdefault(_get_library_name(argument.text, command.name), _get_span(argument))
             elif not is_open(argument.text) and (not is_test or _TEST_SOURCE.fullmatch(argument.text)):
                 parts.sources.setdefault(to_package_path(argument.text, command.folder), _get_span(argument))
     return targets
+
+
+def _is_library(text: str) -> bool:
+    """Return whether a word in capital letters is a library, such as ``PCL`` and ``${PCL_LIBRARIES}``."""
+    return _VARIABLE.fullmatch(text) is not None or (text not in _LINK_KEYWORDS and not is_open(text))
 
 
 def has_unknown_sources(commands: Iterable[Command]) -> bool:
@@ -131,6 +144,9 @@ def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
         ):
             if kind == "sources" and not new_items:
                 continue  # no longer built
+            old_items, new_items = (
+                {key: value for key, value in items.items() if key != name} for items in (old_items, new_items)
+            )
             span = next(iter({**new_items, **old_items}.values()), None)
             for is_added, items in (
                 (True, _find_unpaired_names(new_items, old_items)),
@@ -139,6 +155,10 @@ def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
                 if items and span is not None:
                     key = _TargetChange(kind, is_added, tuple(items))
                     changes.setdefault(key, []).append((name, new_items.get(items[0], span)))
+    for name, parts in new.targets.items():
+        span, before = parts.libraries.get(name), old.targets.get(name)
+        if span is not None and before is not None and name not in before.libraries:
+            pair.add(phrase("'{target}' linked to itself", target=name), pair.location(span))
     for key, targets in changes.items():
         text = _format_change(key.kind, [name for name, _ in targets], key.items, is_added=key.is_added)
         pair.add(text, pair.location(targets[0][1]))

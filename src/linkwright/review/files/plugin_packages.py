@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
-from linkwright.review.files.lost_groups import LAUNCH_SUFFIXES
 from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.launch_paths import find_launch_files
 from linkwright.review.required_packages import is_undeclared_and_new
 from linkwright.review.versions import Versions
 
@@ -20,8 +20,8 @@ The namespace of a class without an underscore is often not the package.
 _CLASS_PARAMETER = re.compile(
     r"(^|[._])(plugin|type|kinematics_solver|planning_plugin|base_\w+_planner|\w+_controller_manager)$"
 )
-_CONTROLLER_TYPE = re.compile(r"(?:.*[./])?controller_manager\.ros__parameters\.(?P<name>\w+)\.type")
 _PLUGIN = re.compile(r"(^|[._])plugin$")
+_CONTROLLER_TYPE = re.compile(r"(?:^|\.)(?P<name>\w+)\.type$")
 _OTHER_NAMES = frozenset(
     {
         *("cached_ik_kinematics_plugin", "chomp_interface", "default_planner_request_adapters", "fake_components"),
@@ -90,10 +90,12 @@ class PluginPackages:
 
     def _is_started(self, parameter: str) -> bool:
         """Return whether a parameter is the type of a controller that a launch file names."""
-        match = _CONTROLLER_TYPE.fullmatch(parameter)
-        name = None if match is None else re.compile(rf"(?<![\w./]){re.escape(match['name'])}(?![\w./])")
+        controller = _CONTROLLER_TYPE.search(parameter)
+        if controller is None:
+            return False
+        name = re.compile(rf"(?<![\w/]){re.escape(controller['name'])}(?![\w/])")
         version = self.versions.new
-        return name is not None and any(name.search(version.text(path)) for path in version.paths(LAUNCH_SUFFIXES))
+        return any(name.search(version.text(path)) for path in find_launch_files(version))
 
     def explain_missing_package(self, package: str) -> Phrase | None:
         """Return the reason why a plugin of a package is not loaded, or None if the package may exist."""

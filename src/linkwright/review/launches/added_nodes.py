@@ -1,4 +1,4 @@
-"""Decide which added actions of a launch file are breaking: they may fail, or take the place of others."""
+"""Decide which added launch actions are breaking: they may fail, take the place of others or rename topics."""
 
 from __future__ import annotations
 
@@ -9,8 +9,12 @@ from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import find_addition_reason, offers_nothing
+from linkwright.review.launches.include_trees import IncludeTree, find_moved_remapping
+from linkwright.review.launches.included import IncludedActions
+from linkwright.review.launches.name_effects import find_remapping_reason
 from linkwright.review.launches.outlines import CONDITION, REMAPPING, Entry, LaunchOutline, without_condition
 from linkwright.review.launches.package_lookups import looks_up_package
+from linkwright.review.launches.sides import Side, find_old_side, is_new_name
 from linkwright.review.required_packages import is_undeclared_and_new
 
 _PROGRAM = re.compile(r"(?P<package>[a-z][a-z0-9_]*)/\S+")
@@ -18,7 +22,7 @@ _INCLUDED_FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w-]+)\)/.+")
 
 
 def explain_addition(
-    pair: FilePair, entry: Entry, removed: Sequence[Entry], old: LaunchOutline, new: LaunchOutline
+    pair: FilePair, entry: Entry, removed: Sequence[Entry], included: tuple[IncludedActions, IncludedActions]
 ) -> Phrase | None:
     """Return the reason why an added action is breaking, or None if it is not.
 
@@ -26,9 +30,11 @@ def explain_addition(
         pair: both versions of the launch file.
         entry: the action that only the new version has.
         removed: the actions that only the old version has.
-        old: the actions of the old version.
-        new: the actions of the new version.
+        included: the actions of both versions with those of the included files.
     """
+    old, new = (actions.outline for actions in included)
+    if entry.kind == "remapping":
+        return _find_group_remapping_reason(pair, entry, included)
     if entry.kind == "argument" and _is_read_without_declaration(entry.name, old):
         return None  # callers had to pass it before, too
     reason = find_addition_reason(entry, new) or find_missing_package_reason(pair, entry, new)
@@ -86,6 +92,40 @@ def _find_remapping_reason(
         "if the included file published or served {names}, programs that use the names do not find them",
         names=quoted_names(lost),
     )
+
+
+def _find_group_remapping_reason(
+    pair: FilePair, entry: Entry, included: tuple[IncludedActions, IncludedActions]
+) -> Phrase | None:
+    """Return the reason why an added remapping for the nodes that follow is breaking, or None if it is not.
+
+    A node that both versions start may publish or serve the name. One of an unknown included file counts, too.
+    """
+    old, new = (actions.outline for actions in included)
+    trees = IncludeTree(included[1]), IncludeTree(included[0])
+    if evaluate_condition(new.resolve(entry.settings.get(CONDITION, ""))) is False:
+        return None
+    if find_moved_remapping(entry, *trees) is not None or _is_remapped_by_nodes(entry.name, old):
+        return None
+    programs = included[0].count_all_started_programs() & included[1].count_all_started_programs()
+    roots = pair.versions.old.root, pair.versions.new.root
+    sides = set()
+    for kind, name in programs:
+        file = _INCLUDED_FILE.fullmatch(name) if kind == "include" else None
+        program = f"{file['package']}/" if file is not None else name
+        if kind in ("include", "node") and not is_new_name(program, entry.name, *roots):
+            sides.add(find_old_side(program, entry.name, *roots))
+    offering = sides - {Side.USES, Side.LACKS}
+    if not offering:
+        return None
+    target = entry.settings.get("to")
+    return find_remapping_reason(entry.name, None, target, new, new, is_known=sides == {Side.OFFERS})
+
+
+def _is_remapped_by_nodes(name: str, outline: LaunchOutline) -> bool:
+    """Return whether nodes of a launch file remap a name themselves."""
+    settings = {without_condition(setting) for entry in outline.entries for setting in entry.settings}
+    return f"{REMAPPING}{name}" in settings
 
 
 def _find_package(entry: Entry, outline: LaunchOutline) -> str | None:

@@ -31,7 +31,8 @@ from linkwright.review.launches.name_effects import (
 from linkwright.review.launches.outlines import (
     BUILDER,
     CONDITION,
-    NAMES_AS_REMAPPINGS,
+    FAILURES,
+    MISSING_ARGUMENT,
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PARAMETER,
@@ -220,10 +221,21 @@ def find_addition_reason(entry: Entry, outline: LaunchOutline) -> Phrase | None:
     """
     if entry.kind == "argument" and not {"default", "value"} & entry.settings.keys():
         return _explain_required_argument(entry)
+    if MISSING_ARGUMENT in entry.settings and is_made_by_default(entry, outline):
+        return phrase("the launch file fails without '{name}'", name=entry.settings[MISSING_ARGUMENT])
     is_required = entry.kind == READING and not entry.settings and entry.name not in _STANDARD_VARIABLES
     if is_required and not _is_read_by_stopped_actions(entry.name, outline):
         return phrase("the launch file fails where '{name}' is not set", name=entry.name)
     return None
+
+
+def is_made_by_default(entry: Entry, outline: LaunchOutline) -> bool:
+    """Return whether a Python file makes an action, unlike one below an ``if`` statement that may not hold.
+
+    The condition of an action is evaluated after the action is made.
+    """
+    condition = entry.settings.get(CONDITION, "")
+    return "`" not in condition or evaluate_condition(outline.resolve(condition)) is True
 
 
 def _is_read_by_stopped_actions(variable: str, outline: LaunchOutline) -> bool:
@@ -273,6 +285,8 @@ def find_setting_reason(
         old_outline: the outline of the old file.
         new_outline: the outline of the new file.
     """
+    if setting in FAILURES:
+        return phrase("the launch file fails") if new is not None and old is None else None
     if entry.kind == READING:
         return find_addition_reason(entry, new_outline)
     if entry.kind == "argument":
@@ -305,8 +319,6 @@ def find_setting_reason(
     if setting.startswith(REMAPPING):
         source = without_condition(setting).removeprefix(REMAPPING)
         return find_node_remapping_reason(entry, source, old, new, old_outline, new_outline)
-    if setting == NAMES_AS_REMAPPINGS:
-        return phrase("the launch file fails") if new is not None and old is None else None
     if setting == "name" and None in (old, new) and _is_default_node_name(entry, old or new or ""):
         return None
     if setting in _NAME_SETTINGS:
@@ -362,7 +374,8 @@ def _find_parameter_reason(
     if (is_frame or is_topic) and old_name.strip("/") != new_name.strip("/") and not _UNKNOWN_NAME.search(new_name):
         return name_reason(old_name)
     parameter = without_condition(setting).removeprefix(PARAMETER).replace("/", ".")
-    switch_reason = find_switch_reason(parameter, old_name, new_name)
+    hardware_reason = find_hardware_reason(parameter.rpartition(".")[2], old_name, new_name)
+    switch_reason = find_switch_reason(parameter, old_name, new_name) or hardware_reason
     if switch_reason is not None and switches_transform(parameter) and _starts_other_programs(old_outline, new_outline):
         return None  # an added node may publish the transform
     if switch_reason is not None or new_outline.is_ros1:

@@ -11,6 +11,14 @@ from linkwright.review.launches.outlines import FailingTest
 
 _EXIT_FUNCTIONS = ("sys.exit", "exit", "quit", "os._exit")
 """The calls that end the process."""
+_OPPOSITES: Mapping[type[ast.cmpop], type[ast.cmpop]] = {
+    ast.Eq: ast.NotEq,
+    ast.In: ast.NotIn,
+    ast.Is: ast.IsNot,
+    ast.IsNot: ast.Is,
+    ast.NotEq: ast.Eq,
+    ast.NotIn: ast.In,
+}
 _MAX_EXPRESSIONS = 20
 """The maximum number of expressions that are followed to find the arguments of a test."""
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
@@ -39,12 +47,10 @@ def _find_tests(
 ) -> Iterator[tuple[int, tuple[FailingTest, ...]]]:
     if isinstance(node, ast.If):
         inner = (*tests, _read_test(python, node.test, scope))
-        for statement in node.body:
-            if _ends_launch(statement):
-                yield id(statement), inner
-        yield from _find_tests_in_body(python, node.body, inner, scope)
-        negated = ast.UnaryOp(ast.Not(), node.test)
-        yield from _find_tests_in_body(python, node.orelse, (*tests, FailingTest(_unparse(negated))), scope)
+        others = (*tests, *(_read_test(python, test, scope) for test in _negate(node.test)))
+        for body, body_tests in ((node.body, inner), (node.orelse, others)):
+            yield from ((id(statement), body_tests) for statement in body if _ends_launch(statement))
+            yield from _find_tests_in_body(python, body, body_tests, scope)
     else:
         children = [child for child in ast.iter_child_nodes(node) if not isinstance(child, ast.expr)]
         if isinstance(node, _FUNCTIONS):
@@ -57,6 +63,18 @@ def _find_tests_in_body(
 ) -> Iterator[tuple[int, tuple[FailingTest, ...]]]:
     for child in body:
         yield from _find_tests(python, child, tests, scope)
+
+
+def _negate(test: ast.expr) -> list[ast.expr]:
+    """Return the tests all of which hold if a test does not hold."""
+    if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+        return [test.operand]
+    if isinstance(test, ast.BoolOp) and isinstance(test.op, ast.Or):
+        return [negated for value in test.values for negated in _negate(value)]
+    opposite = _OPPOSITES.get(type(test.ops[0])) if isinstance(test, ast.Compare) and len(test.ops) == 1 else None
+    if isinstance(test, ast.Compare) and opposite is not None:
+        return [ast.Compare(test.left, [opposite()], test.comparators)]
+    return [ast.UnaryOp(ast.Not(), test)]
 
 
 def _bind_parameters(python: PythonFile, function: ast.FunctionDef | ast.AsyncFunctionDef) -> _Scope:

@@ -67,6 +67,10 @@ class FileChoices:
         elif not _find_argument_names(old_path) and _find_argument_names(new_path):
             names = quoted_names(sorted(_find_argument_names(new_path)))
             text = phrase("the file '{file}' depends on {names} now", file=new_path, names=names)
+            known = {argument.name for argument in self._old.entries if argument.kind == "argument"}
+            is_new = known.isdisjoint(_find_argument_names(new_path)) and new_path not in entry.name
+            if old_file == new_file and is_new:
+                return  # the lines about the setting and the added argument tell it
             if is_known and old_file == new_file:
                 text = phrase("{change}; by default, it is the same as before", change=text)
             elif is_known:

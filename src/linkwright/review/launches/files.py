@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections import Counter
-from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 from pathlib import Path, PurePosixPath
@@ -25,7 +24,7 @@ from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.bridged_topics import explain_lost_topics
 from linkwright.review.launches.builders import separate_builders
-from linkwright.review.launches.effects import find_removal_reason
+from linkwright.review.launches.effects import find_removal_reason, is_made_by_default
 from linkwright.review.launches.environment_readers import find_reader, reads_variable
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.fixed_arguments import report_fixed_arguments
@@ -47,19 +46,26 @@ from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
 from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
 from linkwright.review.launches.object_texts import report_object_texts
+from linkwright.review.launches.other_code import drop_common_parts, outside
 from linkwright.review.launches.outlines import (
-    NAMES_AS_REMAPPINGS,
+    FAILURES,
     READING,
     SERVER_PARAMETER,
     CodePart,
     Entry,
     LaunchOutline,
+    imply,
 )
 from linkwright.review.launches.python_tests import report_object_tests
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.renamed_code import rename_packages_in_code
 from linkwright.review.launches.renamed_programs import find_renamed_programs
-from linkwright.review.launches.renames import find_renamed_names, rename_in_entry, rename_in_outline
+from linkwright.review.launches.renames import (
+    find_renamed_names,
+    rename_commands,
+    rename_in_entry,
+    rename_in_outline,
+)
 from linkwright.review.launches.repeated_arguments import report_repeated_arguments
 from linkwright.review.launches.repeated_nodes import report_repeated_nodes
 from linkwright.review.launches.settings import SettingChanges
@@ -79,6 +85,7 @@ from linkwright.review.sources.names import PYTHON_SUFFIX
 
 _MAX_STATEMENT_CHARACTERS = 120
 """The maximum number of characters of a statement that are shown."""
+_MAX_CONDITION_CHARACTERS = 240
 _MAX_SHOWN_STATEMENTS = 3
 """The maximum number of changed statements that are shown separately."""
 _CODE_NAME = re.compile(r"(?<=\bname )\w+\b|(?<=\barg=')\w+\b(?=')")
@@ -106,7 +113,7 @@ def compare_launch_files(pair: FilePair) -> None:
     removed: list[Entry] = []
     added: list[Entry] = []
     paired_old: list[Entry] = []
-    for old_entry, new_entry in match_entries(old.entries, new.entries):
+    for old_entry, new_entry in rename_commands(list(match_entries(old.entries, new.entries))):
         if old_entry is not None and new_entry is not None:
             settings.compare(old_entry, new_entry)
             choices.compare(old_entry, new_entry)
@@ -147,7 +154,7 @@ def compare_launch_files(pair: FilePair) -> None:
             report_object_tests(pair)
             report_object_texts(pair)
         report_undefined_names(pair)
-    if any(NAMES_AS_REMAPPINGS in entry.settings for entry in old.entries):
+    if any(not entry.settings.keys().isdisjoint(FAILURES) and is_made_by_default(entry, old) for entry in old.entries):
         _mark_unbreaking(pair, keeps_renaming=True)  # the old file failed
     if old.is_ros1 and not new.is_ros1 and PurePosixPath(pair.old_path).name != PurePosixPath(pair.new_path).name:
         _mark_unbreaking(pair, keeps_renaming=True)  # no user starts the file by its old name
@@ -233,8 +240,11 @@ def _report_unpaired_entries(
             _report_changed_move(pair, entry, file, *differences)
             continue
         if file is None:
-            reason = explain_addition(pair, entry, removed, old_included.outline, new_included.outline)
-            pair.add(format_added_entry(entry), pair.location(entry.span), reason)
+            text, reason = format_added_entry(entry), explain_addition(pair, entry, removed, included)
+            if reason is not None and entry.kind == "remapping":
+                target = new_included.outline.resolve(entry.settings.get("to", ""))
+                text, reason = _explain_opposite_change(pair, entry, text, reason, (None, target))
+            pair.add(text, pair.location(entry.span), reason)
         else:
             moved.setdefault((file, False), []).append(entry)
     for entry in removed:
@@ -305,9 +315,7 @@ def _report_removed(
             text, reason = phrase("{change}; {file} sets it now", change=text, file=file), None
     if reason is not None and entry.kind in ("remapping", SERVER_PARAMETER):
         target = trees[0].resolve(entry.settings.get("to", ""))
-        includer = IncludingFiles(pair).find_opposite_change(entry, "", target, None)
-        if includer is not None:
-            text, reason = describe_opposite_change(text, reason, includer, is_removed=True)
+        text, reason = _explain_opposite_change(pair, entry, text, reason, (target, None))
     other = None if reason is None or entry.kind != "include" else find_other_include(entry, *trees)
     if other is not None and other[0].includer is not None:
         other_file, has_same_namespace = other
@@ -317,6 +325,24 @@ def _report_removed(
             text = phrase("{change}, in the namespace '{name}'", change=text, name=other_file.namespace)
             reason = phrase("programs that use the names of the node, its topics or its services do not find them")
     pair.add(text, pair.location(entry.span, is_old=True), reason)
+
+
+def _explain_opposite_change(
+    pair: FilePair, entry: Entry, text: Phrase, reason: Phrase, values: tuple[str | None, str | None]
+) -> tuple[Phrase, Phrase]:
+    """Return the line and the reason for a value that also moves to or from a file that includes this one.
+
+    Args:
+        pair: both versions of the launch file.
+        entry: the action that sets the value.
+        text: the line.
+        reason: the reason why the change is breaking.
+        values: the old and the new value; None for the version that does not set it.
+    """
+    includer = IncludingFiles(pair).find_opposite_change(entry, "", *values)
+    if includer is None:
+        return text, reason
+    return describe_opposite_change(text, reason, includer, is_removed=values[1] is None)
 
 
 def _is_unused_argument(pair: FilePair, entry: Entry, old: LaunchOutline) -> bool:
@@ -405,15 +431,15 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
     if [part.text for part in old.code] == [part.text for part in new.code]:
         return
     equal = {name for name, source in old.scope_sources.items() if new.scope_sources.get(name) == source}
-    removed, added = _drop_common_parts(old.code, new.code, equal), _drop_common_parts(new.code, old.code, equal)
+    removed, added = drop_common_parts(old.code, new.code, equal), drop_common_parts(new.code, old.code, equal)
     if _differ_in_names(removed, added):
         return
     common_sources = {part.source for part in removed} & {part.source for part in added}
     if common_sources:
         removed, added = ([part for part in parts if part.source not in common_sources] for parts in (removed, added))
         old_sources, new_sources = ({part.source for part in outline.definitions} for outline in (old, new))
-        removed += [part for part in _outside(old.definitions, equal) if part.source not in new_sources]
-        added += [part for part in _outside(new.definitions, equal) if part.source not in old_sources]
+        removed += [part for part in outside(old.definitions, equal) if part.source not in new_sources]
+        added += [part for part in outside(new.definitions, equal) if part.source not in old_sources]
     removed, added = _drop_definitions(removed, new), _drop_definitions(added, old)
     added = _report_failures(pair, added, old, new)
     if not removed and not added:
@@ -474,10 +500,11 @@ def _report_failures(
     other_statements = list(added)
     for part in added:
         tests = part.failing_tests
-        is_known = any(all(any(test.implies(other) for test in tests) for other in failure) for failure in old_failures)
+        is_known = any(all(imply(tests, other) for other in failure) for failure in old_failures)
         is_harmless = any(not test.is_known or test.arguments & (optional - old_names) for test in tests)
         if tests and not is_known and not is_harmless:
             condition = " and ".join(f"({test.text})" if " or " in test.text else test.text for test in tests)
+            condition = shorten_middle(condition, _MAX_CONDITION_CHARACTERS)
             reason = phrase("the launch file fails if `{condition}`", condition=condition)
             text = phrase("added: {code}", code=shorten_middle(part.source, _MAX_STATEMENT_CHARACTERS))
             pair.add(text, pair.location(part.span), reason)
@@ -536,39 +563,3 @@ def _are_versions_of_one_statement(old: CodePart, new: CodePart) -> bool:
         old.source != new.source
         and SequenceMatcher(None, old.source, new.source, autojunk=False).ratio() >= MIN_SIMILARITY
     )
-
-
-def _outside(parts: Iterable[CodePart], equal_scopes: Collection[str]) -> list[CodePart]:
-    """Return the statements outside of the functions and classes that are equal in both versions."""
-    return [part for part in parts if not any(scope in equal_scopes for scope in part.scopes)]
-
-
-def _drop_common_parts(
-    parts: Sequence[CodePart], other_parts: Sequence[CodePart], equal_scopes: Collection[str]
-) -> list[CodePart]:
-    """Return the statements without those that the other version has, each counted once.
-
-    A statement is looked for in the same function first, and then in other functions, to which it may have moved. A
-    function that is equal in both versions keeps its statements.
-    """
-    unpaired = _subtract(parts, other_parts, lambda part: (part.scopes, part.text))
-    other_unpaired = _subtract(other_parts, parts, lambda part: (part.scopes, part.text))
-    changed = _subtract(
-        _outside(unpaired, equal_scopes), _outside(other_unpaired, equal_scopes), lambda part: part.text
-    )
-    kept = {id(part) for part in changed}
-    return [part for part in unpaired if id(part) in kept or not _outside([part], equal_scopes)]
-
-
-def _subtract(
-    parts: Iterable[CodePart], other_parts: Iterable[CodePart], find_key: Callable[[CodePart], Hashable]
-) -> list[CodePart]:
-    """Return the statements without those of another list that have the same key, each counted once."""
-    remaining_counts = Counter(map(find_key, other_parts))
-    unpaired = []
-    for part in parts:
-        if remaining_counts[find_key(part)]:
-            remaining_counts[find_key(part)] -= 1
-        else:
-            unpaired.append(part)
-    return unpaired

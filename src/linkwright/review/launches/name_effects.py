@@ -12,8 +12,6 @@ from linkwright.review.launches.sides import Side, find_old_side, is_new_name
 from linkwright.review.launches.taken_names import is_taken_over
 
 _NAME = re.compile(r"[~/\w]+")
-_CALL_IN_NAME = re.compile(r"\w\(")
-"""A call in a name, whose result is unknown."""
 _LOOP_VARIABLE = re.compile(r"\$\(eval [a-z_]\w*\)")
 """The variable of a loop in a name, whose value is not empty."""
 _UNKNOWN_NAME = re.compile(r"\w\(|\w[.\[][a-z_\"']")
@@ -71,7 +69,7 @@ def find_remapping_reason(
     new_name = new_outline.resolve(source if new is None else new)
     if old_name.lstrip("/") == new_name.lstrip("/"):  # the same name in the empty namespace
         return None
-    if _CALL_IN_NAME.search(new_name) or _has_new_variable(old_name, new_name):
+    if not _NAME.fullmatch(_VARIABLE.sub("", new_name) or "/") or _has_new_variable(old_name, new_name):
         return None  # the name may be the same
     return name_reason(old_name) if is_known else possible_name_reason(old_name)
 

@@ -82,5 +82,13 @@ def _format_unknown_parts(name: str, value: BoundExpression, parts: Sequence[Bou
     if not parts:
         return {}
     texts = [part.texts.text(part.node) for part in parts]
-    is_list = len(parts) > 1 or isinstance(value.texts.resolve(value.node).node, (ast.List, ast.Tuple, ast.BinOp))
+    is_list = len(parts) > 1 or _is_list(value)
     return {name: f"[{', '.join(texts)}]" if is_list else texts[0]}
+
+
+def _is_list(value: BoundExpression) -> bool:
+    """Return whether an expression is a literal list, or a sum of such lists."""
+    value = value.texts.resolve(value.node)
+    if isinstance(value.node, ast.BinOp) and isinstance(value.node.op, ast.Add):
+        return all(_is_list(BoundExpression(value.texts, term)) for term in (value.node.left, value.node.right))
+    return isinstance(value.node, (ast.List, ast.Tuple))

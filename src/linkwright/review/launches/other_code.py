@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Iterator
+from collections import Counter
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
 from copy import copy
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
@@ -178,10 +179,17 @@ class _CodeNormalizer:
             return self.format_node(node.value)
         if isinstance(node, ast.BinOp) and not self.format_node(node.left) and not self.format_node(node.right):
             return ""  # a sum of lists of actions
+        if isinstance(node, (ast.ListComp, ast.GeneratorExp)) and not self._has_other_parts(node):
+            return ""  # actions for each item of a list
         if isinstance(node, ast.Return):
             value = "" if node.value is None else self.format_node(node.value)
             return f"return {value}" if value else ""
         return self._format_fields(node)
+
+    def _has_other_parts(self, node: ast.ListComp | ast.GeneratorExp) -> bool:
+        """Return whether a comprehension does more than make actions for each item of a literal list."""
+        loop = node.generators[0]
+        return len(node.generators) > 1 or bool(loop.ifs) or any(map(self.format_node, (node.elt, loop.iter)))
 
     def is_definition(self, node: ast.Assign | ast.AnnAssign) -> bool:
         """Return whether a statement assigns a name that is assigned only once.
@@ -225,3 +233,37 @@ class _CodeNormalizer:
             if text:
                 words.append(f"{name}={text}")
         return f"{type(node).__name__}({' '.join(words)})"
+
+
+def outside(parts: Iterable[CodePart], equal_scopes: Collection[str]) -> list[CodePart]:
+    """Return the statements outside of the functions and classes that are equal in both versions."""
+    return [part for part in parts if not any(scope in equal_scopes for scope in part.scopes)]
+
+
+def drop_common_parts(
+    parts: Sequence[CodePart], other_parts: Sequence[CodePart], equal_scopes: Collection[str]
+) -> list[CodePart]:
+    """Return the statements without those that the other version has, each counted once.
+
+    A statement is looked for in the same function first, and then in other functions, to which it may have moved. A
+    function that is equal in both versions keeps its statements.
+    """
+    unpaired = _subtract(parts, other_parts, lambda part: (part.scopes, part.text))
+    other_unpaired = _subtract(other_parts, parts, lambda part: (part.scopes, part.text))
+    changed = _subtract(outside(unpaired, equal_scopes), outside(other_unpaired, equal_scopes), lambda part: part.text)
+    kept = {id(part) for part in changed}
+    return [part for part in unpaired if id(part) in kept or not outside([part], equal_scopes)]
+
+
+def _subtract(
+    parts: Iterable[CodePart], other_parts: Iterable[CodePart], find_key: Callable[[CodePart], Hashable]
+) -> list[CodePart]:
+    """Return the statements without those of another list that have the same key, each counted once."""
+    remaining_counts = Counter(map(find_key, other_parts))
+    unpaired = []
+    for part in parts:
+        if remaining_counts[find_key(part)]:
+            remaining_counts[find_key(part)] -= 1
+        else:
+            unpaired.append(part)
+    return unpaired

@@ -27,6 +27,10 @@ ENVIRONMENT_KIND = "environment"
 """The kind of an action or statement that sets an environment variable for all nodes that follow."""
 NAMES_AS_REMAPPINGS = "names instead of pairs in remappings"
 """The setting with the items of ``remappings`` in Python that are texts, for which the launch file fails."""
+MISSING_ARGUMENT = "missing argument"
+"""The setting with the required argument of a class in Python that a call lacks, for which the launch file fails."""
+FAILURES = (NAMES_AS_REMAPPINGS, MISSING_ARGUMENT)
+"""The settings for which the launch file fails."""
 LOG_MESSAGE = "log message"
 """The kind of an action that only writes a text to the log."""
 READING = "reading"
@@ -43,6 +47,8 @@ ALLOW_SUBSTITUTIONS = "allow_substs"
 """The argument and attribute of a parameter file that lets it contain substitutions."""
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
 _ENVIRONMENT_SUBSTITUTION = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
+_SPLIT_TEXT = re.compile(r"(?P<text>[^$()]*)\.split\((?P<separator>[^$()]*)\)")
+"""A call in Python that splits a known text."""
 _SETTING_CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
 """The condition of a setting after its name."""
 _TEST = re.compile(r"`(?P<source>[^`]*)`")
@@ -108,6 +114,12 @@ def extract_condition(setting: str) -> str:
     return "" if match is None else match["condition"]
 
 
+def split_text(text: str) -> str:
+    """Return the list into which a call of ``split`` splits a known text, and any other text unchanged."""
+    match = _SPLIT_TEXT.fullmatch(text)
+    return text if match is None else f"[{', '.join(match['text'].split(match['separator'] or None))}]"
+
+
 @dataclass(frozen=True)
 class FailingTest:
     """A test of an ``if`` statement under which a launch file fails.
@@ -126,10 +138,12 @@ class FailingTest:
     arguments: frozenset[str] = frozenset()
     is_known: bool = True
 
-    def implies(self, other: FailingTest) -> bool:
-        """Return whether the other test holds, too, when this one holds."""
-        is_narrower = bool(self.subject) and self.subject == other.subject and other.accepted <= self.accepted
-        return is_narrower or self.text == other.text
+
+def imply(tests: Sequence[FailingTest], other: FailingTest) -> bool:
+    """Return whether a test holds when several tests hold."""
+    accepted = frozenset[str]().union(*(test.accepted for test in tests if test.subject == other.subject))
+    is_narrower = bool(other.subject) and bool(other.accepted) and other.accepted <= accepted
+    return is_narrower or any(test.text == other.text for test in tests)
 
 
 @dataclass(frozen=True)
@@ -183,7 +197,7 @@ class LaunchOutline:
         of these values. In ``$(eval ...)`` of ROS 1, names are replaced, too.
         """
         text = _TEST.sub(lambda match: self.tests.get(match["source"], match[0]), text)
-        resolved = self._replace_variables(text)
+        resolved = split_text(self._replace_variables(text))
         return replace_names_in_evaluations(resolved, self._find_value) if self.is_ros1 else resolved
 
     def _replace_variables(self, text: str) -> str:

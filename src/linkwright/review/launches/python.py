@@ -18,6 +18,7 @@ from linkwright.review.launches.node_settings import format_settings, split_choi
 from linkwright.review.launches.other_code import find_definitions, find_scope_sources, read_other_code
 from linkwright.review.launches.outlines import (
     CONDITION,
+    MISSING_ARGUMENT,
     Entry,
     LaunchOutline,
     Scope,
@@ -25,7 +26,9 @@ from linkwright.review.launches.outlines import (
 from linkwright.review.launches.python_syntax import (
     ADD_METHODS,
     find_added_action,
+    find_missing_argument,
     find_name_and_value,
+    find_own_default,
     find_unused_values,
 )
 from linkwright.review.launches.python_tests import read_tests
@@ -439,7 +442,7 @@ class _Reader:
                 if key in names and not (key == "default_value" and self._is_none(value))
             }
             if "default" in settings:
-                settings["default"] = self.texts.format_joined(keywords["default_value"])
+                settings["default"] = find_own_default(name, self.texts.format_joined(keywords["default_value"]))
         elif function == "SetLaunchConfiguration":
             kind, name, settings = "variable", first_text, {"value": second_text}
         elif function == "SetRemap":
@@ -467,6 +470,9 @@ class _Reader:
             condition = extra[CONDITION].texts.format_condition(extra[CONDITION].node)
         if condition:
             settings[CONDITION] = condition
+        missing = find_missing_argument(self.python, call, keywords)
+        if missing is not None:
+            settings[MISSING_ARGUMENT] = missing
         return Entry(kind, name, scope.add_to_settings(kind, settings), self.python.span(call))
 
     def _is_none(self, node: ast.expr) -> bool:

@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Collection, Iterator, Sequence
 
-from linkwright.packages.readers.python_values import called_name
+from linkwright.packages.readers.python_values import PythonFile, called_name
 
 ADD_METHODS = ("add_action", "add_entity")
 """The methods that add an action to a launch description."""
 _VALUE_KEYWORDS = {"SetRemap": ("src", "dst")}
 _DEFAULT_VALUE_KEYWORDS = ("name", "value")
 """The names of the arguments of the classes that set a value; the first item of each is what is set."""
+
+_REQUIRED_ARGUMENTS = {
+    "Node": ("executable",),
+    "LifecycleNode": ("executable", "name", "namespace"),
+    "ComposableNodeContainer": ("executable", "name", "namespace"),
+    "ComposableNode": ("package", "plugin"),
+    "ExecuteProcess": ("cmd",),
+}
+"""The keyword arguments without which a class of launch and launch_ros raises an error."""
+_LAUNCH_PACKAGES = ("launch", "launch_ros")
 
 
 def find_unused_values(tree: ast.AST) -> frozenset[int]:
@@ -62,3 +73,40 @@ def find_added_action(statement: ast.stmt) -> ast.expr | None:
     value = statement.value if isinstance(statement, ast.Expr) else None
     is_addition = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in ADD_METHODS
     return value.args[0] if is_addition and isinstance(value, ast.Call) and value.args else None
+
+
+def find_list_item(node: ast.List | ast.Tuple, index: ast.expr) -> ast.expr | None:
+    """Return the item of a literal list at an index, which may be negative, or None if it is unknown."""
+    if any(isinstance(item, ast.Starred) for item in node.elts):
+        return None
+    try:
+        number = ast.literal_eval(index)
+    except (ValueError, TypeError, SyntaxError, RecursionError):
+        return None
+    is_index = type(number) is int and -len(node.elts) <= number < len(node.elts)
+    return node.elts[number] if is_index else None
+
+
+def find_missing_argument(python: PythonFile, call: ast.Call, names: Collection[str]) -> str | None:
+    """Return the required argument that a call of a class of launch or launch_ros lacks, or None.
+
+    Args:
+        python: the parsed file.
+        call: the call.
+        names: the names of the keyword arguments of the call, with the new ones in place of old ones.
+    """
+    if call.args or any(keyword.arg is None for keyword in call.keywords):
+        return None
+    owner, _, function = called_name(call).rpartition(".")
+    sources = python.find_import_sources(owner.partition(".")[0] or function)
+    modules = [module for module, _ in sources] or [owner]
+    if not all(module.partition(".")[0] in _LAUNCH_PACKAGES for module in modules):
+        return None  # a class of another package with the same name
+    missing = [name for name in _REQUIRED_ARGUMENTS.get(function, ()) if name not in names]
+    return missing[0] if missing else None
+
+
+def find_own_default(name: str, default: str) -> str:
+    """Return the default of an argument, also if it is the argument itself, which has a default of its own."""
+    match = re.fullmatch(rf"\$\(var {re.escape(name)} (?P<default>[^()]*)\)", default)
+    return default if match is None else match["default"]

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
 
+from linkwright.review.launches.matching import Match
 from linkwright.review.launches.outlines import Entry, LaunchOutline
+from linkwright.review.launches.titles import shorten_command
 
 _NAMED_KINDS = ("argument", "variable")
 _MIN_SHARE_OF_USES = 0.5
@@ -109,3 +111,26 @@ def _find_uses(outline: LaunchOutline, name: str) -> Iterator[_Use]:
 def rename_in_text(text: str, renamed: Mapping[str, str]) -> str:
     """Return a text with the new names of arguments and variables."""
     return re.sub(r"(\$\((?:var|arg) )([^() ]+)", lambda match: f"{match[1]}{renamed.get(match[2], match[2])}", text)
+
+
+def rename_commands(matches: Sequence[Match]) -> list[Match]:
+    """Return the pairs of actions, with the new commands of processes in the old handlers of events.
+
+    Args:
+        matches: the pairs of an old and a new action; None for an action that only one version has.
+    """
+    commands = {
+        shorten_command(old.name): shorten_command(new.name)
+        for old, new in matches
+        if old is not None and new is not None and old.kind == "process"
+    }
+    return [(_rename_commands(old, commands), new) for old, new in matches]
+
+
+def _rename_commands(entry: Entry | None, commands: Mapping[str, str]) -> Entry | None:
+    if entry is None or entry.kind != "handler":
+        return entry
+    settings = dict(entry.settings)
+    for old, new in commands.items():
+        settings = {name: value.replace(old, new) for name, value in settings.items()}
+    return replace(entry, settings=settings)

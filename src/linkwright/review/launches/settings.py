@@ -46,6 +46,8 @@ _MAX_VALUE_CHARACTERS = 60
 _TERM_END = re.compile(r" and (?=(?:if|unless|after) )")
 """The text between the terms of a condition."""
 _ARGUMENT = re.compile(r"\$\((?:var|arg) ")
+_NAMES = (NAMESPACE, "name")
+"""The settings that are parts of the full name of a node."""
 _PASSED_ARGUMENTS = "passed"
 """The group of arguments that an action passes to an included file."""
 
@@ -224,14 +226,17 @@ class SettingChanges:
 
     def _find_defaults(self, entry: Entry, pair: SettingPair) -> tuple[str, str] | None:
         """Return both values of a setting with the defaults of arguments, if only one version uses arguments."""
-        if entry.kind in ("argument", "variable", READING) or pair.name in (CONDITION, "parameters", "arguments"):
+        if entry.kind in ("argument", "variable", READING) or pair.name == CONDITION:
             return None
         if pair.old is None or pair.new is None or (pair.old, pair.new) != (pair.old_default, pair.new_default):
             return None
         if (_ARGUMENT.search(pair.old) is None) == (_ARGUMENT.search(pair.new) is None):
             return None
         values = self._old.resolve(pair.old), self._new.resolve(pair.new)
-        is_known = all("$(" not in value and len(value) <= _MAX_VALUE_CHARACTERS for value in values)
+        if values[0] == values[1]:
+            return values
+        is_list = pair.name in ("parameters", "arguments")
+        is_known = not is_list and all("$(" not in value and len(value) <= _MAX_VALUE_CHARACTERS for value in values)
         return values if is_known else None
 
     def _find_reason(self, entry: Entry, setting: str, old: str | None, new: str | None) -> Phrase | None:
@@ -353,10 +358,14 @@ def _group_settings(
         has_both = setting.old is not None and setting.new is not None
         has_lost_frames = setting.reason is not None and setting.reason.template == make_frames_reason("").template
         is_single = not prefix or (has_both and not has_lost_frames)
-        key = setting.name if is_single else (prefix, has_both, setting.new is None, setting.reason is None)
+        is_lost_name = setting.name in _NAMES and setting.new is None and setting.reason is not None
+        key: object = _NAMES if is_lost_name else setting.name
+        key = key if is_single else (prefix, has_both, setting.new is None, setting.reason is None)
         groups.setdefault(key, []).append(setting)
-    for group in groups.values():
-        if len(group) < _MIN_GROUP_SIZE:
+    for key, group in groups.items():
+        if key is _NAMES:
+            yield joined([setting.text for setting in group]), _join_reasons(group), group[0].name
+        elif len(group) < _MIN_GROUP_SIZE:
             yield from ((setting.text, setting.reason, setting.name) for setting in group)
         else:
             yield _format_group(group, is_include=is_include), _join_reasons(group), group[0].name

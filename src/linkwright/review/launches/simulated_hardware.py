@@ -8,7 +8,7 @@ from linkwright.diagnostics import Phrase, phrase
 
 _SIMULATED = re.compile(
     r"(?:(?:use|is|enable|in|with)_)?"
-    r"(?:sim|simulat(?:e|ed|ion|or)|(?:fake|mock|dummy|sim|simulated)_(?:hardware|components|robot|system|controllers?))"
+    r"(?:sim|simulat(?:e|ed|ion|or)|gazebo|fake_execution|(?:fake|mock|dummy|sim|simulated)_(?:hardware|components|robot|system|controllers?))"
     r"(?:_mode|_only)?"
 )
 """The names of arguments that replace the hardware by a simulation."""

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
-from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, with_condition
+from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, split_text, with_condition
+from linkwright.review.launches.python_syntax import find_list_item
 from linkwright.review.launches.python_tests import SUBSTITUTIONS
 from linkwright.review.launches.text_templates import format_template, strip_conversion
 from linkwright.review.list_changes import EMPTY
@@ -29,7 +30,8 @@ _Formatter = Callable[[ast.expr | None], str]
 _COMPARISON_CONDITIONS = {"LaunchConfigurationEquals": "==", "LaunchConfigurationNotEquals": "!="}
 _PATH_CLASSES = ("Path", "PurePath", "PosixPath", "PurePosixPath")
 _COMPARISON_SUBSTITUTIONS = {"EqualsSubstitution": "==", "NotEqualsSubstitution": "!="}
-_STRING_FUNCTIONS = ("get_package_share_directory", "join", "str", "getenv", "dirname", "format")
+_PATH_FUNCTIONS = ("get_package_share_directory", "get_package_prefix", "join", "dirname")
+_STRING_FUNCTIONS = (*_PATH_FUNCTIONS, "str", "getenv", "format")
 _PROGRAM_SEARCH = re.compile(r"^\$\(find-exec ([\w.-]+)\)")
 """A command with an explicit search for the program. The text omits the search, which is the default."""
 _QUOTED_STRING = re.compile(r"""\s*(?P<quote>['"])(?P<text>[^'"\\]*)(?P=quote)\s*""")
@@ -71,7 +73,7 @@ class ExpressionTexts:
         helpers: HelperFunctions | None = None,
         depth: int = 0,
     ) -> None:
-        self.python = self._python = python
+        self.python = python
         self._helpers = helpers
         self._depth = depth
         self._bindings = bindings or {}
@@ -109,12 +111,12 @@ class ExpressionTexts:
         """
         known = {name: value for name, value in self._values.items() if name not in bindings}
         return ExpressionTexts(
-            self._python, {**self._bindings, **bindings}, {**known, **values}, self._helpers, self._depth
+            self.python, {**self._bindings, **bindings}, {**known, **values}, self._helpers, self._depth
         )
 
     def resolve(self, node: ast.expr) -> BoundExpression:
         """Return the value of a name or of a call of a function, or any other expression unchanged."""
-        node = self._python.resolved(node)
+        node = self.python.resolved(node)
         bound = self._values.get(node.id) if isinstance(node, ast.Name) else None
         if bound is None and isinstance(node, ast.Call) and (result := self._find_result(node)) is not None:
             return result.texts.resolve(result.node)
@@ -124,7 +126,7 @@ class ExpressionTexts:
         """Return the expression that a function of the repository returns, or None if its value is unknown."""
         function = None
         if self._helpers is not None and self._depth < _MAX_FUNCTION_DEPTH:
-            function = self._helpers.find_value_function(self._python, call)
+            function = self._helpers.find_value_function(self.python, call)
         if function is None or any(isinstance(argument, ast.Starred) for argument in call.args):
             return None
         parameters = function.node.args
@@ -165,7 +167,7 @@ class ExpressionTexts:
 
     def is_known(self, node: ast.expr) -> bool:
         """Return whether an expression is not a call of an unknown function, or a name of unknown value."""
-        node = self._python.resolved(node)
+        node = self.python.resolved(node)
         if isinstance(node, ast.Call):
             return self._format_substitution(node, self.text) is not None or self._find_result(node) is not None
         if isinstance(node, ast.Name):
@@ -263,7 +265,7 @@ class ExpressionTexts:
         """Return a condition as text, such as ``unless $(var headless)``; empty if there is none."""
         if node is None:
             return ""
-        node = self._python.resolved(node)
+        node = self.python.resolved(node)
         if isinstance(node, ast.Name) and node.id in self._bindings:
             return self._bindings[node.id]
         if isinstance(node, ast.Constant) and node.value is None:
@@ -282,7 +284,7 @@ class ExpressionTexts:
 
         A string that looks like a value of a different type is in quotes.
         """
-        node, text = self._python.resolved(node), self.text(node)
+        node, text = self.python.resolved(node), self.text(node)
         is_string = isinstance(node, ast.Constant) and isinstance(node.value, str)
         return f"'{text}'" if is_string and _NON_STRING.fullmatch(text) else text
 
@@ -294,11 +296,11 @@ class ExpressionTexts:
             are_parameters: whether the values are parameters, whose texts show their types; see `format_parameter`.
         """
         format_value = self.format_parameter if are_parameters else self.format_joined
-        node = self._python.resolved(node)
+        node = self.python.resolved(node)
         if isinstance(node, ast.Call) and called_name(node) == "list" and len(node.args) == 1:
-            node = self._python.resolved(node.args[0])
+            node = self.python.resolved(node.args[0])
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
-            node = self._python.resolved(node.func.value)
+            node = self.python.resolved(node.func.value)
         bound = self.resolve(node)
         if bound.texts is not self:
             return bound.texts.find_pairs(bound.node, are_parameters=are_parameters)
@@ -334,7 +336,7 @@ class ExpressionTexts:
 
     def _find_chosen_pairs(self, node: ast.IfExp, *, are_parameters: bool) -> list[tuple[str, str]] | None:
         """Return the pairs of one of two dictionaries. Those of only one of them have the condition in the name."""
-        test = self._python.resolved(node.test)
+        test = self.python.resolved(node.test)
         if isinstance(test, ast.Constant):
             return self.find_pairs(node.body if test.value else node.orelse, are_parameters=are_parameters)
         branches = [self.find_pairs(value, are_parameters=are_parameters) for value in (node.body, node.orelse)]
@@ -351,7 +353,7 @@ class ExpressionTexts:
         return self._format_pair(node, self.format_joined)
 
     def _format_pair(self, node: ast.expr, format_value: Callable[[ast.expr], str]) -> tuple[str, str] | None:
-        node = self._python.resolved(node)
+        node = self.python.resolved(node)
         if not isinstance(node, (ast.Tuple, ast.List)) or len(node.elts) != 2:
             return None
         return self.format_joined(node.elts[0]), format_value(node.elts[1])
@@ -363,7 +365,7 @@ class ExpressionTexts:
             if key is None:
                 yield f"{path}**", self.text(value)
                 continue
-            name, resolved = f"{path}{self.text(key)}", self._python.resolved(value)
+            name, resolved = f"{path}{self.text(key)}", self.python.resolved(value)
             if isinstance(resolved, ast.Dict) and resolved.keys:
                 yield from self._flatten_items(resolved, f"{name}.", format_value)
             else:
@@ -376,7 +378,7 @@ class ExpressionTexts:
         if isinstance(node, ast.Name):
             if node.id in self._bindings:
                 return self._bindings[node.id]
-            value = self._python.resolved(node)
+            value = self.python.resolved(node)
             return node.id if value is node or isinstance(value, ast.Name) else part(value)
         if isinstance(node, ast.Constant):
             text = str(node.value)
@@ -394,7 +396,7 @@ class ExpressionTexts:
             result = self._find_result(node) if substitution is None else None
             if result is not None:
                 return result.texts.text(result.node, depth + 1)
-            return _format_call(node, part) if substitution is None else substitution
+            return split_text(_format_call(node, part)) if substitution is None else substitution
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
             return f"{part(node.left)}{'' if self._is_string(node) else ' + '}{part(node.right)}"
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div):
@@ -423,7 +425,7 @@ class ExpressionTexts:
     def _format_value(self, node: ast.expr, part: _Formatter) -> str:
         """Return a value in a formatted text. A substitution is an object, which has no value there."""
         is_bound = isinstance(node, ast.Name) and node.id in self._bindings
-        value = strip_conversion(node if is_bound else self._python.resolved(node))
+        value = strip_conversion(node if is_bound else self.python.resolved(node))
         is_object = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in SUBSTITUTIONS
         return unparse_on_one_line(value) if is_object else part(value)
 
@@ -445,13 +447,17 @@ class ExpressionTexts:
         return owner.texts._find_item(owner.node) if isinstance(owner.node, ast.Subscript) else owner
 
     def _find_item(self, node: ast.Subscript) -> BoundExpression:
-        """Return the value of an item of a dictionary, or the expression itself if it is unknown."""
-        owner = self._find_owner(node)
+        """Return the value of an item of a dictionary or list, or the expression itself if it is unknown."""
+        owner, key = self._find_owner(node), self.resolve(node.slice).node
         if isinstance(owner.node, ast.Dict):
             pairs = zip(owner.node.keys, owner.node.values, strict=True)
-            values = [value for key, value in pairs if key is not None and ast.dump(key) == ast.dump(node.slice)]
+            values = [value for name, value in pairs if name is not None and ast.dump(name) == ast.dump(key)]
             if values:
                 return owner.texts.resolve(values[-1])
+        if isinstance(owner.node, (ast.List, ast.Tuple)):
+            item = find_list_item(owner.node, key)
+            if item is not None:
+                return owner.texts.resolve(item)
         return BoundExpression(self, node)
 
     def _format_substitution(self, node: ast.Call, part: _Formatter) -> str | None:
@@ -466,10 +472,12 @@ class ExpressionTexts:
             return f"$(var {' '.join(map(part, arguments))})"
         if function in ("FindPackageShare", "get_package_share_directory", "get_package_share_path"):
             return f"$(find-pkg-share {part(first)})"
+        if function in ("FindPackagePrefix", "get_package_prefix"):
+            return f"$(find-pkg-prefix {part(first)})"
         if function == "ThisLaunchFileDir":
             return "$(dirname)"
         if function == "find" and isinstance(node.func, ast.Attribute):
-            owner = self._python.resolved(node.func.value)
+            owner = self.python.resolved(node.func.value)
             is_share = isinstance(owner, ast.Call) and called_name(owner).rpartition(".")[2] == "FindPackageShare"
             return part(owner) if is_share else None
         if function == "perform" and isinstance(node.func, ast.Attribute):
@@ -484,7 +492,7 @@ class ExpressionTexts:
         if function == "FindExecutable":
             return f"$(find-exec {part(first)})"
         if function in ("PathJoinSubstitution", "join"):
-            if function != "join" and isinstance(self._python.resolved(first), ast.Call):
+            if function != "join" and isinstance(self.python.resolved(first), ast.Call):
                 return None  # it fails: only a list can be joined
             pieces = arguments if function == "join" else self._split_pieces(first)
             return _join_path(["".join(map(part, self._split_pieces(piece))) for piece in pieces])
@@ -507,12 +515,12 @@ class ExpressionTexts:
 
     def _is_configurations(self, node: ast.expr) -> bool:
         """Return whether an expression holds the values of all arguments by name, as in ``OpaqueFunction``."""
-        owner = self._python.resolved(node)
+        owner = self.python.resolved(node)
         return isinstance(owner, ast.Attribute) and owner.attr == _CONFIGURATIONS
 
     def _mark_substitutions(self, node: ast.expr | None) -> str:
         """Return the mark of a parameter file with substitutions, from the argument that allows them."""
-        node = None if node is None else self._python.resolved(node)
+        node = None if node is None else self.python.resolved(node)
         if node is None or (isinstance(node, ast.Constant) and not node.value):
             return ""
         if isinstance(node, ast.Constant):
@@ -522,10 +530,10 @@ class ExpressionTexts:
     def _is_string(self, node: ast.expr) -> bool:
         """Return whether an expression certainly is a string, such as a sum with a string."""
         for _ in range(_MAX_DEPTH):
-            node = self._python.resolved(node)
+            node = self.python.resolved(node)
             if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add):
                 break
-            if self._is_string_term(self._python.resolved(node.right)):
+            if self._is_string_term(self.python.resolved(node.right)):
                 return True
             node = node.left
         return self._is_string_term(node)
@@ -539,7 +547,7 @@ class ExpressionTexts:
         return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
 
     def _split_pieces(self, node: ast.expr) -> list[ast.expr]:
-        node = self._python.resolved(node)
+        node = self.python.resolved(node)
         return node.elts if isinstance(node, (ast.List, ast.Tuple)) else [node]
 
 

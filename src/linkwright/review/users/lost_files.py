@@ -12,9 +12,10 @@ from linkwright.review.files.build_facts import BuildFacts, FactKind, list_names
 from linkwright.review.files.installed_files import make_uninstalled_change
 from linkwright.review.installed_paths import find_build_file, find_python_packages, read_package_facts
 from linkwright.review.kinds import find_rule
+from linkwright.review.launch_paths import contains_actions
 from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.sources.reading import is_generated, read_source_names
-from linkwright.review.versions import TEST_FOLDERS, Versions
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
 _HEADERS = "include/"
 _TARGETS = (FactKind.EXECUTABLE, FactKind.LIBRARY, FactKind.EXPORTED_TARGET)
@@ -35,7 +36,7 @@ def find_lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) ->
         if file.old_path is None or file.old_path == file.new_path or file.is_submodule:
             continue
         package = versions.old.package_of(file.old_path)
-        if package is not None and package not in moved_packages and _reports_nothing(file.old_path):
+        if package is not None and package not in moved_packages and _reports_nothing(versions.old, file.old_path):
             packages.setdefault(package, []).append(file)
     for package, files in packages.items():
         path = find_build_file(versions.new, package)
@@ -50,9 +51,10 @@ def find_lost_files(versions: Versions, changed_files: Sequence[ChangedFile]) ->
             yield from ((path, change) for change in changes)
 
 
-def _reports_nothing(path: str) -> bool:
+def _reports_nothing(version: Version, path: str) -> bool:
+    """Return whether no other line tells that a file is removed, as for a launch file with any name."""
     rule = find_rule(path)
-    return rule is None or rule.removal_reason is None
+    return (rule is None or rule.removal_reason is None) and not contains_actions(version, path)
 
 
 def _find_lost_targets(

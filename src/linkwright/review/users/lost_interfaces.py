@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError, phrase
@@ -11,7 +11,10 @@ from linkwright.messages.definitions.interfaces import Structure
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, package_name
 from linkwright.review.changes import Change, Effect, Location
 from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.files.build_facts import FactKind
+from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.interfaces import read_structures
+from linkwright.review.launches.missing_programs import find_packages
 from linkwright.review.sources.cpp_interface_uses import find_cpp_uses, find_member_uses, find_members
 from linkwright.review.sources.interface_uses import InterfaceUse, LostInterface
 from linkwright.review.sources.lost_types import find_including_files
@@ -38,6 +41,25 @@ def find_lost_interfaces(versions: Versions, changed_files: Sequence[ChangedFile
         uses = {use.key: use for use in reversed([use for item in lost for use in find_uses(text, item)])}
         yield from ((path, _make_change(path, use)) for use in reversed(uses.values()))
     yield from _find_member_uses(versions.new, lost)
+    yield from _find_dependencies(versions.new, {item.package for item in lost if item.is_removed})
+
+
+def _find_dependencies(version: Version, packages: Collection[str]) -> Iterator[tuple[str, Change]]:
+    """Yield the build files of ROS 1 whose interfaces depend on a package that no longer has any.
+
+    Args:
+        version: the new version.
+        packages: the packages that lost interfaces.
+    """
+    left = {find_package(version, path) for path in version.paths(INTERFACE_SUFFIXES)} if packages else set()
+    empty = {name for name in packages if name not in left}
+    for package in find_packages(version).values() if empty else ():
+        path = (PurePosixPath(package.folder) / CMAKE_FILE).as_posix()
+        for fact in package.facts.facts if package.facts is not None and package.is_ros1 else ():
+            if fact.kind is FactKind.INTERFACE_DEPENDENCY and fact.name in empty:
+                text = phrase("the interfaces depend on '{name}', which no longer has any", name=fact.name)
+                location = Location(path, fact.span.line, fact.span.column) if fact.span is not None else None
+                yield path, Change(text, Effect.BREAKING, phrase("the interfaces are not built"), location)
 
 
 def _find_member_uses(version: Version, lost: Sequence[LostInterface]) -> Iterator[tuple[str, Change]]:

@@ -1,4 +1,4 @@
-"""Find removed and renamed programs: commands that still start them, and programs of ROS 1 that no build file names."""
+"""Find commands that start what does not exist, and removed and renamed programs of ROS 1 that no build file names."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from linkwright.review.files.build_facts import FactKind
 from linkwright.review.files.cmake_files import CMAKE_FILE
 from linkwright.review.files.setup_files import SETUP_FILE
 from linkwright.review.installed_paths import read_package_facts
+from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.missing_programs import RepositoryPackage, find_packages
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -68,6 +69,38 @@ def find_lost_scripts(versions: Versions, changed_files: Sequence[ChangedFile]) 
         text = versions.new.text(path)
         if any(word in text for word in lost.words):
             yield from ((path, change) for change in _find_commands(versions, path, text, lost))
+    yield from _find_missing_starts(versions, changed_files)
+
+
+def _find_missing_starts(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
+    """Yield the new commands that start a program or launch file which a package of the repository never had."""
+    changed = {file.new_path: file.old_path for file in changed_files if file.new_path and not file.is_submodule}
+    for path in list_command_files(versions.new) if changed else ():
+        old_path = changed.get(path)
+        old_lines = set(versions.old.text(old_path).splitlines()) if old_path else set()
+        for number, line in enumerate(versions.new.text(path).splitlines() if path in changed else (), 1):
+            run, launch = _RUN.search(line), _LAUNCH.search(line)
+            if line in old_lines or _NO_USE.match(line):
+                continue
+            if run is not None and _never_existed(versions, run["package"], run["program"], is_launch=False):
+                yield path, _make_missing_change(run["package"], run["program"], path, number)
+            if launch is not None and _never_existed(versions, launch["package"], launch["file"], is_launch=True):
+                yield path, _make_missing_change(launch["package"], launch["file"], path, number)
+
+
+def _never_existed(versions: Versions, package: str, name: str, *, is_launch: bool) -> bool:
+    """Return whether neither version has a program or launch file of a package of the repository."""
+    old, new = (find_packages(version).get(package) for version in (versions.old, versions.new))
+    if new is None or new.may_generate or (old is not None and (name in old.names or old.has(name))):
+        return False
+    if is_launch:
+        return is_launch_file(name) and name not in new.names
+    return new.lacks(name) and (PurePosixPath(name).suffix in _SUFFIXES[1:] or not new.may_compute_names)
+
+
+def _make_missing_change(package: str, name: str, path: str, line: int) -> Change:
+    text = phrase("starts '{name}' of '{package}', which does not exist", name=name, package=package)
+    return _make_change(text, path, line)
 
 
 def _is_lost_launch_file(file: ChangedFile) -> bool:
