@@ -156,7 +156,7 @@ class TestSources:
         ("package", "name", "instead"),
         [
             ("rplidar_ros", "rplidar_composition", "it drives hardware"),
-            ("cartographer_ros", "cartographer_node", "run `linkwright launch slam_toolbox online_async_launch.py`"),
+            ("slam_gmapping", "slam_gmapping", "run `linkwright launch slam_toolbox online_async_launch.py`"),
             ("moveit_setup_assistant", "moveit_setup_assistant", "`linkwright arm init` writes"),
         ],
     )

@@ -17,7 +17,6 @@ _DRIVERS = (
 """The packages of drivers that public launch files start most often."""
 _ALTERNATIVES = {
     **dict.fromkeys(_DRIVERS, _HARDWARE),
-    "cartographer_ros": _MAPPING,
     "slam_gmapping": _MAPPING,
     "moveit_setup_assistant": phrase("`linkwright arm init` writes the MoveIt configuration of an arm"),
 }
