@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from linkwright.diagnostics import Phrase, phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, joined, phrase
+from linkwright.packages import PackageNotFoundError
 
 _LASER = phrase(
     "it drives a laser scanner, so build and start it on the robot; without the robot, a simulated `gpu_lidar` or"
@@ -56,3 +57,13 @@ _ALTERNATIVES = {
 def find_alternative(package: str) -> Phrase | None:
     """Return what to use instead of the programs of a package, or None if there is nothing."""
     return _ALTERNATIVES.get(package)
+
+
+def name_alternative(error: LinkwrightError) -> None:
+    """Add what to use instead to the message of an error about a missing package, if there is something."""
+    alternative = find_alternative(error.name) if isinstance(error, PackageNotFoundError) else None
+    if alternative is not None:
+        error.diagnostics = tuple(
+            diagnostic.with_changes(message=joined((diagnostic.message, alternative), "; "))
+            for diagnostic in error.diagnostics
+        )
