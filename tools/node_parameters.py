@@ -45,6 +45,10 @@ _PLUGIN, _ITEM, _PART = "THE_PLUGIN", "THE_ITEM", "THE_PART"
 _ROBOT = '<robot name="r"><link name="base_link"/></robot>'
 _EXCLUDED_EXECUTABLES = ("cam2image", "teleop_twist_keyboard", "rmw_zenohd", "_node.py", "static_transform_publisher")
 _EXCLUDED_PACKAGES = ("gazebo_ros", "ros_gz_", "ros_ign_", "audio_", "demo_nodes", "tf2_tools", "my_robot_voice")
+_REQUIRED_ARGUMENTS: Mapping[str, list[str]] = {
+    "cartographer_node": ["-configuration_directory", str(ROOT / "tools"), "-configuration_basename", "all_topics.lua"],
+}
+"""Arguments without which nodes do not start."""
 _COMMON_PARAMETERS = ("use_sim_time", "qos_overrides", "start_type_description_service", "strict_callback_groups")
 _REQUIRED_PARAMETERS: Mapping[str, dict[str, Any]] = {
     "ekf_node": {f"{name}{number}": "a" for name in ("odom", "imu", "pose", "twist") for number in range(2)},
@@ -217,7 +221,12 @@ def _to_json_value(value: Any) -> Any:
 
 def _start_node(executable: tuple[str, str], parameters: Mapping[str, Any], others: ParameterRules) -> None:
     """Start a node, configure it, and close it, ignoring errors after the declarations."""
-    options = NodeOptions(parameters=dict(parameters), parameters_of_others=others, output=lambda _: None)
+    options = NodeOptions(
+        parameters=dict(parameters),
+        parameters_of_others=others,
+        arguments=_REQUIRED_ARGUMENTS.get(executable[1], []),
+        output=lambda _: None,
+    )
     running = None
     with suppress(LinkwrightError, OSError):
         running = EXECUTABLES[executable](Graph(), options)

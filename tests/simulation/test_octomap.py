@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from linkwright.geometry.octrees import encode_octree
 from linkwright.messages import get_message
 from linkwright.rviz.displays.moveit.octree import read_octree
-from linkwright.simulation.plugins.octrees import encode_octree
 from linkwright.testing import Recording
 from tests.simulation.test_plugins import SECOND_NS, running_server
 from tests.simulation.worlds import box

@@ -256,26 +256,27 @@ def _normalize(values: NDArray[Any], ranges: RangeFinder) -> Pixels:
     return pixels
 
 
-def demosaic(mosaic: Pixels, pattern: str) -> Pixels:
-    """Return the RGB pixels of a Bayer mosaic, shape (height, width, 3).
+def demosaic(mosaic: NDArray[Any], pattern: str) -> NDArray[Any]:
+    """Return the RGB pixels of a Bayer mosaic, shape (height, width, 3), with the type of the mosaic.
 
     Each missing color is the mean of the neighbors that have it.
 
     Args:
-        mosaic: shape (height, width).
+        mosaic: unsigned integers of 8 or 16 bits, shape (height, width).
         pattern: the colors of the first two pixels of the first row, then of the second row, such as ``rggb``.
     """
     height, width = mosaic.shape
     if height < 2 or width < 2:
         return np.repeat(mosaic[..., np.newaxis], 3, axis=2)
-    padded = np.pad(mosaic, 1, mode="reflect").astype(np.uint16)
+    wider: type[np.unsignedinteger[Any]] = np.uint16 if mosaic.dtype.itemsize == 1 else np.uint32
+    padded: NDArray[np.unsignedinteger[Any]] = np.pad(mosaic, 1, mode="reflect").astype(wider)
     neighbors = [padded[1 + dy : 1 + dy + height, 1 + dx : 1 + dx + width] for dy in (-1, 0, 1) for dx in (-1, 0, 1)]
     _, up, _, left, _, right, _, down, _ = neighbors
     horizontal = (left + right) >> 1
     vertical = (up + down) >> 1
     cross = (left + right + up + down) >> 2
     corners = (neighbors[0] + neighbors[2] + neighbors[6] + neighbors[8]) >> 2
-    result = np.empty((height, width, 3), np.uint8)
+    result = np.empty((height, width, 3), mosaic.dtype)
     for position, color in enumerate(pattern):
         rows, columns = slice(position // 2, None, 2), slice(position % 2, None, 2)
         known_color = mosaic[rows, columns]

@@ -140,6 +140,25 @@ class TestMissingPackagesByDefault:
         assert "'zzz::Driver'" in result.err
         assert result.succeeded
 
+    async def test_missing_drivers_name_what_takes_their_place(self, launch) -> None:
+        result = await launch(
+            Node(package="rplidar_ros", executable="rplidar_composition"),
+            IncludeLaunchDescription([FindPackageShare("realsense2_camera"), "/launch/rs_launch.py"]),
+            ComposableNodeContainer(
+                name="box",
+                namespace="",
+                package="rclcpp_components",
+                executable="component_container",
+                composable_node_descriptions=[ComposableNode(package="ouster_ros", plugin="ouster_ros::OusterSensor")],
+            ),
+            end_when(has_printed("OusterSensor")),
+        )
+        texts = " ".join(result.err.split())
+        assert texts.count("; it drives a laser scanner, so build and start it on the robot") == 2
+        assert texts.count("package 'realsense2_camera' not found; it drives a camera") == 1
+        assert "error" not in result.err
+        assert result.succeeded
+
     async def test_misspelled_names_end_launch(self, launch, write: Write) -> None:
         for misspelled in (
             Node(package="robot_state_publishr", executable="robot_state_publisher"),

@@ -155,8 +155,11 @@ class TestSources:
     @pytest.mark.parametrize(
         ("package", "name", "instead"),
         [
-            ("rplidar_ros", "rplidar_composition", "it drives hardware"),
-            ("cartographer_ros", "cartographer_node", "run `linkwright launch slam_toolbox online_async_launch.py`"),
+            ("rplidar_ros", "rplidar_composition", "a simulated `gpu_lidar`"),
+            ("realsense2_camera", "realsense2_camera_node", "`usb_cam` with a video file"),
+            ("nmea_navsat_driver", "nmea_serial_driver", "a simulated `navsat`"),
+            ("ur_robot_driver", "dashboard_client", "`mock_components/GenericSystem`"),
+            ("micro_ros_agent", "micro_ros_agent", "it drives hardware"),
             ("moveit_setup_assistant", "moveit_setup_assistant", "`linkwright arm init` writes"),
         ],
     )

@@ -18,6 +18,7 @@ from linkwright.navigation.grids.occupancy import grid_from_message
 from linkwright.navigation.maps.map_files import load_map
 from linkwright.navigation.nodes.slam_toolbox.nodes import (
     AsyncSlamToolbox,
+    LifelongSlamToolbox,
     LocalizationSlamToolbox,
     MapAndLocalizationSlamToolbox,
     SyncSlamToolbox,
@@ -118,7 +119,7 @@ def is_map_of_walls(message: Any) -> bool:
     return bool((grid.cells == FREE).sum() > 2000 and (grid.cells == OCCUPIED).sum() > 100)
 
 
-@pytest.mark.parametrize("kind", [AsyncSlamToolbox, SyncSlamToolbox])
+@pytest.mark.parametrize("kind", [AsyncSlamToolbox, SyncSlamToolbox, LifelongSlamToolbox])
 def test_map_pose_and_transform_are_published_and_accurate(test, kind):
     start_node(test, kind)
     maps, sizes, poses, tf = (test.record(topic) for topic in ("/map", "/map_metadata", "/pose", "/tf"))

@@ -7,6 +7,8 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
+from linkwright.perception.nodes.crop_decimate import CropDecimateNode
+from linkwright.perception.nodes.debayer import DebayerNode
 from linkwright.perception.nodes.image_arrays import create_resizing, to_array, to_image
 from linkwright.perception.nodes.image_proc import RectifyNode, ResizeNode
 from linkwright.perception.nodes.rectification import create_rectification
@@ -199,3 +201,106 @@ async def test_resized_images_have_matching_camera_info(harness, run_node, param
     assert list(info.k) == pytest.approx([60 * x, 0, 31 * x, 0, 58 * y, 24.5 * y, 0, 0, 1])
     assert list(info.p)[:7] == pytest.approx([50 * x, 0, 32 * x, 0, 0, 50 * y, 23 * y])
     assert list(info.d) == PLUMB_BOB
+
+
+@pytest.mark.parametrize(
+    ("parameters", "part"),
+    [
+        ({}, np.s_[:, :]),
+        ({"offset_x": 4, "offset_y": 6, "width": 20, "height": 10}, np.s_[6:16, 4:24]),
+        ({"decimation_x": 4, "decimation_y": 2}, np.s_[::2, ::4]),
+        ({"offset_x": 40, "width": 100, "decimation_x": 3}, np.s_[:, 40:64:3]),
+    ],
+)
+async def test_cropped_images_are_parts_with_matching_camera_info(harness, run_node, parameters, part):
+    camera = Camera(harness, "/in", "/out/image_raw")
+    await run_node(CropDecimateNode, target_frame_id="part", **parameters)
+    await camera.listen()
+    pixels = smooth_pixels()
+    await camera.publish(image(pixels, "rgb8"), camera_info(binning_x=2))
+    (result,), (info,) = camera.results, camera.result_infos
+    columns = (WIDTH - parameters.get("offset_x", 0)) // parameters.get("decimation_x", 1)
+    expected = pixels[part][:, :columns]
+    assert (to_array(result) == expected).all()
+    assert result.header.frame_id == info.header.frame_id == "part"
+    assert (info.binning_x, info.binning_y) == (
+        2 * parameters.get("decimation_x", 1),
+        parameters.get("decimation_y", 1),
+    )
+    assert (info.roi.x_offset, info.roi.y_offset) == (2 * parameters.get("offset_x", 0), parameters.get("offset_y", 0))
+    assert info.roi.do_rectify == ("width" in parameters)
+    assert list(info.k) == K
+
+
+@pytest.mark.parametrize(("interpolation", "tolerance"), [(1, 8), (3, 1)])
+async def test_decimated_images_are_interpolated_as_by_opencv(harness, run_node, interpolation, tolerance):
+    cv2 = pytest.importorskip("cv2")
+    camera = Camera(harness, "/in", "/out/image_raw")
+    await run_node(CropDecimateNode, interpolation=interpolation, decimation_x=4, decimation_y=4)
+    await camera.listen()
+    pixels = smooth_pixels()
+    await camera.publish(image(pixels, "rgb8"), camera_info())
+    expected = cv2.resize(pixels, (WIDTH // 4, HEIGHT // 4), interpolation=interpolation)
+    assert np.abs(to_array(camera.results[0]).astype(int) - expected).max() <= tolerance
+
+
+async def test_decimated_mosaics_have_colors(harness, run_node, log):
+    camera = Camera(harness, "/in", "/out/image_raw")
+    await run_node(CropDecimateNode, decimation_x=2, decimation_y=2, offset_x=1)
+    await camera.listen()
+    mosaic = np.zeros((HEIGHT, WIDTH, 1), "u1")
+    mosaic[::2, ::2], mosaic[::2, 1::2], mosaic[1::2, ::2], mosaic[1::2, 1::2] = 200, 100, 100, 50
+    await camera.publish(image(mosaic, "bayer_rggb8"), camera_info())
+    (result,) = camera.results
+    assert result.encoding == "bgr8"
+    assert (to_array(result) == (50, 100, 200)).all()
+
+
+async def test_offset_outside_of_the_image_is_logged(harness, run_node, log):
+    camera = Camera(harness, "/in", "/out/image_raw")
+    await run_node(CropDecimateNode, offset_x=64)
+    await camera.listen()
+    await camera.publish(image(smooth_pixels(), "rgb8"), camera_info())
+    assert not camera.results
+    assert [record for record in log if "outside of the image" in str(record.text)]
+
+
+PATTERNS = {"rggb": ("rg", "gb"), "bggr": ("bg", "gr"), "gbrg": ("gb", "rg"), "grbg": ("gr", "bg")}
+
+
+@pytest.mark.parametrize("bits", [8, 16])
+@pytest.mark.parametrize("pattern", sorted(PATTERNS))
+async def test_mosaics_become_gray_and_colored(harness, run_node, pattern, bits):
+    gray, color = Camera(harness, "/cam", "/cam/image_mono"), Camera(harness, "/cam", "/cam/image_color")
+    names = ("image_raw", "image_mono", "image_color")
+    await run_node(DebayerNode, [(name, f"/cam/{name}") for name in names])
+    assert not gray.images.get_subscription_count()
+    await gray.listen()
+    await color.listen()
+    scale = 1 if bits == 8 else 256
+    values = {"r": 200 * scale, "g": 100 * scale, "b": 50 * scale}
+    mosaic = np.zeros((6, 8, 1), f"u{bits // 8}")
+    for row, letters in enumerate(PATTERNS[pattern]):
+        for column, letter in enumerate(letters):
+            mosaic[row::2, column::2] = values[letter]
+    gray.images.publish(image(mosaic, f"bayer_{pattern}{bits}"))
+    await harness.graph.settle()
+    (colored,), (mono,) = color.results, gray.results
+    assert (colored.encoding, mono.encoding) == (f"bgr{bits}", f"mono{bits}")
+    assert (to_array(colored) == (values["b"], values["g"], values["r"])).all()
+    luma = 0.299 * values["r"] + 0.587 * values["g"] + 0.114 * values["b"]
+    assert (to_array(mono) == round(luma)).all()
+    assert mono.header.frame_id == "camera"
+
+
+async def test_images_that_need_no_conversion_pass(harness, run_node, log):
+    color = Camera(harness, "/cam", "/cam/image_color")
+    await run_node(DebayerNode, [("image_raw", "/cam/image_raw"), ("image_color", "/cam/image_color")])
+    await color.listen()
+    for encoding, channels in (("rgb8", 3), ("mono8", 1), ("8UC3", 3)):
+        color.images.publish(image(smooth_pixels(channels), encoding))
+        await harness.graph.settle()
+    assert [result.encoding for result in color.results] == ["rgb8", "mono8"]
+    texts = [str(record.text) for record in log]
+    assert any("is grayscale" in text for text in texts)
+    assert any("does not tell the colors" in text for text in texts)

@@ -13,6 +13,7 @@ from linkwright.graph import STATIC_TF_PUBLISHER_QOS
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message
 from linkwright.nodes import NodeOptions
 from linkwright.perception.nodes.depthimage_to_laserscan import DepthImageToLaserScan
+from linkwright.perception.nodes.laser_merger import LaserScanMultiMerger
 from linkwright.perception.nodes.pointcloud_to_laserscan import (
     LaserScanToPointCloud,
     PointCloudToLaserScan,
@@ -166,3 +167,34 @@ async def test_invalid_parameters_are_rejected(test):
         start_node(test, PointCloudToLaserScan, angle_increment=0.0)
     with pytest.raises(LinkwrightError, match="parameter 'scan_height' of 'depthimage_to_laserscan' cannot be '0'"):
         start_node(test, DepthImageToLaserScan, scan_height=0)
+
+
+async def test_scans_of_several_lasers_are_merged_when_each_has_measured(test):
+    start_node(
+        test,
+        LaserScanMultiMerger,
+        destination_frame="base",
+        laserscan_topics="/front /rear",
+        scan_destination_topic="/merged",
+        angle_min=-pi,
+        angle_max=pi,
+        angle_increment=pi / 4,
+        range_min=0.1,
+    )
+    static = test.node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
+    poses = [(0.5, 0, 0.2, 0, 0, 0, 1), (-0.5, 0, 0.2, *quaternion_from_rpy((0, 0, pi)))]
+    static.publish(TFMessage(batch=TransformBatch(("base", "base"), ("front_laser", "rear_laser"), 0, np.array(poses))))
+    scans, clouds = test.record("/merged"), test.record("/merged_cloud")
+    await test.settle()
+    for name, ranges in (("front", [2.0, inf, 1.0]), ("rear", [3.0, inf, 2.5])):
+        message = message_in_frame(test, "sensor_msgs/msg/LaserScan", f"{name}_laser")
+        message.angle_min, message.angle_max, message.angle_increment = -0.01, 0.01, 0.01
+        message.range_min, message.range_max, message.ranges = 0.05, 10.0, np.array(ranges, np.float32)
+        assert not len(scans)
+        await publish_message(test, f"/{name}", message)
+    assert (scans.last.header.frame_id, len(scans.last.ranges)) == ("base", 8)
+    front, rear = scans.last.ranges[4], min(scans.last.ranges[0], scans.last.ranges[7])
+    assert (front, rear) == (pytest.approx(1.5, abs=0.01), pytest.approx(3.0, abs=0.01))
+    assert scans.last.ranges[2] == pytest.approx(26.0)  # range_max + 1 without a point
+    assert read_points(clouds.last)[:, 2] == pytest.approx([0.2] * 4)
+    assert len(scans) == 1

@@ -15,6 +15,7 @@ from linkwright.diagnostics import (
     phrase,
     quoted_names,
 )
+from linkwright.launch.errors.alternatives import name_alternative
 from linkwright.launch.errors.locations import MarkupLocation, error_at
 from linkwright.launch.errors.unavailable import is_missing_third_party, mark_unavailable
 from linkwright.launch.frontend.sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
@@ -139,6 +140,7 @@ class IncludeLaunchDescription(Action):
             description = self._source.get_launch_description(context)
         except LinkwrightError as error:
             if is_missing_third_party(error) or self._is_missing_in_substitute():
+                name_alternative(error)
                 mark_unavailable(error)
             raise
         given_names = [perform_substitutions(context, name) for name, _ in self._arguments]

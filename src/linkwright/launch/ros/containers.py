@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, is_misspelled, phrase
+from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, is_misspelled, joined, phrase
+from linkwright.launch.errors.alternatives import find_alternative
 from linkwright.launch.errors.locations import error_at, with_location
 from linkwright.launch.errors.unavailable import mark_unavailable
 from linkwright.launch.model import events
@@ -128,6 +129,9 @@ class LoadComposableNodes(Action):
                 container=container,
                 reason=foreign(response.error_message),
             )
+            alternative = find_alternative(request.package_name)
+            if alternative is not None:
+                message = joined((message, alternative), "; ")
             error = with_location(LinkwrightError(Diagnostic("LAUNCH139", message)), description.source_location)
             if _is_third_party(context.session.finder, request.package_name, request.plugin_name):
                 mark_unavailable(error)

@@ -26,9 +26,9 @@ from linkwright.diagnostics import (
 )
 from linkwright.hosting.plans import VIEWER, opens_page
 from linkwright.hosting.rqt_programs import PANEL_PROGRAMS, find_replacement
+from linkwright.launch.errors.alternatives import find_alternative
 from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.errors.unavailable import mark_unavailable
-from linkwright.launch.ros.alternatives import find_alternative
 from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed, is_substitute
 from linkwright.packages.programs.child_python import python_command
 

@@ -1,4 +1,4 @@
-"""image_proc's nodes that rectify and resize images.
+"""image_proc's nodes that rectify, resize and crop images.
 
 They take images with the ``camera_info`` of the same time, and work only while their output has a subscription.
 
@@ -29,14 +29,16 @@ _MAX_PENDING = 10
 _ERROR_PERIOD_S = 5.0
 
 
-class _CameraNode(SingleNode, ABC):
+class CameraNode(SingleNode, ABC):
     """A node that converts the images of a camera.
 
     Attributes:
         INPUT: the topic of the images.
+        DEFAULT_INTERPOLATION: the default of the parameter ``interpolation``.
     """
 
     INPUT: str
+    DEFAULT_INTERPOLATION = LINEAR
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
@@ -45,7 +47,7 @@ class _CameraNode(SingleNode, ABC):
         node = self._node
         with handle_start_errors(node):
             transport: str = node.declare_parameter("image_transport", "raw").value
-            interpolation = node.declare_parameter("interpolation", LINEAR).value
+            interpolation = node.declare_parameter("interpolation", self.DEFAULT_INTERPOLATION).value
             self._interpolation = interpolation if interpolation == NEAREST else LINEAR
             self.declare_parameters(node)
             log_unknown_parameters(node)
@@ -73,6 +75,10 @@ class _CameraNode(SingleNode, ABC):
         """Close the node."""
         self._subscriptions.close()
         super().close()
+
+    def publish_image(self, image: Any) -> None:
+        """Publish a converted image."""
+        self._publisher.publish(image)
 
     def _subscribe(self) -> list[Subscription[Any]]:
         info_topic = get_info_topic(self._source.base)
@@ -109,7 +115,7 @@ class _CameraNode(SingleNode, ABC):
             )
 
 
-class RectifyNode(_CameraNode):
+class RectifyNode(CameraNode):
     """The node that rectifies images: straight lines of the world become straight.
 
     Raises:
@@ -141,7 +147,7 @@ class RectifyNode(_CameraNode):
         self._publisher.publish(to_image(self._sampling[1].apply(to_array(image)), image))
 
 
-class ResizeNode(_CameraNode):
+class ResizeNode(CameraNode):
     """The node that resizes images and their camera_info.
 
     Raises:

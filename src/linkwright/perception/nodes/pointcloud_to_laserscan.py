@@ -162,7 +162,7 @@ class LaserScanToPointCloud(_Converter):
         columns: list[tuple[str, NDArray[Any]]] = [(name, transformed[:, axis]) for axis, name in enumerate("xyz")]
         if len(scan.intensities) == len(scan.ranges):
             columns.append(("intensity", scan.intensities[indices]))
-        self._publisher.publish(_make_cloud(columns, indices, self._target_frame or scan.frame, message.header.stamp))
+        self._publisher.publish(make_cloud(columns, indices, self._target_frame or scan.frame, message.header.stamp))
 
 
 def read_points(cloud: Any) -> NDArray[np.float64] | None:
@@ -196,7 +196,7 @@ def read_points(cloud: Any) -> NDArray[np.float64] | None:
     return points
 
 
-def _make_cloud(columns: list[tuple[str, NDArray[Any]]], indices: NDArray[np.int32], frame: str, stamp: Any) -> Any:
+def make_cloud(columns: list[tuple[str, NDArray[Any]]], indices: NDArray[np.int32], frame: str, stamp: Any) -> Any:
     """Return a point cloud with float32 fields and each ray's ``index``, as laser_geometry does."""
     field_class = get_message("sensor_msgs/msg/PointField")
     message = get_message("sensor_msgs/msg/PointCloud2")()

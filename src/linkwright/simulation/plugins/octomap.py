@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 
 from linkwright.diagnostics import phrase
+from linkwright.geometry.octrees import encode_octree
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile
 from linkwright.messages import Header, get_message
 from linkwright.sdf.poses import WORLD
 from linkwright.sdf.worlds import SphericalCoordinates
-from linkwright.simulation.plugins.octrees import encode_octree
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.plugins.surfaces import find_surfaces

@@ -1,4 +1,4 @@
-"""The executables of slam_toolbox: async, sync, localization, and map_and_localization.
+"""The executables of slam_toolbox: async, sync, localization, map_and_localization, and lifelong.
 
 ``ROS_DISTRO`` selects the version that the nodes follow: slam_toolbox 2.6 (Humble) or 2.8 (Jazzy). Nodes of 2.6 work as
 soon as they start; nodes of 2.8 are managed, and activate themselves if ``autostart_node`` is true, as in Linkwright's
@@ -7,8 +7,9 @@ launch files. The mapper is `linkwright.navigation.slam`. Differences:
 - One solver replaces all solver plugins: Gauss-Newton on sparse matrices. Each match is refined by least squares, so
   ``fine_search_angle_offset`` has no effect. Neither has ``use_scan_barycenter``.
 - A rotation by ``minimum_travel_heading`` is enough to process a scan, as the parameter's name suggests.
-- Moving scans by hand (``enable_interactive_mode``), merging maps and lifelong mapping are not supported: there is no
-  ``lifelong_slam_toolbox_node``. The motion of the robot during a scan is ignored.
+- Moving scans by hand (``enable_interactive_mode``) and merging maps are not supported. The motion of the robot during
+  a scan is ignored.
+- The lifelong node maps and continues saved graphs, but does not remove old scans from the graph.
 - A graph is saved in one file, in a format of Linkwright; files of slam_toolbox cannot be read.
 - When simulated time jumps back, such as on the reset of a world, the map starts from scratch.
 """
@@ -20,11 +21,24 @@ from typing import ClassVar
 from linkwright.graph import Graph, Node
 from linkwright.messages.distribution import is_before_iron
 from linkwright.navigation.nodes.managed import ManagedNode
+from linkwright.navigation.nodes.plugins import get_or_declare
 from linkwright.navigation.nodes.slam_toolbox.parameters import read_settings
 from linkwright.navigation.nodes.slam_toolbox.services import ToolboxServices
 from linkwright.navigation.nodes.slam_toolbox.toolbox import Toolbox
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, create_node_with_class, handle_start_errors
 from linkwright.nodes.settings import log_unknown_parameters
+
+_LIFELONG_PARAMETERS: dict[str, bool | float] = {
+    "lifelong_search_use_tree": False,
+    "lifelong_minimum_score": 0.1,
+    "lifelong_iou_match": 0.85,
+    "lifelong_node_removal_score": 0.04,
+    "lifelong_overlap_score_scale": 0.06,
+    "lifelong_constraint_multiplier": 0.08,
+    "lifelong_nearby_penalty": 0.001,
+    "lifelong_candidates_scale": 0.03,
+}
+"""The parameters of the lifelong node, which have no effect."""
 
 
 class _ManagedToolbox(ManagedNode):
@@ -115,6 +129,18 @@ class LocalizationSlamToolbox(AsyncSlamToolbox):
     """The running localization node, which localizes the robot in a saved map."""
 
     LOCALIZES = True
+
+
+class LifelongSlamToolbox(AsyncSlamToolbox):
+    """The running lifelong node, which continues a saved graph and keeps all of its scans."""
+
+    @classmethod
+    def open(cls, node: Node) -> tuple[Toolbox, ToolboxServices]:
+        """Read the parameters of a node, and create its toolbox and services."""
+        for name, default in _LIFELONG_PARAMETERS.items():
+            get_or_declare(node, name, default)
+        node.get_logger().info("scans are not removed from the graph: the lifelong_* parameters have no effect")
+        return super().open(node)
 
 
 class MapAndLocalizationSlamToolbox(AsyncSlamToolbox):

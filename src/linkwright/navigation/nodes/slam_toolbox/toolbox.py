@@ -31,6 +31,7 @@ from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.grids.occupancy import occupancy_message
 from linkwright.navigation.nodes.slam_toolbox.markers import graph_markers
 from linkwright.navigation.nodes.slam_toolbox.parameters import Settings
+from linkwright.navigation.nodes.step_runner import StepRunner
 from linkwright.navigation.slam.mapper import Mapper, Outcome
 from linkwright.navigation.slam.occupancy import OccupancyMap
 from linkwright.navigation.slam.poses import FloatArray, compose, inverse
@@ -72,13 +73,13 @@ class Toolbox:
         self.queue: deque[tuple[PlanarScan, FloatArray]] = deque()
         self._keeps_all_scans = keeps_all_scans
         self._pending_scan: tuple[Any, int] | None = None
-        self._work: Steps[Outcome | None] | None = None
         self._processed_odometry: FloatArray | None = None
         self._map_to_odom: FloatArray = np.zeros(3)
         self._latest_stamp_ns: int | None = None
         self._scan_count = 0
         self._is_active: list[Any] = []
         self._has_published = False
+        self._runner = StepRunner(node)
         if settings.map_file_name:
             self.load(settings.map_file_name, settings.start)
         self._buffer = BufferCore(
@@ -94,7 +95,6 @@ class Toolbox:
         markers_class = message("visualization_msgs/msg/MarkerArray")
         self._graph_publisher = node.create_publisher(markers_class, "slam_toolbox/graph_visualization", 1)
         self._transforms = node.create_publisher(TFMessage, "/tf", TF_QOS)
-        self._step_guard = node.create_guard_condition(self._step)
         self._jump_guard = node.create_guard_condition(self._on_time_jump)
 
     def start(self) -> None:
@@ -111,7 +111,7 @@ class Toolbox:
         self._jump_handle = node.get_clock().create_jump_callback(
             backward_jump, post_callback=lambda _: self._jump_guard.trigger()
         )
-        if self.mapper.scans and self._work is None:
+        if self.mapper.scans and not self._runner.is_busy:
             self._start_work(self._redraw())
 
     def stop(self) -> None:
@@ -127,7 +127,7 @@ class Toolbox:
     def close(self) -> None:
         """Remove all publishers, subscriptions and timers."""
         self.stop()
-        self._drop_work()
+        self._runner.close()
         self._listener.unregister()
         endpoints = (
             self._pose_publisher,
@@ -135,7 +135,6 @@ class Toolbox:
             self._metadata_publisher,
             self._graph_publisher,
             self._transforms,
-            self._step_guard,
             self._jump_guard,
         )
         for endpoint in endpoints:
@@ -150,7 +149,7 @@ class Toolbox:
 
     def reset(self) -> None:
         """Start a new map, or restart localization in the same map."""
-        self._drop_work()
+        self._runner.drop()
         self._pending_scan = None
         self.queue.clear()
         if self.localizes:
@@ -173,7 +172,7 @@ class Toolbox:
         mapper = self._create_mapper()
         load_graph(mapper, graph_path(name))
         mapper.begin_session(start)
-        self._drop_work()
+        self._runner.drop()
         self.queue.clear()
         self.mapper, self._has_published = mapper, False
         if self._is_active:
@@ -184,7 +183,7 @@ class Toolbox:
 
         The next scan is matched around this pose.
         """
-        self._drop_work()
+        self._runner.drop()
         self.queue.clear()
         self.mapper.begin_session(pose)
 
@@ -235,7 +234,7 @@ class Toolbox:
     def _queue_scan(self, message: Any, odometry: FloatArray, laser: Transform) -> None:
         if self._processed_odometry is not None and self.node.get_parameter("paused_new_measurements").value:
             return
-        is_busy = self._work is not None
+        is_busy = self._runner.is_busy
         if is_busy and not self._keeps_all_scans:
             return
         last_queued = (self.queue[-1][1], self.queue[-1][0].stamp_ns) if self.queue else None
@@ -277,29 +276,15 @@ class Toolbox:
         )
 
     def _start_work(self, work: Steps[Any]) -> None:
-        self._work = work
-        self._step_guard.trigger()
+        self._runner.start(work, self._finish_work)
 
-    def _drop_work(self) -> None:
-        if self._work is not None:
-            self._work.close()
-            self._work = None
-
-    def _step(self) -> None:
-        if self._work is None:
-            return
-        try:
-            next(self._work)
-        except StopIteration as done:
-            self._work = None
-            if done.value is not None:
-                self._publish_outcome(done.value)
-            elif not self._has_published:
-                self.publish_map()
-            if self._work is None:
-                self._process_next_scan()
-            return
-        self._step_guard.trigger()
+    def _finish_work(self, outcome: Outcome | None) -> None:
+        if outcome is not None:
+            self._publish_outcome(outcome)
+        elif not self._has_published:
+            self.publish_map()
+        if not self._runner.is_busy:
+            self._process_next_scan()
 
     def _redraw(self) -> Steps[None]:
         yield from self.mapper.redraw()

@@ -1,0 +1,1 @@
+"""A reader of configuration files in Lua, such as those of Cartographer."""

@@ -1,0 +1,1 @@
+"""The nodes of cartographer_ros: mapping with laser scans, point clouds and odometry."""

@@ -1,0 +1,1 @@
+"""Occupancy in space from point clouds."""
