@@ -39,13 +39,14 @@ class Recovery:
 
     def __init__(self, model: Any, data: Any) -> None:
         self._mujoco, self._model, self._data = load_mujoco(), model, data
+        self._step_s = float(model.opt.timestep)
         self._remaining_steps = 0
         servo_equalities = [index for index in range(model.neq) if SERVO_SUFFIX in model.equality(index).name]
         self._is_limited = np.ones(model.neq, dtype=bool)
         self._is_limited[servo_equalities] = False
         types = self._mujoco.mjtConstraint
         self._limit_type, self._equality_type = int(types.mjCNSTR_LIMIT_JOINT), int(types.mjCNSTR_EQUALITY)
-        self._springs_key: tuple[float, int, bytes] | None = None
+        self._springs_key: tuple[int, bytes] | None = None
         self._springs = _Springs(np.empty((0, 2)), np.empty(0), 1.0)
         self.expect()
 
@@ -99,11 +100,11 @@ class Recovery:
 
     def _get_springs(self, solref: Array, contact_count: int) -> _Springs:
         """Return the springs of contacts and of the other rows, which seldom differ from those of the last step."""
-        key = (self._model.opt.timestep, contact_count, solref.tobytes())
+        key = (contact_count, solref.tobytes())
         if key != self._springs_key:
             max_speeds = np.full(len(solref), _MAX_CORRECTION_SPEED)
             max_speeds[:contact_count] = _MAX_SEPARATION_SPEED
-            self._springs_key, self._springs = key, _Springs(solref, max_speeds, self._model.opt.timestep)
+            self._springs_key, self._springs = key, _Springs(solref, max_speeds, self._step_s)
         return self._springs
 
 
