@@ -34,17 +34,13 @@ if sys.platform != "win32" and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """Freeze the collected objects, so that the garbage collector ignores 17,000 tests.
-
-    The number of frozen objects is not counted, because that would take longer than reading a small robot.
-    """
+    """Freeze the collected objects, so that the garbage collector ignores 17,000 tests."""
     gc.disable()
     try:
         return (yield)
     finally:
         gc.enable()
         gc.freeze()
-        pytest.MonkeyPatch().setattr(gc, "get_freeze_count", lambda: 1)
 
 
 @pytest.hookimpl(trylast=True)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
+import sys
+from types import SimpleNamespace
 
 import pytest
 
-from linkwright.process import forked
+from linkwright.process import fork_server, forked
 from tests.forked import ForkServer, Program, start_process
 from tests.places import PACKAGE
 from tests.waiting import TIMEOUT_S, wait_until
@@ -108,6 +110,14 @@ def test_fork_server_is_ready_after_imports():
     wait_until(lambda: server.is_ready)
     server.close()
     assert not server.is_ready
+
+
+def test_fork_server_calls_functions_and_skips_failures(monkeypatch):
+    calls = []
+    module = SimpleNamespace(fail=lambda: 1 / 0, call=lambda: calls.append("call"))
+    monkeypatch.setitem(sys.modules, "preparing_module", module)
+    fork_server._call_all(["preparing_module:fail", "preparing_module:absent", "preparing_module:call"])
+    assert calls == ["call"]
 
 
 def test_killed_fork_server_is_replaced(tmp_path):

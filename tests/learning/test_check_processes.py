@@ -12,6 +12,7 @@ import pytest
 
 from linkwright.learning.checks import check_process, launch_check
 from linkwright.learning.checks.installed_files import list_setup_files
+from linkwright.learning.checks.preparation import prepare
 from linkwright.learning.course import load_course
 from linkwright.learning.new_course import create_course
 from linkwright.process import forked
@@ -28,6 +29,12 @@ def test_windows_process_is_ended_with_children(monkeypatch):
         assert process.wait() != 0
         check_process._kill_session(process)
     assert len(commands) == 1
+
+
+def test_preparation_of_server_leaves_no_thread_that_a_fork_would_lose():
+    before = set(threading.enumerate())
+    prepare()
+    assert set(threading.enumerate()) <= before
 
 
 BUSY = "import os\nos.sched_setaffinity(0, [{processor}])\nwhile True: pass"

@@ -15,20 +15,25 @@ from linkwright.xmltree.nodes import seldom_collected
 def fake_gc(monkeypatch):
     """Return the calls to a garbage collector of the test, with a number of frozen objects."""
     calls: list[object] = []
-    settings = SimpleNamespace(frozen=0, threshold=(700, 10, 10))
+    settings = SimpleNamespace(frozen=0, counts=0, threshold=(700, 10, 10))
 
     def set_threshold(*values):
         settings.threshold = values
         calls.append(values)
 
+    def count_frozen_objects():
+        settings.counts += 1
+        return settings.frozen
+
     stand_in = SimpleNamespace(
         get_threshold=lambda: settings.threshold,
         set_threshold=set_threshold,
-        get_freeze_count=lambda: settings.frozen,
+        get_freeze_count=count_frozen_objects,
         freeze=lambda: calls.append("freeze"),
         unfreeze=lambda: calls.append("unfreeze"),
     )
     monkeypatch.setattr(collection, "gc", stand_in)
+    monkeypatch.setattr(collection, "_were_frozen", False)
     return SimpleNamespace(calls=calls, settings=settings)
 
 
@@ -43,6 +48,14 @@ def test_frozen_objects_stay_frozen(fake_gc):
     with seldom_collected():
         pass
     assert fake_gc.calls == [(50_000, 10, 10), (700, 10, 10)]
+
+
+def test_frozen_objects_are_counted_once(fake_gc):
+    fake_gc.settings.frozen = 3
+    for _ in range(2):
+        with seldom_collected():
+            pass
+    assert fake_gc.settings.counts == 1
 
 
 @pytest.mark.parametrize("first", [0, 60_000])

@@ -69,4 +69,5 @@ def along_wall(begin, end):
 
 def nearest(points, others):
     """Return the distance from each point to the nearest of other points."""
-    return np.sqrt(((points[:, None, :] - others[None, :, :]) ** 2).sum(axis=2).min(axis=1))
+    (x, y), (other_x, other_y) = points.T, others.T
+    return np.sqrt(((x[:, None] - other_x) ** 2 + (y[:, None] - other_y) ** 2).min(axis=1))

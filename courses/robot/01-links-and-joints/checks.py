@@ -158,7 +158,7 @@ def run_first_drive(work):
     )
     with work.package("my_robot_description").simulate(URDF) as test:
         commands = test.record("/cmd_vel", TWIST)
-        running = test.start_program(lambda: runpy.run_path(str(program), run_name="__main__"), budget=5.0)
+        running = test.start_program(lambda: runpy.run_path(str(program), run_name="__main__"), budget=3.0)
         way, last = 0.0, test.robot_pose()[:2]
         while running.is_running and test.now < 30.0:
             test.advance(0.1)

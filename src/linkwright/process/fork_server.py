@@ -1,8 +1,8 @@
 """A server process that imports modules in advance, and forks for each program.
 
 Run as ``python -m linkwright.process.fork_server FD NAME...``, where FD is a socket of `linkwright.process.forked` and
-each NAME is a module, or ``PACKAGE.*`` for all in a package. The process ends when the socket is closed. Running
-programs continue.
+each NAME is a module, ``PACKAGE.*`` for all in a package, or ``MODULE:FUNCTION`` to call a function. The process ends
+when the socket is closed. Running programs continue.
 """
 
 from __future__ import annotations
@@ -191,6 +191,19 @@ def _import_all(names: Sequence[str]) -> None:
             _import(inner)
 
 
+def _call_all(names: Sequence[str]) -> None:
+    """Call functions ``MODULE:FUNCTION``, and ignore failures. A program then does itself what a function prepares."""
+    for name in names:
+        module, _, function = name.partition(":")
+        with contextlib.suppress(Exception):
+            getattr(importlib.import_module(module), function)()
+
+
+def _freeze() -> None:
+    gc.collect()
+    gc.freeze()  # collecting garbage would write to shared memory, and thereby copy it
+
+
 def _import(name: str) -> None:
     with contextlib.suppress(Exception):
         importlib.import_module(name)
@@ -205,14 +218,16 @@ def _find_inner_modules(package: str) -> Iterator[str]:
 
 
 def main() -> None:
-    """Import the modules, and serve until the socket is closed.
+    """Import the modules, call the functions, and serve until the socket is closed.
 
     Each forked process runs the requested program.
     """
     descriptor, *names = sys.argv[1:]
-    _import_all(names)
-    gc.collect()
-    gc.freeze()  # collecting garbage would write to shared memory, and thereby copy it
+    functions = [name for name in names if ":" in name]
+    _import_all([name for name in names if name not in functions])
+    _freeze()
+    _call_all(functions)
+    _freeze()
     control = socket.socket(fileno=int(descriptor))
     control.send(b"ready")
     if request := _Server(control).serve():

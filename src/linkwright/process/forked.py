@@ -133,7 +133,8 @@ class ForkServer:
     modules, the search path and the hash seed of the server.
 
     Args:
-        modules: the names of the modules to import; ``PACKAGE.*`` for a package and all its modules.
+        modules: the names of the modules to import; ``PACKAGE.*`` for a package and all its modules. With
+            ``MODULE:FUNCTION``, a function is called, which must end the threads that it starts.
         python: the command that runs Python.
         variables: environment variables of the server itself.
     """

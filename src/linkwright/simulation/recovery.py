@@ -39,10 +39,15 @@ class Recovery:
 
     def __init__(self, model: Any, data: Any) -> None:
         self._mujoco, self._model, self._data = load_mujoco(), model, data
+        self._step_s = float(model.opt.timestep)
         self._remaining_steps = 0
         servo_equalities = [index for index in range(model.neq) if SERVO_SUFFIX in model.equality(index).name]
         self._is_limited = np.ones(model.neq, dtype=bool)
         self._is_limited[servo_equalities] = False
+        types = self._mujoco.mjtConstraint
+        self._limit_type, self._equality_type = int(types.mjCNSTR_LIMIT_JOINT), int(types.mjCNSTR_EQUALITY)
+        self._springs_key: tuple[int, bytes] | None = None
+        self._springs = _Springs(np.empty((0, 2)), np.empty(0), 1.0)
         self.expect()
 
     @property
@@ -65,39 +70,68 @@ class Recovery:
 
     def _limit_depths(self) -> bool:
         """Reduce excessive penetration depths, and return whether any depth was reduced."""
-        model, data, constraint_types = self._model, self._data, self._mujoco.mjtConstraint
-        types, ids, contacts = data.efc_type, data.efc_id, data.contact
-        is_active = contacts.efc_address >= 0
-        limits = np.flatnonzero(types == constraint_types.mjCNSTR_LIMIT_JOINT)
-        equalities = np.flatnonzero(types == constraint_types.mjCNSTR_EQUALITY)
-        equalities = equalities[self._is_limited[ids[equalities]]]
-        rows = np.concatenate([contacts.efc_address[is_active], limits, equalities])
-        solrefs = (contacts.solref[is_active], model.jnt_solref[ids[limits]], model.eq_solref[ids[equalities]])
-        max_speeds = np.full(len(rows), _MAX_CORRECTION_SPEED)
-        max_speeds[: np.count_nonzero(is_active)] = _MAX_SEPARATION_SPEED
+        data, contacts = self._data, self._data.contact
+        addresses = contacts.efc_address
+        is_active = addresses >= 0
+        rows, solref = addresses[is_active], contacts.solref[is_active]
+        contact_count = len(rows)
+        if data.ne or data.nl:
+            other_rows, other_solref = self._find_limits_and_equalities()
+            rows, solref = np.concatenate([rows, other_rows]), np.concatenate([solref, other_solref])
         margins = data.efc_margin[rows]
         depths = data.efc_pos[rows] - margins
-        max_depths = self._compute_max_depths(
-            np.concatenate(solrefs), -np.copysign(1.0, depths) * data.efc_vel[rows], max_speeds
-        )
+        springs = self._get_springs(solref, contact_count)
+        max_depths = springs.compute_max_depths(-np.copysign(1.0, depths) * data.efc_vel[rows])
         is_too_deep = np.abs(depths) > max_depths
+        if not is_too_deep.any():
+            return False
         data.efc_pos[rows[is_too_deep]] = (margins + np.copysign(max_depths, depths))[is_too_deep]
-        return bool(is_too_deep.any())
+        return True
 
-    def _compute_max_depths(self, solref: Array, speeds: Array, max_speeds: Array) -> Array:
-        """Return the depths in m or rad at which springs reach their maximum speeds after a step.
+    def _find_limits_and_equalities(self) -> tuple[Array, Array]:
+        """Return the rows of joints at their limits and of limited equalities, and the solref of each row."""
+        model, data = self._model, self._data
+        types, ids = data.efc_type, data.efc_id
+        limits = np.flatnonzero(types == self._limit_type)
+        equalities = np.flatnonzero(types == self._equality_type)
+        equalities = equalities[self._is_limited[ids[equalities]]]
+        solref = np.concatenate([model.jnt_solref[ids[limits]], model.eq_solref[ids[equalities]]])
+        return np.concatenate([limits, equalities]), solref
 
-        Args:
-            solref: rows of a time constant in s and a damping ratio, or of negated stiffness and damping; shape
-                (springs, 2).
-            speeds: the speeds at which the depths currently decrease, in m/s or rad/s, shape (springs,).
-            max_speeds: the maximum speeds in m/s or rad/s, shape (springs,).
-        """
-        step_s = self._model.opt.timestep
+    def _get_springs(self, solref: Array, contact_count: int) -> _Springs:
+        """Return the springs of contacts and of the other rows, which seldom differ from those of the last step."""
+        key = (contact_count, solref.tobytes())
+        if key != self._springs_key:
+            max_speeds = np.full(len(solref), _MAX_CORRECTION_SPEED)
+            max_speeds[:contact_count] = _MAX_SEPARATION_SPEED
+            self._springs_key, self._springs = key, _Springs(solref, max_speeds, self._step_s)
+        return self._springs
+
+
+class _Springs:
+    """Damped springs of MuJoCo.
+
+    Args:
+        solref: rows of a time constant in s and a damping ratio, or of negated stiffness and damping; shape
+            (springs, 2).
+        max_speeds: the maximum speeds in m/s or rad/s, shape (springs,).
+        step_s: the time step in s.
+    """
+
+    def __init__(self, solref: Array, max_speeds: Array, step_s: float) -> None:
+        self._max_speeds, self._step_s = max_speeds, step_s
         first, second = solref.T
         time_constants = np.maximum(first, 2.0 * step_s)
         with np.errstate(divide="ignore", invalid="ignore"):
-            stiffness = np.where(first > 0.0, 1.0 / (time_constants * second) ** 2, -first)
-            damping = np.where(first > 0.0, 2.0 / time_constants, -second)
-            max_depths: Array = ((max_speeds - speeds) / step_s + damping * speeds) / stiffness
+            self._stiffness = np.where(first > 0.0, 1.0 / (time_constants * second) ** 2, -first)
+            self._damping = np.where(first > 0.0, 2.0 / time_constants, -second)
+
+    def compute_max_depths(self, speeds: Array) -> Array:
+        """Return the depths in m or rad at which the springs reach their maximum speeds after a step.
+
+        Args:
+            speeds: the speeds at which the depths currently decrease, in m/s or rad/s, shape (springs,).
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            max_depths: Array = ((self._max_speeds - speeds) / self._step_s + self._damping * speeds) / self._stiffness
         return np.maximum(max_depths, 0.0)

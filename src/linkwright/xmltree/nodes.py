@@ -20,6 +20,7 @@ _COLLECTION_THRESHOLD = 50_000
 _depth_lock = allocate_lock()
 _active = 0
 _old_thresholds = (0, 0, 0)
+_were_frozen = False
 
 
 class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as a function is
@@ -43,10 +44,21 @@ class seldom_collected:  # noqa: N801 - it is called in a ``with`` statement, as
         with _depth_lock:
             _active -= 1
             if _active == 0:
-                if gc.get_freeze_count() == 0:  # move new objects to the oldest generation without a collection
+                if not _has_frozen_objects():  # move new objects to the oldest generation without a collection
                     gc.freeze()
                     gc.unfreeze()
                 gc.set_threshold(*_old_thresholds)
+
+
+def _has_frozen_objects() -> bool:
+    """Return whether the process has frozen objects, such as a process that forks.
+
+    Once there were some, they are not counted again, also not in a forked process, because that takes longer than
+    reading a robot if there are a million.
+    """
+    global _were_frozen  # noqa: PLW0603 - there is one collector for the whole process
+    _were_frozen = _were_frozen or gc.get_freeze_count() > 0
+    return _were_frozen
 
 
 class Text:

@@ -73,8 +73,10 @@ _PRELOADED_MODULES = (
     "markdown_it",
     "mujoco",
     "numpy.random",
+    "scipy.ndimage",
+    "linkwright.learning.checks.preparation:prepare",
 )
-"""The modules that most checks import."""
+"""The modules that most checks import, and the function that prepares the server for them."""
 
 _MAX_ERROR_BYTES = 1 << 16
 """The number of bytes that are kept of the standard error of a process: the last ones."""

@@ -46,6 +46,9 @@ _QUIET_WITH_PROCESSES_S = 6.0
 """The same, if the launch has started the learner's programs, each in a process of its own."""
 
 _POLL_PERIOD_S = 0.02
+_GRAPH_PERIOD_S = 0.1
+"""The time between two looks at all nodes and topics, which take longer than most conditions."""
+
 _NODE_NAME = "lesson_check"
 _PROCESS_LINE = re.compile(r"^\[([^\]\s]+-\d+)\] (.*)$")
 _DEATH_LINE = re.compile(r"^\[ERROR\] \[([^\]\s]+)-\d+\]: process has died")
@@ -173,9 +176,12 @@ class LaunchCheck:
 
     def nodes(self) -> list[str]:
         """Return the full names of the running nodes."""
+        return self._call(self._list_nodes)
+
+    def _list_nodes(self) -> list[str]:
         return [
             f"{namespace.rstrip('/')}/{name}"
-            for name, namespace in self._call(self._checking_node.get_node_names_and_namespaces)
+            for name, namespace in self._checking_node.get_node_names_and_namespaces()
             if name != _NODE_NAME
         ]
 
@@ -302,7 +308,7 @@ class LaunchCheck:
         return [(translation.x, translation.y, translation.z)]
 
     def _list_topics(self) -> list[str]:
-        return [name for name, _ in self._call(self._checking_node.get_topic_names_and_types)]
+        return [name for name, _ in self._checking_node.get_topic_names_and_types()]
 
     def _call(self, function: Callable[[], T]) -> T:
         """Call a function on the event loop of the launch.
@@ -329,13 +335,16 @@ class LaunchCheck:
             NotYet: the launch failed, or the condition did not become true in time.
         """
         clock = PatientClock()
-        last_change, last_graph = 0.0, self._list_nodes_and_topics()
+        next_look, last_change, last_graph = 0.0, 0.0, self._list_nodes_and_topics()
         while not self._is_true(condition):
-            graph = self._list_nodes_and_topics()
-            if graph != last_graph:
-                last_change, last_graph = clock.read(), graph
-            if clock.read() > min(_WAIT_S, last_change + self._quiet_seconds):
-                raise NotYet(problem() if callable(problem) else problem)
+            time_s = clock.read()
+            if time_s >= next_look:
+                next_look = time_s + _GRAPH_PERIOD_S
+                graph = self._list_nodes_and_topics()
+                if graph != last_graph:
+                    last_change, last_graph = time_s, graph
+                if time_s > min(_WAIT_S, last_change + self._get_quiet_seconds(graph[0])):
+                    raise NotYet(problem() if callable(problem) else problem)
             time.sleep(_POLL_PERIOD_S)
 
     def _is_true(self, condition: Callable[[], bool]) -> bool:
@@ -354,11 +363,13 @@ class LaunchCheck:
 
     def _list_nodes_and_topics(self) -> tuple[Sequence[str], Sequence[str]]:
         """Return the nodes and topics of the graph; both are empty before the launch starts."""
-        return ([], []) if self._node is None or self._run.done() else (self.nodes(), self._list_topics())
+        if self._node is None or self._run.done():
+            return [], []
+        return self._call(lambda: (self._list_nodes(), self._list_topics()))
 
-    @property
-    def _quiet_seconds(self) -> float:
-        if self._session is None or not self._list_nodes_and_topics()[0]:
+    def _get_quiet_seconds(self, nodes: Sequence[str]) -> float:
+        """Return the seconds without a change after which nothing more is expected while some nodes run."""
+        if self._session is None or not nodes:
             return _WAIT_S
         return _QUIET_WITH_PROCESSES_S if self._session.processes.names else _QUIET_S
 
@@ -395,7 +406,7 @@ class LaunchCheck:
 
     def _explain_missing_topic(self, topic: str) -> Phrase:
         """Return the message for a topic without publishers, with the first error of the launch."""
-        topics = self._list_topics()
+        topics = self._call(self._list_topics)
         if problem := self._find_first_problem():
             return phrase("no node publishes '{topic}'; the launch says: {message}", topic=topic, message=problem)
         published = [name for name in topics if self._call(partial(self._checking_node.count_publishers, name))]

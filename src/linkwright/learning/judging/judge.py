@@ -117,13 +117,12 @@ class Judge:
         The ground is left out.
         """
         own_name = model or self.exercise.model
-        names = self._list_model_names_by_geom()
         data = self.simulation.data
-        touched = set()
-        for first, second in data.contact.geom[: data.ncon]:
-            pair = {names[first], names[second]}
-            if own_name in pair:
-                touched |= pair - {own_name}
+        if not data.ncon:
+            return set()
+        names = self._list_model_names_by_geom()
+        pairs = {(names[first], names[second]) for first, second in data.contact.geom.tolist()}
+        touched = {name for pair in pairs if own_name in pair for name in pair} - {own_name}
         return {name for name in touched if name and not name.startswith(_GROUND_NAMES)}
 
     def finish(self, en: str = "", zh: str = "") -> None:

@@ -57,7 +57,7 @@ class NavigatorNode(StepNode):
         TransformListener(self._buffer, self)
         self._costmap: Costmap | None = None
         self._costmap_frame = ""
-        self._path: Any = None
+        self._path: _Path | None = None
         self._remaining_distance = 0.0
         self._speed = 0.0
 
@@ -248,8 +248,8 @@ class NavigatorNode(StepNode):
         path = response.path
         if not path.poses:
             raise StepError("NO_VALID_PATH", "the planner found no path")
-        self._path = path
-        self._remaining_distance = _measure_path(path)
+        self._path = _Path(path)
+        self._remaining_distance = self._path.length
         return path
 
     def _find_refusal_reason(self) -> str:
@@ -326,9 +326,10 @@ class NavigatorNode(StepNode):
     def _on_odometry(self, message: Any) -> None:
         twist = message.twist.twist
         self._speed = hypot(twist.linear.x, twist.linear.y)
-        robot_position = self._find_robot_position() if self._path is not None else None
-        if robot_position is not None:
-            self._remaining_distance = _find_remaining_distance(self._path, *robot_position)
+        path = self._path
+        robot_position = self._find_robot_position() if path is not None else None
+        if path is not None and robot_position is not None:
+            self._remaining_distance = path.find_remaining_distance(*robot_position)
 
     def _find_robot_pose(self) -> Any:
         """Return the robot's pose in the global frame, or None if it is unknown."""
@@ -359,21 +360,31 @@ def _is_default_tree(path: str) -> bool:
     return path.rpartition("/")[2] in _DEFAULT_TREES
 
 
-def _measure_path(path: Any) -> float:
-    positions = [pose.pose.position for pose in path.poses]
-    return sum(hypot(end.x - start.x, end.y - start.y) for start, end in pairwise(positions))
+class _Path:
+    """The positions of a path, and the distances between them in meters.
 
-
-def _find_remaining_distance(path: Any, x: float, y: float) -> float:
-    """Return the remaining distance from a position along a path, in meters.
-
-    The result is the distance to the nearest pose of the path plus the length of the path from that pose to the end.
+    Args:
+        message: the path, a ``nav_msgs/Path``.
     """
-    positions = [pose.pose.position for pose in path.poses]
-    nearest = min(range(len(positions)), key=lambda index: hypot(positions[index].x - x, positions[index].y - y))
-    remaining = positions[nearest:]
-    length = sum(hypot(end.x - start.x, end.y - start.y) for start, end in pairwise(remaining))
-    return hypot(remaining[0].x - x, remaining[0].y - y) + length
+
+    def __init__(self, message: Any) -> None:
+        self._positions = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
+        self._lengths = [hypot(end[0] - start[0], end[1] - start[1]) for start, end in pairwise(self._positions)]
+
+    @property
+    def length(self) -> float:
+        """The length of the path in meters."""
+        return sum(self._lengths)
+
+    def find_remaining_distance(self, x: float, y: float) -> float:
+        """Return the remaining distance from a position along the path, in meters.
+
+        The result is the distance to the nearest pose of the path plus the length of the path from that pose to the
+        end.
+        """
+        distances = [hypot(position_x - x, position_y - y) for position_x, position_y in self._positions]
+        distance = min(distances)
+        return distance + sum(self._lengths[distances.index(distance) :])
 
 
 _ACTIONS = {

@@ -48,6 +48,8 @@ class PixelNoise:
         self._generator = generator
         self._positive_noise: Pixels = np.empty(0, np.uint8)  # bytes are unsigned
         self._negative_noise: Pixels = np.empty(0, np.uint8)
+        self._brightest: Pixels = np.empty(0, np.uint8)
+        """The brightest color that positive noise does not clip at white."""
 
     def apply(self, color: Pixels) -> Pixels:
         """Return RGB colors with noise, or the colors themselves if there is no noise.
@@ -63,17 +65,17 @@ class PixelNoise:
             self._positive_noise, self._negative_noise = (
                 np.maximum(array, 0).astype(np.uint8) for array in (noise_values, -noise_values)
             )
+            self._brightest = np.invert(self._positive_noise)
         start = int(self._generator.integers(_SURPLUS_NUMBERS))
-        positive, negative = (
+        positive, negative, brightest = (
             array[start : start + color.size].reshape(color.shape)
-            for array in (self._positive_noise, self._negative_noise)
+            for array in (self._positive_noise, self._negative_noise, self._brightest)
         )
         noisy: Pixels = np.maximum(color, negative)  # clipping bytes takes a sixth of the time of clipping integers
         noisy -= negative
-        np.invert(noisy, out=noisy)  # inverted, so that the sum is clipped at white
-        np.maximum(noisy, positive, out=noisy)
-        noisy -= positive
-        return np.invert(noisy, out=noisy)
+        np.minimum(noisy, brightest, out=noisy)
+        noisy += positive
+        return noisy
 
 
 def fill_image(message: Any, color: Pixels, encoding: str) -> None:
