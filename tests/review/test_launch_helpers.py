@@ -311,3 +311,14 @@ def test_a_condition_on_a_constant_that_a_function_gets_is_decided(repository, c
         "argument 'rate': default 10 -> 20",
         "argument 'mode': default slow -> fast",
     ]
+
+
+def test_second_review_sees_what_changed_since_the_first_one(repository, compare):
+    """Parsed files are kept during a review, not longer."""
+    repository.commit({"arm/launch/arm.launch.py": FILE, "arm/mixin.py": MIXIN})
+    repository.write({"arm/mixin.py": MIXIN.replace('"viewer",', '"display",')})
+    assert any("arm/display" in line for found in compare(repository).subjects for line in sentences(found))
+    repository.write({"arm/mixin.py": MIXIN.replace('"viewer",', '"screen",')})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert any("arm/screen" in line for line in lines)
+    assert not any("arm/display" in line for line in lines)

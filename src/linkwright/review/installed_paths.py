@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
+from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.build_facts import BuildFacts, FactKind, find_own_include_text
 from linkwright.review.files.cmake_files import CMAKE_FILE, read_cmake_facts
@@ -85,7 +85,7 @@ def find_targets(version: Version, package: str, path: str) -> frozenset[str] | 
     return frozenset(facts.strip_project(target) for target, other in facts.files.items() if other == source)
 
 
-@lru_cache(maxsize=64)
+@cached_in_review(maxsize=64)
 def read_package_facts(version: Version, package: str) -> BuildFacts | None:
     """Return the facts of the build file of a package, or None if no build file can be read.
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.packages.launch_files import is_launch_file_name
+from linkwright.review.caching import cached_in_review
 from linkwright.review.versions import Version
 from linkwright.xacro.cache import read_document
 
@@ -50,7 +50,7 @@ def is_launch_yaml(file: Path) -> bool:
         return False
 
 
-@lru_cache(maxsize=8)
+@cached_in_review(maxsize=8)
 def find_launch_files(version: Version) -> tuple[str, ...]:
     """Return the paths of all launch files of a version: by their names, or by their contents."""
     return tuple(path for path in version.paths(_SUFFIXES) if is_launch_file(path) or contains_actions(version, path))

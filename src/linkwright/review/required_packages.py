@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
 
 from linkwright.lint.dependencies import is_covered
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
+from linkwright.review.caching import cached_in_review
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 
@@ -31,7 +31,7 @@ def is_undeclared_and_new(versions: Versions, path: str, package: str) -> bool:
     return not _is_declared(versions.new, package) and not is_named(versions.old, package)
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def _is_declared(version: Version, package: str) -> bool:
     """Return whether a package of a version is the package, or depends on it."""
     if package in version.shares:
@@ -44,7 +44,7 @@ def _is_declared(version: Version, package: str) -> bool:
     )
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def is_named(version: Version, package: str) -> bool:
     """Return whether a file of a version names a package."""
     word = re.compile(rf"(?<!\w){re.escape(package)}(?!\w)")

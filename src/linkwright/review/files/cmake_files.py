@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache, partial
+from functools import partial
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
 
@@ -13,6 +13,7 @@ from linkwright.loading.lean_dataclasses import replace
 from linkwright.packages.readers.cmake import CMakeFile, read_cmake
 from linkwright.packages.readers.cmake_language import BUILD, Argument, CMakeProgram, Command, to_package_path
 from linkwright.packages.readers.cmake_syntax import is_open
+from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.build_comparison import compare_build_files
 from linkwright.review.files.build_facts import (
@@ -223,7 +224,7 @@ def _make_fact(kind: FactKind, argument: Argument, value: str = "", name: str | 
     return Fact(kind, argument.text if name is None else name, value, span, is_value_used, condition)
 
 
-@lru_cache(maxsize=16)
+@cached_in_review(maxsize=16)
 def _get_conditions(source: SourceText) -> dict[int, str]:
     return find_conditions(source)
 

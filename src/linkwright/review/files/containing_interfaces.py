@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from functools import lru_cache
 from pathlib import PurePosixPath
 
 from linkwright.packages.manifest import MANIFEST, ROSBUILD_MANIFEST, package_name
+from linkwright.review.caching import cached_in_review
 from linkwright.review.versions import Version
 
 _SUFFIXES = (".msg", ".srv", ".action")
@@ -36,7 +36,7 @@ def find_containing_interfaces(version: Version, path: str) -> list[str]:
     return sorted(found)
 
 
-@lru_cache(maxsize=8)
+@cached_in_review(maxsize=8)
 def _read_types(version: Version) -> dict[str, frozenset[tuple[str, str]]]:
     """Return the packages and names of the types of fields that are messages, by the path of the interface."""
     return {path: frozenset(_find_types(version, path)) for path in version.paths(_SUFFIXES)}

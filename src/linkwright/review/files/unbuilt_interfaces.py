@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.review.caching import cached_in_review
 from linkwright.review.files.build_facts import FactKind
 from linkwright.review.files.cmake_files import CMAKE_FILE, read_cmake_facts
 from linkwright.review.versions import Version
@@ -37,7 +37,7 @@ def is_unbuilt(version: Version, path: str) -> bool:
     return not has_name and _SEARCH.search(text) is None
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def _read_built_names(version: Version, build_file: str) -> frozenset[str]:
     """Return the names of the interfaces that a build file certainly builds, without folders."""
     try:

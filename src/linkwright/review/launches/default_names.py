@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
 from linkwright.lint.targets import find_targets
 from linkwright.packages.manifest import package_name
 from linkwright.packages.readers.setup_py import read_setup
+from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.names import CPP_SUFFIXES, NameKind
 from linkwright.review.sources.reading import read_source_names
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def find_default_name(root: Path, program: str) -> str | None:
     """Return the default name of a node, or None if the sources do not contain it.
 
@@ -35,7 +35,7 @@ def find_default_name(root: Path, program: str) -> str | None:
     return names.pop() if len(names) == 1 else None
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def find_script(root: Path, program: str) -> Path | None:
     """Return the Python script that a node runs, or None if the repository has none or several.
 
@@ -53,7 +53,7 @@ def find_script(root: Path, program: str) -> Path | None:
     return scripts[0] if len(scripts) == 1 else None
 
 
-@lru_cache(maxsize=4)
+@cached_in_review(maxsize=4)
 def find_package_folders(root: Path) -> dict[str | None, Path]:
     """Return the folders of the packages of a repository, by name."""
     return {package_name(folder): folder for folder in find_targets([root]).packages}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from functools import lru_cache
 
+from linkwright.review.caching import cached_in_review
 from linkwright.review.versions import Version
 
 _SEARCHED_SUFFIXES = (".launch", ".xml", ".py", ".yaml", ".yml", ".xacro", ".urdf", ".cpp", ".hpp", ".h", ".c")
@@ -30,7 +30,7 @@ def reads_variable(version: Version, name: str, path: str) -> bool:
     return path in _find_readers_by_variable(version).get(name, ())
 
 
-@lru_cache(maxsize=2)
+@cached_in_review(maxsize=2)
 def _find_readers_by_variable(version: Version) -> Mapping[str, list[str]]:
     """Return the files that read environment variables, by the name of the variable.
 

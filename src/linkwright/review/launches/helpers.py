@@ -7,11 +7,11 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 from linkwright.diagnostics import SourceText
 from linkwright.packages.readers.python_values import PythonFile, called_name
+from linkwright.review.caching import cached_in_review
 from linkwright.review.launches.names import LaunchPythonFile
 
 _MAX_IMPORT_DEPTH = 5
@@ -323,7 +323,7 @@ def _index_nested_functions(python: PythonFile) -> dict[str, ast.FunctionDef]:
     return {node.name: node for node in nested if names[node.name] == 1 and node.name not in outer}
 
 
-@lru_cache(maxsize=8)
+@cached_in_review(maxsize=8)
 def _find_python_files(root: Path) -> tuple[Path, ...]:
     """Return the Python files below a folder.
 
@@ -337,7 +337,7 @@ def _find_python_files(root: Path) -> tuple[Path, ...]:
     return tuple(files)
 
 
-@lru_cache(maxsize=64)
+@cached_in_review(maxsize=64)
 def _try_parse(path: Path) -> PythonFile | None:
     """Return a parsed file, or None if it cannot be read."""
     try:

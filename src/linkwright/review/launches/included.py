@@ -6,11 +6,12 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.argument_uses import USED_ARGUMENT, find_defaulted_arguments, uses_argument
@@ -405,7 +406,7 @@ def _make_move_key(entry: Entry) -> _MoveKey:
     return entry.kind, entry.name, entry.settings.get("name"), tuple(find_served_names(entry))
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def _read_move_keys(file: Path, root: Path) -> frozenset[_MoveKey]:
     """Return the keys of the actions of a file.
 

@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
@@ -14,6 +14,7 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.targets import find_targets
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.packages.readers.package_xml import Manifest
+from linkwright.review.caching import cached_in_review
 from linkwright.review.changes import Change, Effect, Location, Subject
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.build_facts import BuildFacts, FactKind
@@ -297,7 +298,7 @@ def _find_shared_packages(versions: Versions) -> dict[str, tuple[RepositoryPacka
     return shared
 
 
-@lru_cache(maxsize=8)
+@cached_in_review(maxsize=8)
 def find_packages(version: Version) -> dict[str, RepositoryPackage]:
     """Return the packages that a version has exactly once, by name."""
     found: dict[str, list[RepositoryPackage]] = {}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from functools import lru_cache
 from pathlib import Path
 
+from linkwright.review.caching import cached_in_review
 from linkwright.review.launches.default_names import find_package_folders, find_script
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.package_imports import PACKAGE_FILE
@@ -17,7 +17,7 @@ from linkwright.review.sources.shared_constants import find_own_module
 _MAX_MODULES = 200
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def find_program_modules(root: Path, program: str) -> tuple[Path, ...]:
     """Return the script of a Python program and the modules of the repository that it imports, also indirectly.
 

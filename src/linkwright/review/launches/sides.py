@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable
 from enum import Enum
-from functools import lru_cache
 from pathlib import Path
 
+from linkwright.review.caching import cached_in_review
 from linkwright.review.launches.default_names import find_package_folders
 from linkwright.review.launches.program_modules import find_program_modules
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind
@@ -155,7 +155,7 @@ def _find_own_name(name: str, known: Collection[str]) -> str:
     return next((own_name for own_name in names if own_name in known), names[0])
 
 
-@lru_cache(maxsize=4)
+@cached_in_review(maxsize=4)
 def _list_parameter_keys(root: Path) -> frozenset[str]:
     """Return the keys in the YAML files of a repository, and the quoted words in its launch files and programs."""
     keys: set[str] = set()
@@ -187,7 +187,7 @@ def _lacks_name(name: str, modules: Iterable[Path]) -> bool:
     )
 
 
-@lru_cache(maxsize=64)
+@cached_in_review(maxsize=64)
 def _read_package_kinds(root: Path, package: str) -> dict[str, set[NameKind]]:
     """Return the kinds of topics, services and actions in a package's sources, by name."""
     folder = find_package_folders(root).get(package)

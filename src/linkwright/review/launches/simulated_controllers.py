@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
 
+from linkwright.review.caching import cached_in_review
 from linkwright.review.launches.included import IncludedActions
 from linkwright.review.launches.outlines import Entry
 from linkwright.review.versions import Version
@@ -28,7 +28,7 @@ def is_simulated_controller_manager(entry: Entry, new: IncludedActions, version:
     return entry.name == _CONTROLLER_MANAGER and new.find_node(_SPAWNER) is not None and _has_plugin(version)
 
 
-@lru_cache(maxsize=4)
+@cached_in_review(maxsize=4)
 def _has_plugin(version: Version) -> bool:
     paths = version.paths((".urdf", ".xacro", ".gazebo"))
     return any(_PLUGIN.search(_COMMENT.sub("", version.text(path))) for path in paths)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from functools import lru_cache
 from pathlib import Path
 
 from linkwright.packages.manifest import SKIPPED_FOLDERS
+from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.parameter_names import find_all_controllers
 from linkwright.review.files.yaml_values import read_yaml_values
@@ -31,7 +31,7 @@ def is_other_group(name: str, root: Path | None) -> bool:
     return short_name in groups and short_name not in controllers
 
 
-@lru_cache(maxsize=2)
+@cached_in_review(maxsize=2)
 def _read_groups(root: Path) -> tuple[frozenset[str], frozenset[str]]:
     """Return the groups and the controllers of all parameter files below a folder, without their namespaces.
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator
-from functools import lru_cache
 
+from linkwright.review.caching import cached_in_review
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.included import IncludedActions, find_including_files
@@ -127,7 +127,7 @@ def _find_added_robot(frames: Collection[str], versions: Versions) -> Entry | No
     return None
 
 
-@lru_cache(maxsize=4)
+@cached_in_review(maxsize=4)
 def _list_links(version: Version) -> frozenset[str]:
     """Return the names of the links in the descriptions of a version, without prefixes from arguments."""
     texts = (_COMMENT.sub("", version.text(path)) for path in version.paths((".urdf", ".xacro")))
@@ -140,7 +140,7 @@ def _read_nodes(version: Version, path: str | None) -> list[Entry]:
     return [] if outline is None else [entry for entry in outline.entries if entry.kind == "node"]
 
 
-@lru_cache(maxsize=4)
+@cached_in_review(maxsize=4)
 def _list_description_words(version: Version) -> frozenset[str]:
     """Return the words in the descriptions of a version."""
     return frozenset(

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
-from functools import lru_cache
 from itertools import zip_longest
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, joined, joined_first, phrase
+from linkwright.review.caching import cached_in_review
 from linkwright.review.changes import MAX_NAMES, Change
 from linkwright.review.sources.class_members import format_changed_class
 from linkwright.review.sources.code import Code, Part
@@ -440,7 +440,7 @@ def _get_constructor_class(name: str) -> str:
     return re.escape(parts[-2]) if len(parts) > 1 and parts[-1] == "__init__" else "-"
 
 
-@lru_cache(maxsize=4096)
+@cached_in_review(maxsize=4096)
 def _get_shape(text: str) -> str:
     """Return the text of a statement with marks for its literals."""
     return parse_statement(tokenize_cpp(text)).shape

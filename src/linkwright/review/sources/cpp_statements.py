@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
 
+from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.cpp_conditions import is_guard
 from linkwright.review.sources.statements import Statement, find_template_start, parse_statement
 from linkwright.review.sources.tokens import Token, TokenKind, match_brackets, tokenize_cpp
@@ -41,7 +41,7 @@ class _Block:
     pending: list[Token] = field(default_factory=list)
 
 
-@lru_cache(maxsize=8)
+@cached_in_review(maxsize=8)
 def read_cpp_statements(text: str) -> Mapping[str, Sequence[Statement]]:
     """Return the statements of a source by function or class.
 

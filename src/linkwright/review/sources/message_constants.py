@@ -5,13 +5,13 @@ from __future__ import annotations
 import ast
 import os
 from collections.abc import Iterator, Mapping
-from functools import lru_cache
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.files.scratch_folders import is_scratch_folder
 from linkwright.packages import MANIFEST
 from linkwright.packages.manifest import enclosing_package, package_name
+from linkwright.review.caching import cached_in_review
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.interfaces import read_structures
 
@@ -86,7 +86,7 @@ def _find_message(folder: Path, package: str, message: str) -> Path | None:
     return None
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def _list_folders(folder: Path, name: str) -> tuple[Path, ...]:
     """Return the folders with a name below a folder that have a manifest."""
     found: list[Path] = []
@@ -108,7 +108,7 @@ def _list_children(folder: Path) -> list[Path]:
     return [child for child in children if not (child / MANIFEST).is_file()]
 
 
-@lru_cache(maxsize=64)
+@cached_in_review(maxsize=64)
 def _read_texts(file: Path, _modified_ns: int) -> Mapping[str, str]:
     try:
         structures = read_structures(file)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from functools import lru_cache
 from pathlib import PurePosixPath
 
+from linkwright.review.caching import cached_in_review
 from linkwright.review.files.build_facts import BuildFacts, FactKind
 from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.versions import Version
@@ -41,7 +41,7 @@ def find_programs(version: Version, package: str, path: str) -> tuple[frozenset[
     return own, frozenset().union(*programs.values()) - own
 
 
-@lru_cache(maxsize=16)
+@cached_in_review(maxsize=16)
 def _find_programs(version: Version, package: str) -> dict[str, frozenset[str]]:
     """Return the programs that each source of a package is built into, also through libraries, by path."""
     facts = read_package_facts(version, package)

@@ -6,13 +6,13 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import SourceText
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages import enclosing_package
 from linkwright.packages.readers.python_values import PythonFile
+from linkwright.review.caching import cached_in_review
 from linkwright.review.sources.cpp_values import read_initial_values
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
@@ -102,7 +102,7 @@ def find_own_module(path: Path, module: str, level: int) -> Path | None:
     return next((file for file in files if file.is_relative_to(base) and file.is_file()), None)
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def read_module(path: str, _modified_ns: int) -> ast.Module | None:
     """Return the syntax tree of a Python file, or None if it cannot be read or parsed."""
     file = Path(path)
@@ -114,7 +114,7 @@ def read_module(path: str, _modified_ns: int) -> ast.Module | None:
         return None
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def _read_python_constants(path: str, modified_ns: int) -> Mapping[str, ast.expr]:
     """Return the names at the top of a Python file, and in its classes, that get a text once.
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import re
-from functools import lru_cache
 from pathlib import PurePosixPath
 
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.readers.package_xml import Manifest
+from linkwright.review.caching import cached_in_review
 from linkwright.review.files.setup_files import SETUP_FILE
 from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.sources.names import PYTHON_SUFFIX
@@ -26,7 +26,7 @@ _BUILD_TYPE = "ament_python"
 _SPECIAL_NAMES = frozenset({"__init__", "__main__", "setup", "conftest"})
 
 
-@lru_cache(maxsize=256)
+@cached_in_review(maxsize=256)
 def is_unreachable(version: Version, package: str | None, path: str) -> bool:
     """Return whether nothing starts or imports a Python module, as far as the repository tells.
 
