@@ -53,7 +53,7 @@ LOCKED := .build/constraints.txt
 RELEASE_TOOLS := .build/release-tools$(if $(VERSION),-$(VERSION))
 PAGE_SOURCES := $(shell find frontend -path frontend/node_modules -prune -o -type f -print)
 
-.PHONY: demo test test-base test-page test-editor test-program test-quick test-python read-tests coverage test-browser test-ros test-zenoh-sdk test-train check bench soak soak-editor fuzz reference release docs page lock format clean
+.PHONY: demo test test-base test-page test-editor test-program test-quick test-python read-tests coverage test-browser test-ros test-zenoh-sdk test-train check bench soak soak-editor fuzz reference release docs page lock format clean uv
 
 # Ctrl-C is how the demo ends (status 130), which is no error; the shell has to outlive it to say so.
 demo: $(VENV)/.ready
@@ -231,6 +231,9 @@ clean:
 	$(PYTHON) -m venv .build/uv
 	.build/uv/bin/python -m pip install --quiet uv
 
+# What each environment is made with.
+uv: $(LOCKED) | $(UV)
+
 $(LOCKED): uv.lock tools/lock.py
 	mkdir -p .build
 	$(PYTHON) tools/lock.py constraints > $@
@@ -241,6 +244,14 @@ $(VENV)/.ready: pyproject.toml core/pyproject.toml core/engine_build.py hatch_bu
 	$(UV) pip install --quiet $(COMPILE) --python $(BIN)/python --constraints $(LOCKED) \
 		--reinstall-package linkwright --no-sources --editable ./core --editable '.[all]'
 	$(BIN)/python -m compileall -q src
+	touch $@
+
+# All packages but the program, which .ready and .dev then need not fetch: .ci/run fetches those of one Python while another one's
+# environment is built.
+$(VENV)/.packages: pyproject.toml core/pyproject.toml core/engine_build.py $(LOCKED) | $(UV)
+	test -x $(BIN)/python || $(UV) venv --quiet --python $(or $(VERSION),$(PYTHON)) $(VENV)
+	$(UV) pip install --quiet $(COMPILE) --python $(BIN)/python --constraints $(LOCKED) \
+		--no-sources --editable ./core --requirements pyproject.toml --extra all --group dev
 	touch $@
 
 $(VENV)/.dev: $(VENV)/.ready
