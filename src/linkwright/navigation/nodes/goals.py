@@ -145,6 +145,7 @@ class GoalServer:
         result = self._type.Result()
         if code and hasattr(result, "error_code"):
             result.error_code = getattr(result, code, 0)
+        if code and hasattr(result, "error_msg"):
             result.error_msg = reason
         for name, value in fields.items():
             setattr(result, name, value)

@@ -40,13 +40,19 @@ class StepNode(ManagedNode):
     _work: Step | None = None
     _server: GoalServer | None = None
 
-    def work_on(self, server: GoalServer, work: Step) -> None:
-        """Start executing the goal of a server, and abort an earlier goal of another server."""
+    def work_on(self, server: GoalServer, work: Step, period: float = _CYCLE_PERIOD_S) -> None:
+        """Start executing the goal of a server, and abort an earlier goal of another server.
+
+        Args:
+            server: the server of the goal.
+            work: executes the goal in steps.
+            period: the seconds between two steps.
+        """
         self._stop()
         if self._server is not None and self._server is not server:
             self._server.abort("UNKNOWN", "another goal replaced it")
         self._server, self._work = server, work
-        self.begin_cycles(_CYCLE_PERIOD_S, self._run_cycle)
+        self.begin_cycles(period, self._run_cycle)
 
     def publish_feedback(self, server: GoalServer) -> None:
         """Publish feedback for the active goal.

@@ -1,0 +1,1 @@
+"""The docking server of Nav2."""
