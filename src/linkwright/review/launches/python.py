@@ -21,6 +21,7 @@ from linkwright.review.launches.outlines import (
     Entry,
     LaunchOutline,
     Scope,
+    find_own_default,
 )
 from linkwright.review.launches.python_syntax import (
     ADD_METHODS,
@@ -439,7 +440,7 @@ class _Reader:
                 if key in names and not (key == "default_value" and self._is_none(value))
             }
             if "default" in settings:
-                settings["default"] = self.texts.format_joined(keywords["default_value"])
+                settings["default"] = find_own_default(name, self.texts.format_joined(keywords["default_value"]))
         elif function == "SetLaunchConfiguration":
             kind, name, settings = "variable", first_text, {"value": second_text}
         elif function == "SetRemap":

@@ -471,6 +471,8 @@ class ExpressionTexts:
             return f"$(var {' '.join(map(part, arguments))})"
         if function in ("FindPackageShare", "get_package_share_directory", "get_package_share_path"):
             return f"$(find-pkg-share {part(first)})"
+        if function in ("FindPackagePrefix", "get_package_prefix"):
+            return f"$(find-pkg-prefix {part(first)})"
         if function == "ThisLaunchFileDir":
             return "$(dirname)"
         if function == "find" and isinstance(node.func, ast.Attribute):
