@@ -82,5 +82,14 @@ def _format_unknown_parts(name: str, value: BoundExpression, parts: Sequence[Bou
     if not parts:
         return {}
     texts = [part.texts.text(part.node) for part in parts]
-    is_list = len(parts) > 1 or isinstance(value.texts.resolve(value.node).node, (ast.List, ast.Tuple, ast.BinOp))
+    is_list = len(parts) > 1 or not _is_operand(parts[0], value)
     return {name: f"[{', '.join(texts)}]" if is_list else texts[0]}
+
+
+def _is_operand(part: BoundExpression, value: BoundExpression) -> bool:
+    """Return whether a part is the value itself or a term of the sum, not an item of a list."""
+    resolved = value.texts.resolve(value.node)
+    if isinstance(resolved.node, ast.BinOp) and isinstance(resolved.node.op, ast.Add):
+        terms = (BoundExpression(resolved.texts, term) for term in (resolved.node.left, resolved.node.right))
+        return any(_is_operand(part, term) for term in terms)
+    return resolved.node is part.node
