@@ -223,3 +223,25 @@ def test_name_that_was_unknown_by_default_is_not_lost(repository, compare, model
     reasons = [str(change.reason) for change in subject(compare(repository), path).changes if change.reason]
     assert ("programs that use the name 'arm' do not find it" in reasons) is is_breaking
     assert bool(reasons) is is_breaking
+
+
+@pytest.mark.parametrize(("new", "is_breaking"), [("arm", False), ("hand", True)])
+def test_argument_whose_default_is_that_of_its_own_value(repository, compare, new, is_breaking):
+    text = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    namespace = LaunchConfiguration("namespace", default="{}")
+    return LaunchDescription([
+        DeclareLaunchArgument("namespace", default_value=namespace),
+        Node(package="arm", executable="arm", namespace=namespace),
+    ])
+"""
+    path = "arm/launch/arm.launch.py"
+    repository.commit({path: text.format("arm")})
+    repository.write({path: text.format(new), "notes.md": "\n"})
+    line = "argument 'namespace': default arm -> hand"
+    assert breaking(compare(repository)) == ([line] if is_breaking else [])

@@ -12,6 +12,8 @@ from linkwright.review.launches.outlines import Entry, LaunchOutline, extract_co
 
 _INLINE_DEFAULT = re.compile(r"(\$\((?:var|arg) [^() ]+) [^()]*\)")
 """An argument of a launch file with its default."""
+_INLINE_NAME = re.compile(r"\$\((?:var|arg) ([^() ]+) [^()]*\)")
+"""The name of such an argument."""
 _ROS1_SUBSTITUTION = re.compile(r"\$\((?P<kind>find|arg) ")
 _ROS2_SUBSTITUTIONS = {"find": "$(find-pkg-share ", "arg": "$(var "}
 _BOOLEAN = re.compile(r"\b(True|False)\b")
@@ -74,6 +76,9 @@ def keeps_meaning(old: str | None, new: str | None, old_outline: LaunchOutline, 
         old, new = (_write_for_ros2(text) for text in (old, new))
     if _INLINE_DEFAULT.sub(r"\1)", old) != _INLINE_DEFAULT.sub(r"\1)", new):
         return False
+    declared = [{entry.name for entry in outline.entries if entry.has_value} for outline in (old_outline, new_outline)]
+    if old != new and all(declared[0] & declared[1] >= set(_INLINE_NAME.findall(text)) for text in (old, new)):
+        return True  # another default of an argument is a change to the argument
     texts = (outline.resolve(text) for outline, text in ((old_outline, old), (new_outline, new)))
     before, after = (_BOOLEAN.sub(lambda match: match[0].lower(), text) for text in texts)
     return before == after

@@ -256,6 +256,13 @@ class LaunchOutline:
         return result
 
 
+def find_own_default(name: str, text: str) -> str:
+    """Return the default of an argument; that of ``$(var NAME DEFAULT)`` if it is its own value, as Python allows."""
+    variable = _VARIABLE.fullmatch(text)
+    is_own = variable is not None and variable["name"] == name
+    return text if variable is None or not is_own else variable["default"] or ""
+
+
 def _find_only_value(entries: Sequence[Entry]) -> str | None:
     """Return the value of actions that set a name, or None if there are several."""
     values = {entry.settings.get("value", entry.settings.get("default")) for entry in entries}

@@ -22,6 +22,7 @@ from linkwright.review.launches.outlines import (
     Entry,
     LaunchOutline,
     Scope,
+    find_own_default,
 )
 from linkwright.review.launches.python_syntax import (
     ADD_METHODS,
