@@ -80,3 +80,10 @@ def test_difference_of_a_text_with_many_tokens_is_shown():
         "... 1496 1497 1498 1499 1500 1501 1502 1503 1504 ...",
         "... 1496 1497 1498 1499 x 1501 1502 1503 1504 ...",
     )
+
+
+@pytest.mark.parametrize("frame", ["#", "*", "="])
+def test_frame_around_a_long_text_is_left_out(frame):
+    text = f"{frame * 80}\n{'#' if frame == '#' else '*'}  Use camera.launch.py!  *\n{frame * 80}\n"
+    assert shorten_middle(text, 60) == "Use camera.launch.py!"
+    assert shorten_middle("#### a ####", 60) == "#### a ####"

@@ -347,32 +347,6 @@ def test_settings_of_tools_are_other_files(package, compare):
     assert sorted(result.other_files) == sorted(files)
 
 
-def test_parameters_of_nodes_count_outside_of_packages(repository, compare):
-    text = "driver:\n  ros__parameters:\n    rate: {}\n"
-    repository.commit({"config/driver.yaml": text.format(5), "config/tool.yaml": "rate: 5\n"})
-    repository.write({"config/driver.yaml": text.format(6), "config/tool.yaml": "rate: 6\n"})
-    result = compare(repository)
-    assert [found.path for found in result.subjects] == ["config/driver.yaml"]
-    assert result.other_files == ["config/tool.yaml"]
-
-
-@pytest.mark.parametrize(
-    ("path", "text", "expected"),
-    [
-        ("a/config/a.yaml", "rate: 5\n", ["parameter file added: rate 5"]),
-        ("a/urdf/a.xacro", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="m"/></robot>',
-         ["description file added", "macro 'm' added"]),
-        ("a/launch/a.launch", '<launch><node pkg="a" type="b" name="c"/></launch>',
-         ["launch file added: node 'a/b' (name c)"]),
-    ],
-)  # fmt: skip
-@pytest.mark.parametrize("empty", ["", " \n"])
-def test_file_that_was_empty_is_an_added_file(repository, compare, path, text, expected, empty):
-    repository.commit({"a/package.xml": PACKAGE_XML.replace("arm_description", "a"), path: empty})
-    repository.write({path: text})
-    assert sentences(subject(compare(repository), path)) == expected
-
-
 def test_manifest_changes_are_reported(package, compare):
     text = PACKAGE_XML.replace("1.0.0", "1.1.0").replace("<exec_depend>xacro", "<exec_depend>urdf")
     package.write({"arm_description/package.xml": text})

@@ -104,6 +104,12 @@ def test_added_link_is_one_line_with_its_place(repository):
     )
 
 
+def test_added_link_with_a_mass_and_without_inertia_tells_it(repository):
+    link = LINK.format("tip").replace('ixx="1" iyy="1" izz="1"', 'ixx="0" iyy="0" izz="0"')
+    (text,) = sentences(subject(review_replacement(repository, ("</robot>", f"{link}</robot>")), PATH))
+    assert text.endswith("mass 2 kg, inertia zero")
+
+
 def test_added_link_has_its_rotation_and_the_number_of_its_equal_shapes(repository):
     visual = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
     link = LINK.format("tip").replace("<visual>", f"{visual}{visual}<visual>", 1)

@@ -100,3 +100,14 @@ def test_many_values_that_a_part_gains_or_loses_are_listed_together(lines, names
     old, new = "arm:\n  rate: 5\n", "arm:\n  rate: 5\n" + "".join(f"  {name}: 1\n" for name in names)
     assert [line for line, _ in lines(old, new)] == expected
     assert [line for line, _ in lines(new, old)] == [line.replace("added", "removed") for line in expected]
+
+
+def test_zeros_and_empty_values_of_a_long_added_file_come_last(repository, compare):
+    values = {f"zero{number}": "0.0" for number in range(20)} | {"empty": "[]", "none": "[0.0, 0]"}
+    values |= {f"rate{number}": "5" for number in range(15)}
+    repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")})
+    repository.write({PATH: make_text(values)})
+    (line,) = sentences(subject(compare(repository), PATH))
+    assert all(f"rate{number} 5" in line for number in range(15))
+    assert "zero0 0.0" in line
+    assert "zero19" not in line

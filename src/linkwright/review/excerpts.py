@@ -22,6 +22,8 @@ _MAX_EXCERPT = 900
 _MAX_TOKENS = 3000
 _SEPARATORS = (", ", "; ", "，", "；", "、")
 """The separators of items, in English and Chinese."""
+_FRAME = re.compile(r"([#*=~+_-])\1{7,}|(?<!\S)[#*|](?!\S)")
+"""A line of one character, as around a warning, or such a character alone."""
 _TOKEN = re.compile(r"\w+|\s+|[^\w\s]")
 
 
@@ -48,7 +50,12 @@ def shorten(text: str, limit: int) -> str:
 
 
 def shorten_middle(text: str, limit: int) -> str:
-    """Return a text with its beginning and its end, if it is longer than a number of characters."""
+    """Return a text with its beginning and its end, if it is longer than a number of characters.
+
+    Frames of characters around a long text are left out.
+    """
+    if len(text) > limit:
+        text = " ".join(_FRAME.sub(" ", text).split())
     if len(text) <= limit:
         return text
     length = limit // 2

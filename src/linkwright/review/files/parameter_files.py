@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
 from dataclasses import replace
 
@@ -55,6 +56,8 @@ _MIN_VALUES_OF_PART = 3
 _ROUNDING = 1e-9
 """The relative difference up to which two numbers differ only by rounding."""
 _MAX_VALUE_CHARACTERS = 60
+_TRIVIAL = re.compile(r"-?[0.]*|\[\]|\{\}|\[-?[0.]+(, -?[0.]+)*\]|null|~")
+"""A zero or an empty value, which tells less than others."""
 _ITEM_NAME_KEYS = ("name", "id")
 NameRule = Callable[[str, YamlValue, YamlValue], "Phrase | None"]
 """A function that returns the reason why another value of a parameter is breaking, or None if it is not."""
@@ -122,13 +125,19 @@ def _format_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     """Return the names of nodes or keys with their first values."""
     limit = max(_MIN_VALUES_OF_PART, _MAX_VALUES // len(parts))
     texts: list[Phrase] = []
-    for part, values in parts.items():
+    for part, part_values in parts.items():
+        values = _put_trivial_last(part_values) if len(part_values) > limit else part_values
         items = [shorten(item, _MAX_VALUE_CHARACTERS) for item in _list_values(part, values)]
         if part in values:
             texts.append(phrase("{parameter} {value}", parameter=part, value=items[0]))
         else:
             texts.append(phrase("{entry} ({items})", entry=part, items=joined_first(items, limit)))
     return joined_first(texts, MAX_NAMES)
+
+
+def _put_trivial_last(values: Mapping[str, YamlValue]) -> Mapping[str, YamlValue]:
+    """Return values in their order, but with zeros and empty values behind the others."""
+    return dict(sorted(values.items(), key=lambda item: _TRIVIAL.fullmatch(item[1].text) is not None))
 
 
 def _compose_root(text: str) -> yaml.Node | None:

@@ -98,6 +98,8 @@ def _format_link(link: Link) -> Iterator[Phrase]:
         yield _add_count(phrase("collision {shape}", shape=shape), count)
     if link.inertial is not None and link.inertial.has_mass:
         yield phrase("mass {mass:.4g} kg", mass=link.inertial.properties.mass)
+        if not link.inertial.properties.inertia.any():
+            yield phrase("inertia zero")
 
 
 def _to_degrees(angle: float) -> float:
