@@ -154,8 +154,7 @@ def test_many_added_and_removed_fields_share_a_line(repository, compare):
     repository.commit({"p/msg/State.msg": "float32 a\nfloat32 b\nfloat32 c\nint32 id\n"})
     repository.write({"p/msg/State.msg": "int32 id\nstring[] one_name\nbool is_two\nuint8 three_count\n"})
     assert breaking(compare(repository)) == [
-        "fields added: string[] one_name, bool is_two, uint8 three_count",
-        "fields removed: float32 a, float32 b, float32 c",
+        "fields removed: float32 a, float32 b, float32 c; added: string[] one_name, bool is_two, uint8 three_count",
     ]
 
 
@@ -211,14 +210,12 @@ def test_two_fields_or_constants_of_a_message_share_a_line(repository, compare):
     repository.write({path: new})
     found = subject(compare(repository), path)
     assert sentences(found) == [
-        "fields added: bool is_on, uint8[] data",
-        "fields removed: int32 count, string frame",
+        "fields removed: int32 count, string frame; added: bool is_on, uint8[] data",
         "constants added: LEFT = a, RIGHT = b",
         "constants removed: SLOW, FAST",
     ]
     assert [(change.location.line, change.location.is_old) for change in found.changes] == [
         (4, False),
-        (3, True),
         (1, False),
         (1, True),
     ]

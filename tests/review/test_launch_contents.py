@@ -227,7 +227,7 @@ def generate_launch_description():
 """
     repository.write({"arm/launch/arm.launch.py": text})
     assert sentences(subject(compare(repository), "arm/launch/arm.launch.py")) == [
-        "launch file added: use of environment variable 'ARM_MODEL' (required), argument 'gui' (default false)"
+        "launch file added: use of environment variable 'ARM_MODEL' (required), argument 'gui' (default false, unused)"
     ]
 
 
@@ -235,3 +235,52 @@ def test_parameter_from_a_command_is_called_one(review_changes):
     text = '<param name="robot_description" command="xacro {}.xacro"/>'
     changes, _ = review_changes(text.format("a"), text.format("b"))
     assert "$(command xacro a.xacro) -> $(command xacro b.xacro)" in changes[0]
+
+
+@pytest.mark.parametrize(
+    ("child", "tag"),
+    [
+        ('<include file="b.launch">{}</include>', '<remap from="a" to="b"/>'),
+        ('<node pkg="arm" type="arm" name="arm">{}</node>', '<arg name="a" value="b"/>'),
+    ],
+)
+def test_tags_that_roslaunch_ignores_are_named(review_changes, child, tag):
+    other = '<node pkg="cam" type="cam" name="cam"/>'
+    changes, lost = review_changes(other + child.format(""), other + child.format(tag))
+    assert [change for change in changes if "effect" in change] == [
+        f"tag without effect <{tag[1:-2]}> in <{child[1:].split(' ')[0]}> added"
+    ]
+    assert lost == []
+
+
+def test_tags_that_roslaunch_reads_are_not_without_effect(review_changes):
+    node = NODE.replace("</node>", '<env-loader/></node><include file="b.launch"><arg name="a" value="b"/></include>')
+    changes, _ = review_changes("", node.replace("<env-loader/>", ""))
+    assert not [change for change in changes if "effect" in change]
+
+
+UNUSED_ARGUMENT = """<launch>
+  <arg name="rate" default="1"/><arg name="gui" default="false"/>{}
+  <node pkg="arm" type="arm" name="arm" args="$(arg rate)"/>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(
+    ("other", "is_unused"),
+    [
+        ("", True),
+        ('<include file="$(find arm)/launch/b.launch"/>', True),
+        ('<include file="$(find arm)/launch/b.launch" pass_all_args="true"/>', False),
+        ('<include file="$(find-pkg-share arm)/launch/b.launch.py"/>', False),  # ROS 2 passes all arguments
+        ('<group if="$(arg gui)"><node pkg="gui" type="gui" name="gui"/></group>', False),
+    ],
+)
+def test_unused_arguments_of_an_added_launch_file_are_marked(repository, compare, other, is_unused):
+    text = UNUSED_ARGUMENT.format(other)
+    text = text.replace("type=", "exec=").replace("$(arg", "$(var") if "find-pkg-share" in text else text
+    repository.commit({"arm/package.xml": PACKAGE_XML})
+    repository.write({PATH: text})
+    (line,) = sentences(subject(compare(repository), PATH))
+    assert ("argument 'gui' (default false, unused)" in line) is is_unused
+    assert "argument 'rate' (default 1)" in line

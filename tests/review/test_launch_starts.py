@@ -95,7 +95,7 @@ def test_added_launch_file_is_shown_with_the_settings_of_its_actions(repository,
         "launch file added: node 'arm/camera' (name camera, remapping image -> /image, parameter fps 30), "
         "include of '$(find elsewhere)/launch/demo.launch' (pipeline chomp), "
         "parameters of '$(find arm)/config/a.yaml' (if $(arg rate)), "
-        "argument 'robot' (required), argument 'rate' (default 10), argument 'name' (default '')"
+        "argument 'robot' (required), argument 'rate' (default 10), argument 'name' (default '', unused)"
     )
 
 

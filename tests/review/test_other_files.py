@@ -582,6 +582,17 @@ def test_added_file_is_described_by_its_contents(repository, compare, name, text
     assert sentences(subject(compare(repository), f"p/{name}")) == [expected]
 
 
+def test_values_that_tell_most_are_shown_of_a_long_file(repository, compare):
+    """A recorded request of MoveIt has many zeros, and equal tolerances for all joints."""
+    zeros = "\n".join(f"  stamp{number}: {{sec: 0, nanosec: 0, frame: '', names: []}}" for number in range(15))
+    goals = "\n".join(f"  - {{joint_name: j{number}, position: {number}.5, tolerance: 0.01}}" for number in range(6))
+    repository.commit({"p/package.xml": PACKAGE_XML.replace("arm_description", "p")})
+    repository.write({"p/config/goal.yaml": f"request:\n{zeros}\n  goals:\n{goals}"})
+    (line,) = sentences(subject(compare(repository), "p/config/goal.yaml"))
+    assert all(f"position {number}.5" in line for number in range(6))
+    assert "nanosec 0" in line.partition("tolerance 0.01")[2] or "nanosec 0" not in line
+
+
 def test_messages_of_ros1_have_its_types_and_names(repository, compare):
     manifest = PACKAGE_XML.replace("arm_description", "p").replace(
         "<exec_depend>xacro</exec_depend>", "<buildtool_depend>catkin</buildtool_depend>"

@@ -110,4 +110,4 @@ def test_a_launch_file_that_only_the_new_version_can_read_is_shown(repository, c
     repository.write({PATH: text})
     (sentence,) = sentences(subject(compare(repository), PATH))
     assert sentence.startswith("can be read now; in the old version: line ")
-    assert sentence.endswith("; contents: argument 'dock' (default false)")
+    assert sentence.endswith("; contents: argument 'dock' (default false, unused)")

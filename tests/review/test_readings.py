@@ -97,3 +97,12 @@ def test_0_and_1_are_the_values_of_a_boolean_argument_in_a_condition(repository,
     result = compare(repository)
     changes = [change for each in result.subjects for change in each.changes]
     assert ("tower:=1" in str([change.cases for change in changes])) is is_shown
+
+
+def test_conditions_of_a_long_element_are_not_cut(repository, compare):
+    call = f"""<xacro:if value="$(arg tower)"><xacro:camera topic="{"long_" * 20}name"/></xacro:if>"""
+    old = MACRO.format(origin=FIXED)
+    repository.commit({PATH: old})
+    repository.write({PATH: old.replace("</xacro:macro>", f"{call}</xacro:macro>")})
+    (line,) = sentences(subject(compare(repository), PATH))
+    assert line.endswith("... [if $(arg tower)] added")

@@ -245,3 +245,25 @@ def test_topic_of_a_sensor_in_a_macro_is_breaking(package, compare):
     package.commit({path: macro})
     package.write({path: macro.replace("<update", "<topic>imu/data</topic><update")})
     assert breaking(compare(package)) == ["macro 'imu': gazebo imu_link sensor imu topic imu/data added"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("<range>", "<range>+", "sensor lidar lidar range text between its elements: (empty) -> +"),
+        ("<topic>scan<", "<topic>laser<", "sensor lidar topic: scan -> laser"),
+        ("</sensor>", "+<visualize>1</visualize></sensor>", "sensor lidar text between its elements: (empty) -> +"),
+    ],
+)
+def test_text_between_elements_is_called_so(repository, compare, old, new, line):
+    """It is a character that a patch left over, for example, and has no meaning."""
+    repository.commit({PATH: WORLD})
+    repository.write({PATH: WORLD.replace(old, new)})
+    assert f"{ROBOT} link base {line}" in sentences(subject(compare(repository), PATH))
+
+
+def test_added_element_is_shown_without_text_between_its_elements(repository, compare):
+    repository.commit({PATH: WORLD.replace(SENSOR, "")})
+    repository.write({PATH: WORLD.replace("<range>", "+<range>+")})
+    (line,) = sentences(subject(compare(repository), PATH))
+    assert "+" not in line

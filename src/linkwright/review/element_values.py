@@ -16,11 +16,12 @@ _NAMED_BY_CHILD = "include"
 def format_own_content(element: Element, skipped: Collection[str] = ()) -> str:
     """Return the attributes and the text of an element.
 
-    Its name and the skipped attributes are omitted.
+    Its name and the skipped attributes are omitted, and so is a text between elements in it, which means nothing.
     """
     attributes = element.attributes.items()
     words = [f"{name}={value}" for name, value in attributes if name != "name" and name not in skipped]
-    return " ".join([*words, round_numbers(element.text())]).strip()
+    text = "" if any(element.elements()) else round_numbers(element.text())
+    return " ".join([*words, text]).strip()
 
 
 def format_values(element: Element, limit: int, skipped: Collection[str] = ()) -> Phrase | None:

@@ -18,6 +18,8 @@ from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.xmltree import Element
 
 _ATTRIBUTES_WITHOUT_NUMBERS = frozenset({"name", "reference", "filename", "version"})
+_STRAY_TEXT = "text between its elements"
+"""The end of the path of a text that means nothing, such as a character left over from a patch."""
 _Rest = dict[str, list[tuple[str, Element]]]
 """Elements with their keys, by tag and name."""
 _PLUGIN_NAMESPACE = "ros namespace"
@@ -155,7 +157,9 @@ class ElementComparison:
         texts = " ".join(old.text().split()), " ".join(new.text().split())
         if not self._same_text(*(_complete_namespace(path, text) for text in texts)):
             shown = round_numbers(texts[0]), round_numbers(texts[1])
-            yield Difference("extension", name, "changed", path, *shown, "", location_of(old), location_of(new))
+            is_stray = all(any(each.elements()) or not text for each, text in zip((old, new), texts, strict=True))
+            text_path = f"{path} {_STRAY_TEXT}".strip() if is_stray else path
+            yield Difference("extension", name, "changed", text_path, *shown, "", location_of(old), location_of(new))
         yield from self.child_differences(list(old.elements()), list(new.elements()), path, (name, old, new))
 
     def _normalize_old_text(self, text: str) -> str:

@@ -376,19 +376,21 @@ def _have_same_type(old: Field, new: Field, packages: Sequence[str]) -> bool:
 def _list_fields(
     pair: FilePair, old: Mapping[str, Field], new: Mapping[str, Field], part: str, locations: _Locations
 ) -> set[str]:
-    """Report several added or removed fields in one line each, and return the names of these fields."""
-    listed: set[str] = set()
-    for own, other, is_old in ((new, old, False), (old, new, True)):
-        names = [name for name in own if name not in other]
-        if len(names) >= _MIN_LISTED:
-            is_ros1 = _is_ros1(pair.old_file if is_old else pair.new_file)
-            items = [f"{_format_type(own[name], is_ros1=is_ros1)} {part}{name}" for name in names]
-            text = phrase("fields added: {names}", names=joined_first(items, MAX_NAMES))
-            if is_old:
-                text = phrase("fields removed: {names}", names=joined_first(items, MAX_NAMES))
-            pair.add(text, locations.find(names[0], is_old=is_old), _make_exchange_reason())
-            listed.update(names)
-    return listed
+    """Report added and removed fields in one line if they are several, and return their names."""
+    added, removed = ([name for name in own if name not in other] for own, other in ((new, old), (old, new)))
+    if max(len(added), len(removed)) < _MIN_LISTED:
+        return set()
+    items = [
+        joined_first([f"{_format_type(own[name], is_ros1=_is_ros1(file))} {part}{name}" for name in names], MAX_NAMES)
+        for own, names, file in ((new, added, pair.new_file), (old, removed, pair.old_file))
+    ]
+    text = phrase("fields removed: {old}; added: {new}", old=items[1], new=items[0])
+    if not removed:
+        text = phrase("fields added: {names}", names=items[0])
+    elif not added:
+        text = phrase("fields removed: {names}", names=items[1])
+    pair.add(text, locations.find((added or removed)[0], is_old=not added), _make_exchange_reason())
+    return {*added, *removed}
 
 
 def _make_exchange_reason() -> Phrase:

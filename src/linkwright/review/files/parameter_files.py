@@ -5,15 +5,17 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Callable, Collection, Hashable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 import yaml
 
 from linkwright.diagnostics import Phrase, joined_first, phrase
+from linkwright.diagnostics.phrase import count_shown
 from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
-from linkwright.review.excerpts import shorten
+from linkwright.review.excerpts import shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.bridges import compare_bridges, read_bridges
 from linkwright.review.files.generated_parameters import compare_generated_parameters, is_parameter_description
@@ -52,12 +54,12 @@ from linkwright.review.versions import Version
 
 _MAX_VALUES = 32
 """The maximum number of values in the line about an added file, divided among the nodes or keys."""
+_NEUTRAL_VALUE = re.compile(r" (?:[-+]?0*\.?0*(?:e[-+]?\d+)?|''|\[\]|\{\}|null|~)$")
+"""A value of zero, or none. Recorded messages have many of them, which say less than the others."""
 _MIN_VALUES_OF_PART = 3
 _ROUNDING = 1e-9
 """The relative difference up to which two numbers differ only by rounding."""
 _MAX_VALUE_CHARACTERS = 60
-_TRIVIAL = re.compile(r"-?[0.]*|\[\]|\{\}|\[-?[0.]+(, -?[0.]+)*\]|null|~")
-"""A zero or an empty value, which tells less than others."""
 _ITEM_NAME_KEYS = ("name", "id")
 NameRule = Callable[[str, YamlValue, YamlValue], "Phrase | None"]
 """A function that returns the reason why another value of a parameter is breaking, or None if it is not."""
@@ -124,20 +126,29 @@ def parameter_contents(version: Version, path: str) -> Phrase | None:
 def _format_values(parts: Mapping[str, Mapping[str, YamlValue]]) -> Phrase:
     """Return the names of nodes or keys with their first values."""
     limit = max(_MIN_VALUES_OF_PART, _MAX_VALUES // len(parts))
+    listed = {part: _list_values(part, values) for part, values in parts.items()}
+    ranks = {part: _rank_values(items) for part, items in listed.items()}
+    telling = {part: part_ranks.count(0) for part, part_ranks in ranks.items()}
     texts: list[Phrase] = []
-    for part, part_values in parts.items():
-        values = _put_trivial_last(part_values) if len(part_values) > limit else part_values
-        items = [shorten(item, _MAX_VALUE_CHARACTERS) for item in _list_values(part, values)]
+    for part, values in parts.items():
+        items = [shorten_middle(item, _MAX_VALUE_CHARACTERS) for item in listed[part]]
+        if len(items) > count_shown(len(items), limit):
+            items = [item for _, item in sorted(zip(ranks[part], items, strict=True), key=lambda pair: pair[0])]
+        own_limit = max(limit, telling[part]) if sum(telling.values()) <= _MAX_VALUES else limit
         if part in values:
             texts.append(phrase("{parameter} {value}", parameter=part, value=items[0]))
         else:
-            texts.append(phrase("{entry} ({items})", entry=part, items=joined_first(items, limit)))
+            texts.append(phrase("{entry} ({items})", entry=part, items=joined_first(items, own_limit)))
     return joined_first(texts, MAX_NAMES)
 
 
-def _put_trivial_last(values: Mapping[str, YamlValue]) -> Mapping[str, YamlValue]:
-    """Return values in their order, but with zeros and empty values behind the others."""
-    return dict(sorted(values.items(), key=lambda item: _TRIVIAL.fullmatch(item[1].text) is not None))
+def _rank_values(items: Sequence[str]) -> list[int]:
+    """Return how little each value of a long list tells: those that other parts repeat, and zeros at last."""
+    ends = [item[item.rfind(".", 0, item.find(" ")) + 1 :] for item in items]
+    counts = Counter(ends)
+    return [
+        2 if _NEUTRAL_VALUE.search(item) else 1 if counts[end] > 1 else 0 for item, end in zip(items, ends, strict=True)
+    ]
 
 
 def _compose_root(text: str) -> yaml.Node | None:

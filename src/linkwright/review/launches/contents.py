@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from pathlib import Path
+
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
-from linkwright.review.launches.outlines import READING, SERVER_PARAMETER, TEST, Entry
+from linkwright.review.launches.argument_uses import read_code, uses_argument
+from linkwright.review.launches.outlines import IGNORED_TAG, READING, SERVER_PARAMETER, TEST, Entry, LaunchOutline
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import format_settings, format_title
+from linkwright.review.launches.unused_arguments import PASSING_ATTRIBUTE
 from linkwright.review.versions import Version
 
 _SHOWN_KINDS = (
     "node", TEST, "process", "action", "include", "parameters", "parameter", SERVER_PARAMETER, "remapping",
     "environment",
-    READING, "handler", "argument",
+    READING, "handler", IGNORED_TAG, "argument",
 )  # fmt: skip
 _MAX_SETTINGS = 8
 """The maximum number of settings of each action in the line."""
@@ -30,16 +35,33 @@ def launch_contents(version: Version, path: str) -> Phrase | None:
     Raises:
         LinkwrightError, UnreadableFileError, OSError, ValueError: the file cannot be read.
     """
-    entries = read_outline(version.file(path), version.root).entries
+    outline = read_outline(version.file(path), version.root)
+    unused = _find_unused_arguments(version.file(path), outline)
     entries = [
-        entry for entry in entries if entry.kind in _SHOWN_KINDS and not (entry.kind == READING and entry.settings)
+        entry
+        for entry in outline.entries
+        if entry.kind in _SHOWN_KINDS and not (entry.kind == READING and entry.settings)
     ]
     sorted_entries = sorted(entries, key=lambda entry: _SHOWN_KINDS.index(entry.kind))
-    titles = list(dict.fromkeys(map(_format_title_with_settings, sorted_entries)))
+    titles = list(dict.fromkeys(_format_title_with_settings(entry, unused) for entry in sorted_entries))
     return joined_first(titles, MAX_NAMES) if titles else None
 
 
-def _format_title_with_settings(entry: Entry) -> Phrase:
+def _find_unused_arguments(file: Path, outline: LaunchOutline) -> frozenset[str]:
+    """Return the arguments that certainly have no effect.
+
+    Included files of ROS 2 and unknown actions may use any argument.
+    """
+    names = [entry.name for entry in outline.entries if entry.kind == "argument" and "value" not in entry.settings]
+    has_include = any(entry.kind == "include" for entry in outline.entries) and not outline.is_ros1
+    if not names or has_include or outline.has_unknown_actions or PASSING_ATTRIBUTE in read_code(file):
+        return frozenset()
+    if any(entry.kind == "action" for entry in outline.entries):
+        return frozenset()
+    return frozenset(name for name in names if not uses_argument(file, name, outline.entries))
+
+
+def _format_title_with_settings(entry: Entry, unused: Collection[str]) -> Phrase:
     """Return the title of an action with its settings, such as the default of an argument."""
     items = format_settings(entry, _MAX_SETTINGS)
     if entry.kind == READING:
@@ -48,4 +70,6 @@ def _format_title_with_settings(entry: Entry) -> Phrase:
         if items is None:
             return phrase("{entry} (required)", entry=format_title(entry))
         return phrase("{entry} ({items}, required)", entry=format_title(entry), items=items)
+    if entry.kind == "argument" and entry.name in unused and items is not None:
+        return phrase("{entry} ({items}, unused)", entry=format_title(entry), items=items)
     return format_title(entry) if items is None else phrase("{entry} ({items})", entry=format_title(entry), items=items)

@@ -18,6 +18,7 @@ from linkwright.review.launches.outlines import (
     CONDITION,
     DELETION,
     ENVIRONMENT,
+    IGNORED_TAG,
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PARAMETER,
@@ -43,6 +44,12 @@ _NODE_TAGS = ("node", "lifecycle_node", "composable_node", "node_container")
 _NAMESPACE_TAGS = ("push_ros_namespace", "push-ros-namespace", "push_namespace")
 _ENVIRONMENT_TAGS = ("set_env", "env", "append_env", "unset_env")
 _REMAPPING_TAGS = ("remap", "set_remap")
+_CHILDREN_IN_ROS1 = {
+    "include": frozenset({"arg", "env"}),
+    "node": frozenset({"remap", "param", "rosparam", "env"}),
+    TEST: frozenset({"remap", "param", "rosparam", "env"}),
+}
+"""The children that roslaunch reads; see ``roslaunch/xmlloader.py``. It only prints a warning about others."""
 _CONDITION_ATTRIBUTES = ("if", "unless")
 _ROSPARAM_TAG = "rosparam"
 _IGNORED_ATTRIBUTES = frozenset({"pkg", "exec", "type", "plugin", "description", "doc", "cmd"})
@@ -77,6 +84,7 @@ def read_markup_outline(root: LaunchTag) -> LaunchOutline:
     is_ros1 = any(map(_is_ros1, _walk_tags(root)))
     if is_ros1:
         entries = [replace(entry, kind=SERVER_PARAMETER) if entry.kind == "parameter" else entry for entry in entries]
+        entries += (entry for tag in _walk_tags(root) for entry in _find_ignored_tags(tag))
     return LaunchOutline([*entries, *find_markup_readings(_walk_values(root))], other_code, is_ros1=is_ros1)
 
 
@@ -93,6 +101,15 @@ def _walk_tags(tag: LaunchTag) -> Iterator[LaunchTag]:
     yield tag
     for child in tag.children:
         yield from _walk_tags(child)
+
+
+def _find_ignored_tags(tag: LaunchTag) -> Iterator[Entry]:
+    """Yield the children that roslaunch ignores."""
+    known = _CHILDREN_IN_ROS1.get(tag.name)
+    for child in tag.children:
+        if known is not None and child.name not in known:
+            words = [child.name, *(f'{name}="{value}"' for name, value in child.attributes.items())]
+            yield Entry(IGNORED_TAG, f"<{' '.join(words)}> in <{tag.name}>", {}, child.span)
 
 
 def _walk_values(tag: LaunchTag) -> Iterator[tuple[str, Span]]:

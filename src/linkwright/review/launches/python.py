@@ -29,7 +29,6 @@ from linkwright.review.launches.python_syntax import (
     find_added_action,
     find_missing_argument,
     find_name_and_value,
-    find_own_default,
     find_unused_values,
 )
 from linkwright.review.launches.python_tests import read_tests

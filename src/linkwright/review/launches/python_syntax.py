@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Collection, Iterator, Sequence
 
 from linkwright.packages.readers.python_values import PythonFile, called_name
@@ -104,9 +103,3 @@ def find_missing_argument(python: PythonFile, call: ast.Call, names: Collection[
         return None  # a class of another package with the same name
     missing = [name for name in _REQUIRED_ARGUMENTS.get(function, ()) if name not in names]
     return missing[0] if missing else None
-
-
-def find_own_default(name: str, default: str) -> str:
-    """Return the default of an argument, also if it is the argument itself, which has a default of its own."""
-    match = re.fullmatch(rf"\$\(var {re.escape(name)} (?P<default>[^()]*)\)", default)
-    return default if match is None else match["default"]

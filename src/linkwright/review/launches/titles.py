@@ -15,6 +15,7 @@ from linkwright.review.launches.outlines import (
     CONDITION,
     DELETION,
     ENVIRONMENT,
+    IGNORED_TAG,
     LOG_MESSAGE,
     NAMESPACE,
     PROGRAM_KINDS,
@@ -86,6 +87,8 @@ def format_title(entry: Entry) -> Phrase:
         return _format_deletion_title(name)
     if entry.kind == "handler":
         return phrase("event handler {name}", name=name)
+    if entry.kind == IGNORED_TAG:
+        return phrase("tag without effect {tag}", tag=name)
     if entry.kind == LOG_MESSAGE:
         return phrase("log message")
     if entry.kind == READING:

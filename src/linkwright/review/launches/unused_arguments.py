@@ -17,7 +17,7 @@ from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
 from linkwright.review.sources.names import PYTHON_SUFFIX
 
 _ARGUMENT_WITH_DEFAULT = re.compile(r"\$\(var ([\w.-]+) ")
-_PASSING_ATTRIBUTE = "pass_all_args"
+PASSING_ATTRIBUTE = "pass_all_args"
 """The attribute with which an include of ROS 1 passes all arguments."""
 
 
@@ -36,7 +36,7 @@ def report_unused_arguments(
     outline = new.outline
     _report_undeclared(pair, old, outline)
     content = _read_used_code(pair.new_file)
-    if _PASSING_ATTRIBUTE in content:
+    if PASSING_ATTRIBUTE in content:
         return
     arguments = {entry.name for entry in old.entries if _is_argument(entry)}
     switches = {name for name in arguments if _is_switch(name, removed, old)}

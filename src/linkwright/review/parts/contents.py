@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Container, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -49,6 +50,8 @@ _MAX_LINES = 15
 """The maximum number of changes without a reason that are listed for a file."""
 _NAMESPACE = "namespace"
 """A word in plugin tags that do not name a topic or frame by themselves."""
+_CONDITION = re.compile(r" ?\[(?:if|unless) .*\]$")
+"""The conditions at the end of the summary of an element."""
 _XACRO = "xacro:"
 _INCLUDE, _INSERT = "xacro:include", "xacro:insert_block"
 
@@ -548,8 +551,12 @@ def _collect_words(root: Element) -> set[str]:
 
 
 def _truncate(text: str) -> str:
+    """Return a text in one line, cut if it is long, but with all its conditions at the end."""
     text = " ".join(text.split())
-    return text if len(text) <= _MAX_CHARACTERS else f"{text[:_MAX_CHARACTERS]}..."
+    condition = _CONDITION.search(text)
+    end = "" if condition is None else condition[0]
+    start = text.removesuffix(end)
+    return text if len(start) <= _MAX_CHARACTERS else f"{start[:_MAX_CHARACTERS]}...{end}"
 
 
 def _shorten_values(old: str, new: str) -> tuple[str, str]:
