@@ -124,14 +124,14 @@ def is_chosen_value(node: ast.expr) -> bool:
 
 
 def expand_choice(python: PythonFile, node: ast.expr) -> ast.expr:
-    """Return a conditional expression with the constants and conditional values of its names.
+    """Return the values that ``if`` statements give to a name, with the constant that it has otherwise.
 
     Any other expression is returned unchanged.
     """
-    if not isinstance(node, ast.IfExp):
+    if not isinstance(node, ast.IfExp) or not is_chosen_value(node):
         return node
     values = [python.resolved(value) if isinstance(value, ast.Name) else value for value in (node.body, node.orelse)]
-    known = [isinstance(value, (ast.Constant, ast.IfExp)) for value in values]
+    known = [isinstance(value, ast.Constant) or is_chosen_value(value) for value in values]
     body, orelse = (
         expand_choice(python, value) if is_known else before
         for value, is_known, before in zip(values, known, (node.body, node.orelse), strict=True)
