@@ -63,16 +63,3 @@ def test_a_default_that_the_file_splits_is_a_list(review_changes):
         "node 'arm/arm': parameter sources $(var topics).split(,) -> [a, b] (the same by default)",
         "argument 'topics' is no longer used",
     ]
-
-
-def test_a_value_that_if_statements_change_is_shown_with_its_other_values(review_changes):
-    choice = """    rate = 150
-    if context.fast == "true":
-        rate = 600
-    if context.test == "true":
-        rate = 650
-    topics ="""
-    text = LAUNCH.replace("TARGET", '"x"').replace("VALUES", '[{"rate": rate}]').replace("    topics =", choice)
-    found, _ = review_changes("arm.launch.py", text, '{"rate": rate}', '{"rate": 125}')
-    value = "650 if context.test == 'true' else 600 if context.fast == 'true' else 150"
-    assert found[0] == f"node 'arm/arm': parameter rate {value} -> 125"

@@ -123,22 +123,6 @@ def is_chosen_value(node: ast.expr) -> bool:
     return hasattr(node, _CHOSEN_MARK)
 
 
-def expand_choice(python: PythonFile, node: ast.expr) -> ast.expr:
-    """Return the values that ``if`` statements give to a name, with the constant that it has otherwise.
-
-    Any other expression is returned unchanged.
-    """
-    if not isinstance(node, ast.IfExp) or not is_chosen_value(node):
-        return node
-    values = [python.resolved(value) if isinstance(value, ast.Name) else value for value in (node.body, node.orelse)]
-    known = [isinstance(value, ast.Constant) or is_chosen_value(value) for value in values]
-    body, orelse = (
-        expand_choice(python, value) if is_known else before
-        for value, is_known, before in zip(values, known, (node.body, node.orelse), strict=True)
-    )
-    return ast.copy_location(ast.IfExp(node.test, body, orelse), node)
-
-
 def _find_chosen_values(node: ast.If) -> dict[str, ast.expr]:
     """Return the values of the names that a statement assigns, as conditional expressions.
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from linkwright.packages.readers.python_values import PythonFile, argument_of, called_name
 from linkwright.review.launches.expressions import unparse_on_one_line
 from linkwright.review.launches.helpers import HelperFunctions, find_parameter_defaults
-from linkwright.review.launches.names import expand_choice
 from linkwright.review.launches.outlines import ALLOW_SUBSTITUTIONS, split_text, with_condition
 from linkwright.review.launches.python_syntax import find_list_item
 from linkwright.review.launches.python_tests import SUBSTITUTIONS
@@ -412,7 +411,7 @@ class ExpressionTexts:
             return f"{part(node.value)}[{part(node.slice)}]"
         if isinstance(node, ast.Attribute):
             return f"{part(node.value)}.{node.attr}"
-        return unparse_on_one_line(expand_choice(self._python, node))
+        return unparse_on_one_line(node)
 
     def _format_text_part(self, item: ast.expr, part: _Formatter) -> str:
         """Return a part of a formatted text. A substitution in it is an object, which has no value there."""
