@@ -98,7 +98,7 @@ def review_lines(repository, compare):
         ("\n    def reach(self, goal):\n        goal.succeed()\n", "", "code removed: 'Driver.reach()'"),
         ("limit(1)", "limits()", "code changed in 'Driver'"),
         ("class Driver", "import os\n\n\nclass Driver", "imports added: 'import os'"),
-        ("class Driver", "setup()\n\n\nclass Driver", "code changed outside of functions"),
+        ("class Driver", "setup()\n\n\nclass Driver", "outside of functions: `setup()` added"),
     ],
 )  # fmt: skip
 def test_functions_of_python_with_other_code_are_named(review_lines, old, new, expected):
@@ -130,7 +130,8 @@ def test_layout_comments_annotations_and_outputs_of_python_are_not_named(review_
         ("    count(item);\n  }", "  }\n  count(item);", "code changed in 'Rover::onTimer()' (callback of a timer)"),
         ("void Rover::onTimer", "void Rover::tick", "code renamed: 'Rover::onTimer()' -> 'Rover::tick()'"),
         ("void Rover::onTimer", "int half(int x) { return x / 2; }\nvoid Rover::onTimer", "code added: 'half()'"),
-        ("DRIVER_MACRO(Rover)\n", "int size = half(3);\nDRIVER_MACRO(Rover)\n", "code changed outside of functions"),
+        ("DRIVER_MACRO(Rover)\n", "int size = half(3);\nDRIVER_MACRO(Rover)\n",
+         "outside of functions: `int size = half(3)` added"),
     ],
 )  # fmt: skip
 def test_functions_of_cpp_with_other_code_are_named(review_lines, old, new, expected):
@@ -186,10 +187,15 @@ def test_code_that_changes_beside_values_is_told(review_lines, is_function, more
     header = "def main():" if is_function else "if ready():"
     old = f'{header}\n    text = compile("a:(x)")\n    file = open("log", "r")\n    line = file.readline()\n'
     new = old.replace("a:", "a: ").replace('"r")\n', f'"r+")\n{more}')
-    name, other = ("values in main", "in 'main()'") if is_function else ("values", "outside of functions")
+    name = "values in main" if is_function else "values"
     values, *others = review_lines("arm/main.py", old, new)
     assert values.startswith(f"{name}: ")
-    assert others == ([f"code changed {other}"] if more else [])
+    shown = (
+        "code changed in 'main()'"
+        if is_function
+        else "outside of functions: `rest = file.read()` added; `file.truncate()` added"
+    )
+    assert others == ([shown] if more else [])
 
 
 def test_functions_that_move_are_not_named(repository, compare):
@@ -288,14 +294,32 @@ def test_code_outside_of_functions_changes_beside_a_function(review_lines):
     old = "LIMIT = compute(1)\ndef drive():\n    go()\n"
     new = "LIMIT = measure(1)\ndef drive():\n    stop()\n"
     lines = review_lines("arm/src/a.py", old, new)
-    assert lines == ["in 'drive()': `go()` -> `stop()`", "code changed outside of functions"]
+    assert lines == [
+        "in 'drive()': `go()` -> `stop()`",
+        "outside of functions: `LIMIT = compute(1)` -> `LIMIT = measure(1)`",
+    ]
+
+
+def test_many_changed_statements_outside_of_functions_are_not_shown(review_lines):
+    old = "\n".join(f"state_{letter} = compute(a)" for letter in "abcd")
+    assert review_lines("arm/src/a.py", old, old.replace("compute(a)", "measure(a, b)")) == [
+        "code changed outside of functions"
+    ]
+
+
+def test_a_moved_statement_outside_of_functions_is_not_shown(review_lines):
+    old = "first = compute()\nsecond = measure()\nclose()\n"
+    new = "second = measure()\nfirst = compute()\nclose(first)\n"
+    assert review_lines("arm/src/a.py", old, new) == ["outside of functions: `close()` -> `close(first)`"]
 
 
 def test_objects_outside_of_functions_change_beside_a_function(review_lines):
     old = 'ValueArg frame("f", "frame", "map", cmd);\nvoid drive() { go(); }\n'
     new = 'ValueArg base("b", "base-link", "base", cmd);\nvoid drive() { stop(); }\n'
     lines = review_lines("arm/src/a.cpp", old, new)
-    assert lines == ["in 'drive()': `go()` -> `stop()`", "code changed outside of functions"]
+    objects = ('ValueArg frame("f", "frame", "map", cmd)', 'ValueArg base("b", "base-link", "base", cmd)')
+    changed = "outside of functions: `{}` -> `{}`".format(*objects)
+    assert lines == ["in 'drive()': `go()` -> `stop()`", changed]
 
 
 def test_calls_and_declarations_of_a_changed_function_are_not_other_code(review_lines):

@@ -71,7 +71,7 @@ def test_removed_disabled_code_is_no_change(repository, compare):
     ("old", "new", "expected"),
     [
         (make_source(line="f();"), make_source("#ifdef DEBUG", "#endif", line="f();"), "code changed in 'Arm::Arm()'"),
-        (make_source(start="#define DEBUG"), make_source(), "code changed outside of functions"),
+        (make_source(start="#define DEBUG"), make_source(), "outside of functions: `define DEBUG` removed"),
     ],
 )
 def test_conditions_of_other_code_are_compared(repository, compare, old, new, expected):

@@ -58,6 +58,7 @@ def find_code_change(
     has_moved: Callable[[str, Code], bool],
     names: SourceNames,
     renamed_classes: Mapping[str, str],
+    describe_outside: Callable[[], Phrase | None],
 ) -> CodeChange | None:
     """Return the changed functions that no other line names, or None.
 
@@ -72,6 +73,7 @@ def find_code_change(
         has_moved: whether a different source has a function with the same name and code.
         names: the names in the new version.
         renamed_classes: the new names of the renamed classes, by their old names.
+        describe_outside: returns the few statements outside of functions that differ, or None.
     """
     lines = ReportedLines(reported)
     removed = [name for name in old.functions if name not in new.functions and not has_moved(name, old)]
@@ -94,7 +96,8 @@ def find_code_change(
     classes = {name: other for name, other in renamed_classes.items() if not lines.renames(name, other)}
     texts = _format_functions(changed, added, removed, _list_renamed(classes, renamed), names)
     if texts:
-        texts += _format_other_code(old, new, lines)
+        if _has_other_changes(old, new, lines):
+            texts.append(_format_outside(describe_outside))
         new_names = [*(name for _, name in changed), *added, *(name for _, name in renamed)]
         if not new_names and classes:
             return CodeChange(joined(texts, "; "), _find_class_line(new, next(iter(classes.values()))), is_old=False)
@@ -105,9 +108,9 @@ def find_code_change(
     if reported:
         parts = old.outside.get("", ()), new.outside.get("", ())
         is_unreported = lines.has_module_values and lines.has_unreported_change(*parts, "")
-        is_unreported |= bool(lines.shown_functions and _format_other_code(old, new, lines))
-        return _find_module_change(*parts) if is_unreported else None
-    return _find_outside_change(old, new)
+        is_unreported |= bool(lines.shown_functions and _has_other_changes(old, new, lines))
+        return _find_module_change(*parts, describe_outside) if is_unreported else None
+    return _find_outside_change(old, new, describe_outside)
 
 
 def find_added_code(
@@ -170,8 +173,13 @@ def _list_renamed(classes: Mapping[str, str], functions: Sequence[tuple[str, str
     return [*classes.items(), *((f"{old}()", f"{new}()") for old, new in functions)]
 
 
-def _format_other_code(old: Code, new: Code, lines: ReportedLines) -> list[Phrase]:
-    """Return a text for the code outside of functions, if it changes in more than other lines report."""
+def _format_outside(describe_outside: Callable[[], Phrase | None]) -> Phrase:
+    """Return the text for changed code outside of functions."""
+    return describe_outside() or phrase("code changed outside of functions")
+
+
+def _has_other_changes(old: Code, new: Code, lines: ReportedLines) -> bool:
+    """Return whether the code outside of functions changes in more than other lines report."""
     names = old.functions.keys() | new.functions.keys()
     changed = {
         name
@@ -180,7 +188,7 @@ def _format_other_code(old: Code, new: Code, lines: ReportedLines) -> list[Phras
     }
     short_names = {_get_short_name(name) for name in changed}
     before, after = (_without_calls(code.outside.get("", ()), short_names) for code in (old, new))
-    return [phrase("code changed outside of functions")] if lines.has_unreported_change(before, after, "") else []
+    return lines.has_unreported_change(before, after, "")
 
 
 def _without_calls(parts: Sequence[Part], functions: set[str]) -> list[Part]:
@@ -188,7 +196,7 @@ def _without_calls(parts: Sequence[Part], functions: set[str]) -> list[Part]:
     return [part for part in parts if functions.isdisjoint(_CALL.findall(part.text))]
 
 
-def _find_outside_change(old: Code, new: Code) -> CodeChange | None:
+def _find_outside_change(old: Code, new: Code, describe_outside: Callable[[], Phrase | None]) -> CodeChange | None:
     """Return the classes whose code changes outside of functions, or None.
 
     If no class changes, the result tells whether the source changes outside of classes.
@@ -221,17 +229,18 @@ def _find_outside_change(old: Code, new: Code) -> CodeChange | None:
             )
     if texts:
         return CodeChange(joined(texts, "; "), *lines[0])
-    return _find_module_change(old.outside.get("", ()), new.outside.get("", ())) or _compare_imports(
-        old.imports, new.imports
-    )
+    module_change = _find_module_change(old.outside.get("", ()), new.outside.get("", ()), describe_outside)
+    return module_change or _compare_imports(old.imports, new.imports)
 
 
-def _find_module_change(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | None:
+def _find_module_change(
+    old: Sequence[Part], new: Sequence[Part], describe_outside: Callable[[], Phrase | None]
+) -> CodeChange | None:
     """Return the change in the statements outside of functions and classes, or None if they are equal."""
     if _get_texts(old) == _get_texts(new):
         return None
     line = _find_first_line(new, old) if new else _find_first_line(old, new)
-    return CodeChange(phrase("code changed outside of functions"), line, is_old=not new)
+    return CodeChange(_format_outside(describe_outside), line, is_old=not new)
 
 
 def _compare_imports(old: Sequence[Part], new: Sequence[Part]) -> CodeChange | None:
@@ -371,7 +380,7 @@ class ReportedLines:
             return False
         if len(before) * len(after) > _MAX_COMPARED_PAIRS:
             return True
-        has_values = name in self._functions if name else self.has_module_values
+        has_values = self._has_values(name)
         matcher = SequenceMatcher(None, before, after, autojunk=False)
         return any(
             not self._reports(old_part, new_part, has_values=has_values)
@@ -380,13 +389,17 @@ class ReportedLines:
             for old_part, new_part in zip_longest(old[old_start:old_end], new[new_start:new_end])
         )
 
+    def _has_values(self, name: str) -> bool:
+        """Return whether a line reports values of a function, or of the code outside of functions."""
+        return name in self._functions if name else self.has_module_values
+
     def reports(self, part: Part, *, is_old: bool) -> bool:
         """Return whether a line reports a statement that only one version has."""
         return self._reports(part if is_old else None, None if is_old else part, has_values=False)
 
     def reports_pair(self, name: str, old: Part, new: Part) -> bool:
-        """Return whether a line reports the change in a statement of a function."""
-        return self._reports(old, new, has_values=name in self._functions)
+        """Return whether a line reports the change in a statement of a function, or outside of functions."""
+        return self._reports(old, new, has_values=self._has_values(name))
 
     def _reports(self, old: Part | None, new: Part | None, *, has_values: bool) -> bool:
         """Return whether a line reports the change in a statement, which only one version may have."""

@@ -9,6 +9,7 @@ from difflib import SequenceMatcher
 from typing import NamedTuple
 
 from linkwright.diagnostics import Phrase, joined, phrase
+from linkwright.review.changes import Change
 from linkwright.review.excerpts import differing_excerpts, shorten
 from linkwright.review.sources.code import Code, Part
 from linkwright.review.sources.code_changes import CodeChange, ReportedLines, format_function
@@ -107,16 +108,35 @@ def find_shown_statements(old: Code, new: Code, lines: ReportedLines, names: Sou
             )
 
 
+def describe_outside_statements(old: Code, new: Code, reported: Sequence[Change]) -> Phrase | None:
+    """Return the statements outside of functions and classes that differ, or None if they are many or none.
+
+    Args:
+        old: the code of the old version.
+        new: the code of the new version.
+        reported: the other lines about the source.
+    """
+    parts = old.outside.get("", ()), new.outside.get("", ())
+    sides = _Sides(old, new, has_outside=True)
+    differences = list(_compare("", *parts, ReportedLines(reported), sides))
+    if not differences or len(differences) > _MAX_STATEMENTS:
+        return None
+    return phrase("outside of functions: {changes}", changes=_join(differences, 0))
+
+
 class _Sides:
     """Two versions of a source whose functions are compared.
 
     Args:
         old: the code of the old version.
         new: the code of the new version.
+        has_outside: whether the statements outside of functions are compared.
     """
 
-    def __init__(self, old: Code, new: Code) -> None:
+    def __init__(self, old: Code, new: Code, *, has_outside: bool = False) -> None:
         parts = [[part for items in code.functions.values() for part in items] for code in (old, new)]
+        if has_outside:
+            parts = [[*own, *code.outside.get("", ())] for own, code in zip(parts, (old, new), strict=True)]
         counts = [Counter(read_text(part) for part in items) for items in parts]
         self._lost = counts[0] - counts[1], counts[1] - counts[0]
         outside = ([part for items in code.outside.values() for part in items] for code in (old, new))
@@ -177,7 +197,7 @@ def _compare(
     """Yield the statements in which two versions of a function differ.
 
     Args:
-        name: the function.
+        name: the function; empty for the statements outside of functions.
         old: its old statements.
         new: its new statements.
         lines: the other lines about the source.
@@ -192,8 +212,10 @@ def _compare(
     ).get_opcodes():
         if tag == "equal":
             continue
-        before = [parse_part(part, is_head=part is old[0]) for part in sorted_parts[0][old_start:old_end]]
-        after = [parse_part(part, is_head=part is new[0]) for part in sorted_parts[1][new_start:new_end]]
+        before = [
+            parse_part(part, is_head=bool(name) and part is old[0]) for part in sorted_parts[0][old_start:old_end]
+        ]
+        after = [parse_part(part, is_head=bool(name) and part is new[0]) for part in sorted_parts[1][new_start:new_end]]
         for difference in _with_bodies([*_pair(before, after)]):
             if difference.statement.kind is StatementKind.REPORTED or sides.is_left_out(difference, name, lines):
                 continue

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
@@ -28,7 +29,7 @@ from linkwright.review.sources.renamed_words import rename_words
 from linkwright.review.sources.replaced_cpp_literals import find_replaced_cpp_literals
 from linkwright.review.sources.replaced_literals import find_replaced_literals
 from linkwright.review.sources.returned_codes import find_returned_codes
-from linkwright.review.sources.shown_statements import find_shown_statements
+from linkwright.review.sources.shown_statements import describe_outside_statements, find_shown_statements
 from linkwright.review.sources.started_commands import find_command_changes
 
 
@@ -184,7 +185,9 @@ def _compare_code(
     found = find_shown_statements(before, after, ReportedLines(reported), names)
     shown = [_make_code_change(change, file) for change in found]
     yield from shown
-    change = find_code_change(before, after, [*reported, *shown], has_moved, names, renamed)
+    all_reported = [*reported, *shown]
+    describe_outside = partial(describe_outside_statements, before, after, all_reported)
+    change = find_code_change(before, after, all_reported, has_moved, names, renamed, describe_outside)
     if change is not None:
         location = Location(old_path if change.is_old else new_path, change.line, 1, change.is_old)
         yield Change(change.text, location=location, is_code=True)
