@@ -32,6 +32,7 @@ CMAKE = """project(arm)
 find_package(ament_cmake REQUIRED)
 add_executable(filter src/filter.cpp)
 add_executable(other src/other.cpp)
+install(TARGETS filter other DESTINATION lib/${PROJECT_NAME})
 """
 DECLARED = 'this->declare_parameter<std::string>("frame", "odom");'
 

@@ -16,6 +16,7 @@ from linkwright.review.sources.moved_code import MovedCode, find_moved_code, wit
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.reading import read_source_names, try_read_source
 from linkwright.review.sources.renamed_words import find_renamed_words
+from linkwright.review.sources.separate_programs import are_in_separate_programs
 from linkwright.review.sources.unchanged_sources import UnchangedSources, get_counterpart, is_same_topic
 from linkwright.review.sources.used_packages import UsedPackages
 from linkwright.review.versions import Version
@@ -228,10 +229,16 @@ class ChangedSources:
         return not (others.has_name(item) if is_read else others.has_text(item.name))
 
     def find_undeclared_reader(self, item: SourceName, path: str) -> str | None:
-        """Return an unchanged source that gets a parameter which no source of the package declares, or None."""
+        """Return an unchanged source that gets a parameter which no source of the package declares, or None.
+
+        A source in other programs is another node, which failed before.
+        """
         package = self.find_package(path)
-        is_known = package is None or (item.kind, get_comparison_name(item)) in self._known_names
-        return None if package is None or is_known else self._get_unchanged(package).find_undeclared_reader(item.name)
+        if package is None or (item.kind, get_comparison_name(item)) in self._known_names:
+            return None
+        reader = self._get_unchanged(package).find_undeclared_reader(item.name)
+        is_other = reader is not None and are_in_separate_programs(self.version, package, path, [reader])
+        return None if is_other else reader
 
     def _has_in_imported(self, item: SourceName, path: str) -> bool:
         """Return whether a changed source that a source imports or includes has a name."""
