@@ -568,3 +568,26 @@ def test_removed_entry_of_a_file_that_the_old_version_lacks_breaks_nobody(
     result = compare(repository)
     assert expected in sentences(subject(result, "a/CMakeLists.txt"))
     assert any(name in line for line in breaking(result)) is exists
+
+
+@pytest.mark.parametrize(
+    ("condition", "expected"), [("BUILD_TESTING", []), ("BUILD_TOOLS", ["no longer installed: 'share/arm/test/'"])]
+)
+def test_files_that_are_installed_only_for_tests_are_missing_to_nobody(repository, compare, condition, expected):
+    cmake = "cmake_minimum_required(VERSION 3.8)\nproject(arm)\n%sament_package()\n"
+    install = f"if({condition})\n  install(DIRECTORY test/config DESTINATION share/${{PROJECT_NAME}}/test)\nendif()\n"
+    repository.commit({**FILES, "a/CMakeLists.txt": cmake % install, "a/test/config/arm.txt": "rate 10\n"})
+    repository.write({"a/CMakeLists.txt": cmake % ""})
+    result = compare(repository)
+    assert breaking(result) == expected
+    (found,) = [each for each in sentences(subject(result, "a/CMakeLists.txt")) if "installed" in each]
+    assert found == (expected[0] if expected else "no longer installed for tests: 'share/arm/test/'")
+
+
+def test_marker_of_a_package_that_is_built_with_cmake_now_is_not_lost(repository, compare):
+    folder = "share/ament_index/resource_index/packages"
+    setup = f"from setuptools import setup\nsetup(name='arm', data_files=[('{folder}', ['resource/arm'])])\n"
+    repository.commit({"arm/package.xml": PACKAGE_XML, "arm/setup.py": setup, "arm/resource/arm": ""})
+    cmake = "cmake_minimum_required(VERSION 3.8)\nproject(arm)\nament_package()\n"
+    repository.write({"arm/setup.py": None, "arm/resource/arm": None, "arm/CMakeLists.txt": cmake})
+    assert not [line for line in breaking(compare(repository)) if "installed" in line]

@@ -103,3 +103,19 @@ def test_a_fixed_file_that_an_added_argument_chooses_is_told_with_the_setting(re
         "node 'rviz2/rviz2': arguments -d /config/view.rviz -> -d $(var view) (the same by default)",
         "argument 'view' added: default /config/view.rviz",
     ]
+
+
+RENAMED = """<launch>
+  <arg name="robot" default="custom"/>
+  <param name="robot_description"
+    command="$(find xacro)/xacro.py --inorder '$(find arm_description)/robots/arm_$(arg robot).urdf.xacro'"/>
+</launch>
+"""
+
+
+def test_renamed_argument_that_no_longer_chooses_a_file_is_only_renamed(review_changes):
+    new = RENAMED.replace("_$(arg robot)", "").replace("xacro'\"", "xacro' laser:=$(arg laser)\"")
+    new = new.replace('"robot" default="custom"', '"laser" default="front"')
+    changes, breaking = review_changes("arm.launch", RENAMED, RENAMED, new)
+    assert breaking == ["argument 'robot' renamed to 'laser'"]
+    assert not [change for change in changes if "chooses" in change]

@@ -84,3 +84,65 @@ def test_a_prefix_of_frames_that_moves_into_the_included_file_breaks_nobody(repo
     repository.write({included: PREFIXED.format(end=end), including: f"<launch>{call}</launch>"})
     changes = subject(compare(repository), including).changes
     assert any(change.reason is not None for change in changes) is is_breaking
+
+
+OPTIONAL = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import EnvironmentVariable, LaunchConfiguration
+from launch_ros.actions import Node
+import os
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument("ns", default_value=DEFAULT),
+        Node(package="arm", executable="driver"),
+    ])
+"""
+
+
+@pytest.mark.parametrize(
+    ("default", "is_breaking"),
+    [
+        ('EnvironmentVariable("ARM", default_value="")', False),
+        ('os.environ.get("ARM", "")', False),
+        ('os.getenv("ARM", "hero")', True),
+        ('EnvironmentVariable("ARM", default_value="hero")', True),
+    ],
+)
+def test_new_namespace_is_breaking_if_the_default_of_the_environment_variable_is_not_empty(
+    review_changes, default, is_breaking
+):
+    text = OPTIONAL.replace("DEFAULT", default)
+    new = 'executable="driver", namespace=LaunchConfiguration("ns")'
+    changes, found = review_changes("arm.launch.py", text, 'executable="driver"', new)
+    assert (found == changes) is is_breaking
+    assert len(changes) == 1
+
+
+FORMATTED = """from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def make(robots):
+    kind = "arm"
+    for robot in robots:
+        if robot:
+            kind = robot
+    return LaunchDescription([Node(package="arm", executable="driver", name="arm_driver", remappings=[("a", "arm_a")])])
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_breaking"),
+    [
+        ('"arm_driver"', 'f"{kind}_driver"', False),
+        ('"arm_driver"', '"{}_driver".format(kind)', False),
+        ('"arm_driver"', 'f"{kind}_motor"', True),
+        ('"arm_a"', '"%s_a" % kind', False),
+    ],
+)
+def test_unknown_variable_in_a_formatted_name_may_have_the_old_value(review_changes, old, new, is_breaking):
+    changes, found = review_changes("arm.launch.py", FORMATTED, old, new)
+    assert "$(eval kind)" in changes[0]
+    assert bool(found) is is_breaking

@@ -51,6 +51,12 @@ def test_remapping_is_breaking_by_the_side_of_the_node(repository, compare, pack
         ("slam_toolbox/async_slam_toolbox_node", "map", POSSIBLE),
         ("amcl/amcl", "map", None),
         ("map_server/map_server", "map", CERTAIN),
+        ("joint_state_publisher/joint_state_publisher", "follow_joint_trajectory", None),
+        ("joint_state_publisher/joint_state_publisher", "joint_states", CERTAIN),
+        ("joint_state_publisher/joint_state_publisher", "~other", POSSIBLE),
+        ("robot_state_publisher/robot_state_publisher", "robot_description", POSSIBLE),
+        ("move_base/move_base", "base_scan", None),
+        ("move_base/move_base", "NavfnROS/plan", POSSIBLE),
     ],
 )
 def test_topics_of_well_known_programs_have_a_side(repository, compare, program, name, reason):

@@ -32,6 +32,8 @@ def test_actions_of_a_template_are_compared(repository, compare):
 def test_argument_that_a_template_uses_without_declaring_it_is_breaking(repository, compare):
     result = review(repository, compare, TEMPLATE.format(""), TEMPLATE.format(' output="$(arg output)"'))
     assert breaking(result) == ["node 'arm/driver' uses argument 'output', which is not declared"]
+    ((_, change),) = result.breaking_changes
+    assert str(change.reason) == "the launch file fails"
 
 
 @pytest.mark.parametrize("new", [BROKEN, "@(text)\n"])

@@ -137,3 +137,34 @@ def test_a_new_command_that_starts_what_its_package_never_had_is_breaking(reposi
     files = {"arm/CMakeLists.txt": build + install, "arm/launch/arm.launch.py": "", "start.sh": old or ""}
     found = find_breaking(repository, compare, files, {"start.sh": f"{old or ''}{command}\n"})
     assert found == ([] if name is None else [f"starts '{name}' of 'arm', which does not exist"])
+
+
+GUARDED = """if {test}; then
+  python3 arm/scripts/check.py
+elif true; then
+  {second}
+else
+  {third}
+fi
+{last}
+"""
+COMMAND = "python3 arm/scripts/check.py"
+
+
+@pytest.mark.parametrize(
+    ("test", "second", "third", "last", "count"),
+    [
+        ('[ -e "$FOLDER/check.py" ]', ":", ":", ":", 0),
+        ("test -f arm/scripts/check.py", ":", ":", ":", 0),
+        ("command -v check.py", ":", ":", ":", 0),
+        ("[ -e arm/scripts/other.py ]", ":", ":", ":", 1),
+        ("[ ! -e arm/scripts/check.py ]", ":", ":", ":", 1),
+        ("[ -e arm/scripts/check.py ]", COMMAND, COMMAND, COMMAND, 3),
+    ],
+)
+def test_command_that_a_script_only_runs_if_the_file_exists_is_not_breaking(
+    repository, compare, test, second, third, last, count
+):
+    text = GUARDED.format(test=test, second=second, third=third, last=last)
+    found = find_breaking(repository, compare, {"run.sh": text}, {PATH: None})
+    assert found == ["names 'arm/scripts/check.py', which no longer exists"] * count

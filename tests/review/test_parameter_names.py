@@ -132,6 +132,7 @@ def test_renamed_controller_is_compared_with_the_old_one(review_changes):
     ("old", "new", "expected", "is_breaking"),
     [
         ("ros_topic_name: /scan", "ros_topic_name: /laser/scan", "bridge '/scan' renamed to '/laser/scan'", True),
+        ("ros_topic_name: /scan", "ros_topic_name: scan", "bridge '/scan' renamed to 'scan'", False),
         ("msg/LaserScan", "msg/PointCloud2",
          "bridge '/scan': ros_type_name sensor_msgs/msg/LaserScan -> sensor_msgs/msg/PointCloud2", True),
         ("/msg/LaserScan", "/LaserScan",

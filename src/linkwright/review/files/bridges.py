@@ -102,9 +102,10 @@ def _append_contents(text: Phrase, bridge: Bridge) -> Phrase:
 def _take_matching_pairs(old: list[Bridge], new: list[Bridge]) -> Iterator[tuple[Bridge, Bridge]]:
     """Remove the matching bridges from both lists, and yield them as pairs.
 
-    Bridges match if they have the same ROS topic, or else the same simulator topic and type.
+    Bridges match if they have the same ROS topic, with or without the first slash, or else the same simulator topic and
+    type.
     """
-    for keys in (("topic",), ("gz_topic_name", _ROS_TYPE), ("ign_topic_name", _ROS_TYPE)):
+    for keys in (("topic",), ("relative topic",), ("gz_topic_name", _ROS_TYPE), ("ign_topic_name", _ROS_TYPE)):
         for new_bridge in list(new):
             key = _make_match_key(new_bridge, keys)
             old_bridge = next(
@@ -117,7 +118,8 @@ def _take_matching_pairs(old: list[Bridge], new: list[Bridge]) -> Iterator[tuple
 
 
 def _make_match_key(bridge: Bridge, names: Sequence[str]) -> tuple[str, ...] | None:
-    values = [bridge.topic if name == "topic" else bridge.settings.get(name) for name in names]
+    topics = {"topic": bridge.topic, "relative topic": bridge.topic.lstrip("/")}
+    values = [topics[name] if name in topics else bridge.settings.get(name) for name in names]
     known_values = tuple(value for value in values if value)
     return known_values if len(known_values) == len(names) else None
 
@@ -126,7 +128,8 @@ def _compare_settings(pair: FilePair, old: Bridge, new: Bridge) -> None:
     if old.topic != new.topic:
         line, column = new.positions[next(key for key in _TOPIC_KEYS if key in new.settings)]
         text = phrase("bridge '{old}' renamed to '{topic}'", old=old.topic, topic=new.topic)
-        pair.add(text, Location(pair.new_path, line, column), explain_lost_topic(old.topic))
+        is_same = old.topic.lstrip("/") == new.topic.lstrip("/")  # the same name in the empty namespace
+        pair.add(text, Location(pair.new_path, line, column), None if is_same else explain_lost_topic(old.topic))
     for name in dict.fromkeys([*new.settings, *old.settings]):
         before, after = old.settings.get(name), new.settings.get(name)
         is_name = name == next((key for key in _TOPIC_KEYS if key in new.settings), None)

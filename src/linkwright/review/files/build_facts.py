@@ -90,6 +90,7 @@ BUILT_KINDS = (FactKind.BUILT_EXECUTABLE, FactKind.BUILT_LIBRARY, FactKind.BUILT
 ANY_VERSION = "any version"
 """The value for a package without a required version."""
 
+_PACKAGE_MARKERS = "share/ament_index/resource_index/packages/"
 WITHOUT_NOTHING = ", without which nothing is built"
 """The end of the value for a package without which the build file returns."""
 
@@ -184,6 +185,7 @@ class BuildFacts:
         include_folders: the folders relative to the prefix below which other packages find headers.
         private_libraries: the libraries that only targets of the package use.
         output_names: the names of the files of targets that have another name, by target.
+        test_files: the destinations of the files that are installed only for tests.
     """
 
     facts: list[Fact] = field(default_factory=list)
@@ -201,11 +203,19 @@ class BuildFacts:
     has_unknown_sources: bool = False
     private_libraries: frozenset[str] = frozenset()
     output_names: Mapping[str, str] = field(default_factory=dict)
+    test_files: frozenset[str] = frozenset()
 
     @property
     def is_complete(self) -> bool:
         """Whether `files` contains all installed files."""
         return not self.unknown
+
+    def offers_file(self, target: str) -> bool:
+        """Return whether others may look for an installed file.
+
+        They do not look for files of tests, or for the marker of the package, which ``ament_package()`` also installs.
+        """
+        return target not in self.test_files and not target.startswith(_PACKAGE_MARKERS)
 
     def find_include_texts(self, target: str) -> set[str]:
         """Return the texts by which other packages include an installed header; empty if they are unknown."""

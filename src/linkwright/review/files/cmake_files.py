@@ -24,7 +24,7 @@ from linkwright.review.files.build_facts import (
     Fact,
     FactKind,
 )
-from linkwright.review.files.cmake_branches import find_conditions, iterate_conditional_commands
+from linkwright.review.files.cmake_branches import find_conditions, is_test_condition, iterate_conditional_commands
 from linkwright.review.files.cmake_headers import find_header_paths, find_include_folders
 from linkwright.review.files.cmake_targets import (
     builds_test,
@@ -192,6 +192,7 @@ def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
     facts.project = "" if cmake.project is None else cmake.project.text
     try:
         facts.files = {file.destination: file.source for file in cmake.installed_files(package) if file.content is None}
+        facts.test_files = _find_test_files(cmake, package)
     except FileNotFoundError as error:
         facts.unknown |= {str(error)}
     for name, path in programs.items():
@@ -199,6 +200,20 @@ def _read_files(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:
     sources = set(programs.values())
     facts.files = {target: source for target, source in facts.files.items() if source not in sources}
     facts.facts += [Fact(FactKind.MODULE, module) for module in cmake.modules]
+
+
+def _find_test_files(cmake: CMakeFile, package: Path) -> frozenset[str]:
+    """Return the destinations of the files that are installed only for tests."""
+    copies, found = cmake.copies, []
+    for is_test in (True, False):
+        cmake.copies = [rule for rule in copies if all(map(_is_for_tests, rule.items)) is is_test]
+        found.append({file.destination for file in cmake.installed_files(package) if file.content is None})
+    cmake.copies = copies
+    return frozenset(found[0] - found[1])
+
+
+def _is_for_tests(item: Argument) -> bool:
+    return is_test_condition(_get_conditions(item.source).get(item.start, ""))
 
 
 def _drop_missing_sources(facts: BuildFacts, cmake: CMakeFile, package: Path) -> None:

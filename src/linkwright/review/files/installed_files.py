@@ -60,6 +60,11 @@ def compare_installed_files(pair: FilePair, old: BuildFacts, new: BuildFacts) ->
         pair.add(text, None, phrase("code of other packages that includes them does not build"))
     if added and old.unknown <= new.unknown:
         _report_newly_installed_files(pair, old, new, added)
+    for_tests = [target for target in removed if target in old.test_files]
+    if for_tests:
+        names = list_names(summarize_files(for_tests, new.files))
+        pair.add(phrase("no longer installed for tests: {names}", names=names), None)
+    removed = [target for target in removed if old.offers_file(target)]
     if removed:
         reason = phrase("programs that look for the files do not find them")
         pair.changes.append(make_uninstalled_change(summarize_files(removed, new.files), reason))

@@ -43,7 +43,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
     without_condition,
 )
-from linkwright.review.launches.parameter_types import declares_type
+from linkwright.review.launches.parameter_types import accepts_type
 from linkwright.review.launches.simulated_hardware import find_hardware_reason
 from linkwright.review.launches.spawned_names import is_other_group
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names, format_title
@@ -381,7 +381,7 @@ def _find_parameter_reason(
     if switch_reason is not None or new_outline.is_ros1:
         return switch_reason  # ROS 1 converts numbers
     old_value, new_value = _parse_literal(old_name), _parse_literal(new_name)
-    if not old_value or not new_value or declares_type(entry, parameter, new_value, new_outline.root):
+    if not old_value or not new_value or accepts_type(entry, parameter, old_value, new_value, new_outline.root):
         return None
     return find_type_reason(old_value, new_value)
 

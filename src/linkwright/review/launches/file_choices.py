@@ -6,7 +6,7 @@ In the new version, an argument may choose a different file or none.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
@@ -26,12 +26,16 @@ class FileChoices:
         pair: both versions of the launch file.
         old: the old outline, with the new names of arguments.
         new: the outline of the new file.
+        renamed: the new names of renamed arguments, which choose nothing under their old names anyway.
     """
 
-    def __init__(self, pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> None:
+    def __init__(
+        self, pair: FilePair, old: LaunchOutline, new: LaunchOutline, renamed: Collection[str] = frozenset()
+    ) -> None:
         self._pair = pair
         self._old = old
         self._new = new
+        self._renamed = frozenset(renamed)
         self._reported_texts: set[str] = set()
 
     def compare(self, old: Entry, new: Entry) -> None:
@@ -48,7 +52,7 @@ class FileChoices:
     def _compare_files(self, old_path: str, new_path: str, entry: Entry) -> None:
         """Report that an action has a different file, or that different arguments choose it."""
         arguments = {argument.name for argument in self._new.entries if argument.kind == "argument"}
-        lost_arguments = (_find_argument_names(old_path) - _find_argument_names(new_path)) & arguments
+        lost_arguments = (_find_argument_names(old_path) - _find_argument_names(new_path)) & arguments - self._renamed
         old_file, new_file = self._old.resolve(old_path), self._new.resolve(new_path)
         is_known = not _VARIABLE.search(old_file + new_file)
         if lost_arguments:

@@ -108,7 +108,7 @@ def compare_launch_files(pair: FilePair) -> None:
         IncludedActions(pair.versions.new, pair.new_path, new),
     )
     settings = SettingChanges(pair, old, new, renamed, included)
-    choices = FileChoices(pair, old, new)
+    choices = FileChoices(pair, old, new, renamed.values())
     settings.report_renamed()
     removed: list[Entry] = []
     added: list[Entry] = []
@@ -134,7 +134,7 @@ def compare_launch_files(pair: FilePair) -> None:
     if pair.new_file.suffix == PYTHON_SUFFIX:  # callers of either version must pass a required argument
         required = {entry.name for entry in removed if entry.kind == "argument" and "default" not in entry.settings}
         undeclared = {name: entry for name, entry in undeclared.items() if name not in required}
-    _report_undeclared(pair, undeclared, removed)
+    _report_undeclared(pair, undeclared, removed, is_ros1=new.is_ros1)
     removed = [
         entry
         for entry in removed
@@ -182,23 +182,31 @@ def _mark_unbreaking(pair: FilePair, *, keeps_renaming: bool = False) -> None:
     ]
 
 
-def _report_undeclared(pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry]) -> None:
+def _report_undeclared(
+    pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry], *, is_ros1: bool
+) -> None:
     """Report the arguments that only the new version uses without a declaration.
+
+    In ROS 2, a file that starts this one may declare them.
 
     Args:
         pair: both versions of the launch file.
         undeclared: an action that uses each argument, by the name of the argument.
         removed: the actions that only the old version has, such as the declarations of these arguments.
+        is_ros1: whether it is a launch file of ROS 1.
     """
     declared_before = {entry.name for entry in removed if entry.kind == "argument"} & undeclared.keys()
     for name in declared_before:
         text = phrase("argument '{name}' removed", name=name)
         reason = phrase("the launch file still uses '{name}', and fails if no other file declares it", name=name)
+        if is_ros1:
+            reason = phrase("the launch file still uses '{name}', and fails", name=name)
         pair.add(text, pair.location(undeclared[name].span), reason)
     for name, entry in undeclared.items():
         if name not in declared_before:
             text = phrase("{entry} uses argument '{name}', which is not declared", entry=format_title(entry), name=name)
             reason = phrase("the launch file fails if no other file declares '{name}'", name=name)
+            reason = phrase("the launch file fails") if is_ros1 else reason
             pair.add(text, pair.location(entry.span), reason)
 
 

@@ -85,9 +85,16 @@ def find_renaming_reason(
         _strip_known_prefix(old_name) == _strip_known_prefix(new_name)
         or _UNKNOWN_NAME.search(new_name)
         or _has_new_variable(old_name, new_name)
+        or _can_be(new_name, old_name)
     ):
         return None
     return phrase("programs that use the names of the node, its topics or its services do not find them")
+
+
+def _can_be(name: str, other: str) -> bool:
+    """Return whether a name with variables of Python can be another name."""
+    parts = _LOOP_VARIABLE.split(name)
+    return len(parts) > 1 and re.fullmatch(".+".join(map(re.escape, parts)), other) is not None
 
 
 def _strip_known_prefix(name: str) -> str:

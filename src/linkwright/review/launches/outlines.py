@@ -48,7 +48,12 @@ PARAMETER = "parameter "
 ALLOW_SUBSTITUTIONS = "allow_substs"
 """The argument and attribute of a parameter file that lets it contain substitutions."""
 _VARIABLE = re.compile(r"\$\((?:var|arg) (?P<name>[^() ]+)(?: (?P<default>[^()]*))?\)")
-_ENVIRONMENT_SUBSTITUTION = re.compile(r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)")
+_ENVIRONMENT_SUBSTITUTION = re.compile(
+    r"\$\((?:(?:opt)?env [^() ]+ (?P<default>[^()]*)|optenv [^() ]+)\)|"
+    r"\bos\.(?:environ\.get|getenv)\(\w+, (?:default=)?(?P<read>[^()]*)\)"
+)
+"""An environment variable with a default, also as Python reads it."""
+_QUOTED_TEXT = re.compile(r"(?P<quote>['\"])(?P<text>[^'\"]*)(?P=quote)")
 _SPLIT_TEXT = re.compile(r"(?P<text>[^$()]*)\.split\((?P<separator>[^$()]*)\)")
 """A call in Python that splits a known text."""
 _SETTING_CONDITION = re.compile(r" \((?P<condition>(?:if|unless) .*)\)")
@@ -204,9 +209,7 @@ class LaunchOutline:
 
     def _replace_variables(self, text: str) -> str:
         for _ in range(_MAX_VARIABLE_DEPTH):
-            resolved = _ENVIRONMENT_SUBSTITUTION.sub(
-                lambda match: match["default"] or "", _VARIABLE.sub(self._replace_variable, text)
-            )
+            resolved = _ENVIRONMENT_SUBSTITUTION.sub(_find_default, _VARIABLE.sub(self._replace_variable, text))
             if resolved == text or len(resolved) > _MAX_CHARACTERS:
                 break
             text = resolved
@@ -263,6 +266,12 @@ def find_own_default(name: str, text: str) -> str:
     variable = _VARIABLE.fullmatch(text)
     is_own = variable is not None and variable["name"] == name
     return text if variable is None or not is_own else variable["default"] or ""
+
+
+def _find_default(variable: re.Match[str]) -> str:
+    """Return the default of an environment variable, without the quotes around a text."""
+    default = (variable["default"] or variable["read"] or "").strip()
+    return _QUOTED_TEXT.sub(r"\g<text>", default)
 
 
 def _find_only_value(entries: Sequence[Entry]) -> str | None:

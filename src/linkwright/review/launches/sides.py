@@ -50,6 +50,23 @@ _OUTPUTS = {
     "pointcloud_to_laserscan/pointcloud_to_laserscan_node": {"scan"},
 }
 """Topics that well-known programs publish."""
+_ALL_OUTPUTS: dict[str, set[str]] = {
+    "move_base/move_base": {"cmd_vel", "current_goal", "goal", "make_plan", "clear_costmaps", "clear_unknown_space"},
+    "joint_state_publisher/joint_state_publisher": {"joint_states"},
+    "robot_state_publisher/robot_state_publisher": {"robot_description"},
+    "robot_state_publisher/state_publisher": set(),
+    "tf2_ros/static_transform_publisher": set(),
+    "tf/static_transform_publisher": set(),
+    "controller_manager/spawner": set(),
+    "controller_manager/spawner.py": set(),
+    "depthimage_to_laserscan/depthimage_to_laserscan": {"scan"},
+    "pointcloud_to_laserscan/pointcloud_to_laserscan_node": {"scan"},
+    "joy/joy_node": {"joy"},
+}
+"""The topics, services and actions that well-known programs offer, except names with several parts.
+
+The programs use all other names of one word, or lack them.
+"""
 _NAMED_INPUT = re.compile(r"(.*[/_])?(in|input)([/_].*)?")
 _NAMED_OUTPUT = re.compile(r"(.*[/_])?(out|output)([/_].*)?")
 _OFFERING_KINDS = frozenset({NameKind.PUBLISHER, NameKind.SERVICE, NameKind.ACTION})
@@ -90,6 +107,9 @@ def find_side(program: str, name: str, root: Path | None) -> Side:
     if relative_name in _INPUTS.get(program, ()):
         return Side.USES
     if _SUBSCRIBING_PROGRAM.match(program) and _INPUT_TOPIC.fullmatch(relative_name):
+        return Side.USES
+    outputs = _ALL_OUTPUTS.get(program)
+    if outputs is not None and re.fullmatch(r"/?\w+", name) and relative_name not in outputs | _LIBRARY_NAMES:
         return Side.USES
     modules = () if root is None else _find_modules(root, program)
     package = program.partition("/")[0]

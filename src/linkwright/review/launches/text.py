@@ -427,7 +427,9 @@ class ExpressionTexts:
         is_bound = isinstance(node, ast.Name) and node.id in self._bindings
         value = strip_conversion(node if is_bound else self.python.resolved(node))
         is_object = isinstance(value, ast.Call) and called_name(value).rpartition(".")[2] in SUBSTITUTIONS
-        return unparse_on_one_line(value) if is_object else part(value)
+        is_unknown = isinstance(self.python.resolved(value), ast.Name) and ast.unparse(value) not in self._bindings
+        text = unparse_on_one_line(value) if is_object else part(value)
+        return f"$(eval {text})" if is_unknown else text
 
     def is_unknown_item(self, node: ast.Subscript) -> bool:
         """Return whether an expression is an item of the result of an unknown function that has a name.

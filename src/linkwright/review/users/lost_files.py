@@ -71,7 +71,7 @@ def _find_lost_targets(
     lost = []
     for target, source in old.files.items():
         file = sources.get(source)
-        if file is None or target in new.files:
+        if file is None or target in new.files or not old.offers_file(target):
             continue
         if is_compared and file.new_path is not None and _relative_to_package(new, file.new_path) not in installed:
             continue  # the comparison of the build files reports it

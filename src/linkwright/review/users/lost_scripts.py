@@ -33,6 +33,10 @@ _LIST_ITEM = re.compile(r"\s*-\s*[\"']?[\w./*-]+[\"']?\s*")
 """A line of YAML that lists a path, such as one whose changes start a job."""
 _NO_USE = re.compile(r"\s*@?(?:#|echo\b|printf\b)|.*(?:\brm\b|\s-[efrsx]\s|\|\|)")
 """A line that is a comment or a message, removes or tests a file, or continues without it."""
+_BRANCH = re.compile(r"\s*(?:-\s+)?(?P<word>if|elif|else|fi)\b")
+_END_OF_BRANCHES = re.compile(r"\bfi\b")
+_EXISTENCE_TEST = re.compile(r"^(?!.*!)(?:.*\s-[efrsx]\s|.*\b(?:command\s+-v|which|type|hash)\s)")
+"""The test of an ``if`` command for an existing file or program."""
 _YAML_SUFFIXES = (".yml", ".yaml")
 _PROGRAM = FactKind.EXECUTABLE
 
@@ -78,8 +82,10 @@ def _find_missing_starts(versions: Versions, changed_files: Sequence[ChangedFile
     for path in list_command_files(versions.new) if changed else ():
         old_path = changed.get(path)
         old_lines = set(versions.old.text(old_path).splitlines()) if old_path else set()
+        tests = _ShellTests()
         for number, line in enumerate(versions.new.text(path).splitlines() if path in changed else (), 1):
-            run, launch = _RUN.search(line), _LAUNCH.search(line)
+            tests.read(line)
+            run, launch = tests.find_starts(line)
             if line in old_lines or _NO_USE.match(line):
                 continue
             if run is not None and _never_existed(versions, run["package"], run["program"], is_launch=False):
@@ -132,20 +138,62 @@ def _find_commands(versions: Versions, path: str, text: str, lost: _Lost) -> Ite
     """Yield the lines of a file with commands that name something lost."""
     names = "|".join(map(re.escape, sorted(lost.installed))) or "(?!)"
     installed = re.compile(rf"(?<![\w.}}]){_BIN_FOLDERS}(?:{names})(?![\w/.-])")
+    tests = _ShellTests()
     for number, line in enumerate(text.splitlines(), 1):
+        tests.read(line)
         if _NO_USE.match(line) or (path.endswith(_YAML_SUFFIXES) and _LIST_ITEM.fullmatch(line)):
             continue
         for match in _PATH.finditer(line):
             target = _resolve(versions.new, path, match["path"], lost.programs)
-            if target is not None:
+            if target is not None and not tests.find(match["path"]):
                 yield _make_change(phrase("names '{path}', which no longer exists", path=match["path"]), path, number)
-        for match in installed.finditer(line):
+        for match in (match for match in installed.finditer(line) if not tests.find(match[0])):
             yield _make_change(phrase("names '{path}', which is no longer installed", path=match[0]), path, number)
-        run, launch = _RUN.search(line), _LAUNCH.search(line)
-        if run is not None and _is_lost_executable(versions, run["package"], run["program"], lost):
+        run, launch = tests.find_starts(line)
+        if (
+            run is not None
+            and not tests.find(run["program"])
+            and _is_lost_executable(versions, run["package"], run["program"], lost)
+        ):
             yield _make_start_change(run["package"], run["program"], path, number)
-        if launch is not None and _is_lost_launch(versions, launch["package"], launch["file"], lost):
+        if (
+            launch is not None
+            and not tests.find(launch["file"])
+            and _is_lost_launch(versions, launch["package"], launch["file"], lost)
+        ):
             yield _make_start_change(launch["package"], launch["file"], path, number)
+
+
+class _ShellTests:
+    """The tests of a shell script around its lines that hold only if a file or program exists."""
+
+    def __init__(self) -> None:
+        self._tests: list[str] = []
+
+    def read(self, line: str) -> None:
+        """Enter or leave a branch of an ``if`` command."""
+        match = _BRANCH.match(line)
+        if match is None:
+            return
+        if match["word"] == "if" and not _END_OF_BRANCHES.search(line):
+            self._tests.append("")
+        if match["word"] == "fi":
+            del self._tests[-1:]
+        elif self._tests:
+            self._tests[-1] = line if _EXISTENCE_TEST.search(line) else ""
+
+    def find(self, path: str) -> bool:
+        """Return whether a test around the current line names a file or program."""
+        name = re.compile(rf"(?<![\w.-]){re.escape(PurePosixPath(path).name)}(?![\w.-])")
+        return any(name.search(test) for test in self._tests)
+
+    def find_starts(self, line: str) -> tuple[re.Match[str] | None, re.Match[str] | None]:
+        """Return the program and the launch file that a line starts, except those that are tested for."""
+        run, launch = _RUN.search(line), _LAUNCH.search(line)
+        return (
+            None if run is None or self.find(run["program"]) else run,
+            None if launch is None or self.find(launch["file"]) else launch,
+        )
 
 
 def _make_start_change(package: str, name: str, path: str, line: int) -> Change:
