@@ -28,7 +28,7 @@ from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
-from linkwright.review.parts.default_values import is_same_by_default
+from linkwright.review.parts.default_values import is_same_by_default, names_same_topic_by_default
 from linkwright.review.parts.elements import BLOCK, CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
 from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
@@ -393,6 +393,8 @@ class _ReportedDifference:
             return None
         if difference.new_element is None and root.startswith("gazebo"):
             return self._find_lost_name_reason(old)
+        if names_same_topic_by_default(self.pair, self.macro, difference):
+            return None
         if difference.is_whole and not name:
             return find_extension_reason(Difference("extension", root, "removed"))
         changed = Difference("extension", root, "changed", name, difference.old or "-", difference.new)
