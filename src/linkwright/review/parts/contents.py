@@ -28,6 +28,7 @@ from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
+from linkwright.review.parts.default_conditions import find_missing_part_reason, find_missing_plugin_reason
 from linkwright.review.parts.default_values import is_same_by_default, names_same_topic_by_default
 from linkwright.review.parts.elements import BLOCK, CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
@@ -399,7 +400,8 @@ class _ReportedDifference:
             return find_extension_reason(Difference("extension", root, "removed"))
         changed = Difference("extension", root, "changed", name, difference.old or "-", difference.new)
         return (
-            find_extension_reason(changed)
+            find_missing_plugin_reason(self.pair, self.macro, difference)
+            or find_extension_reason(changed)
             or find_controller_file_reason(changed, self.pair.versions)
             or find_simulator_reason(changed, self.pair.versions.new, self.pair.new_path)
         )
@@ -433,6 +435,8 @@ class _ReportedDifference:
         added = [condition for condition in new.split(CONDITION_SEPARATOR) if condition not in old_conditions]
         is_further = len(added) == len(new.split(CONDITION_SEPARATOR)) - len(list(filter(None, old_conditions)))
         reason = find_left_out_reason(self.pair.new, added) if is_further else None
+        if reason is None and is_further:
+            reason = find_missing_part_reason(self.pair, self.macro, self.difference)
         return reason or find_lost_choice_reason(old, new)
 
     def _find_default_topic_reason(self) -> Phrase | None:
