@@ -32,6 +32,7 @@ from linkwright.review.parts.default_conditions import find_missing_part_reason,
 from linkwright.review.parts.default_values import is_same_by_default, names_same_topic_by_default
 from linkwright.review.parts.elements import BLOCK, CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
+from linkwright.review.parts.made_names import makes_same_names
 from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
@@ -467,7 +468,7 @@ class _ReportedDifference:
             removed = Difference("extension", f"{ROS2_CONTROL} {name}", "removed")
             return find_extension_reason(removed) if self.difference.new_element is None else None
         is_lost = is_call and name not in _collect_words(self.pair.new.root) and not self._calls_missing_macro(old)
-        return call_reason(name) if is_lost else None
+        return call_reason(name) if is_lost and not makes_same_names(self.pair, self.macro, old) else None
 
     def _calls_missing_macro(self, call: Element) -> bool:
         """Return whether the old version could not expand a call, because a file of the repository does not exist."""

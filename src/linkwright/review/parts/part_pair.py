@@ -78,9 +78,13 @@ class PartPair:
             for element in outline.root.elements()
         )
 
+    def find_called_macros(self, call: Element) -> Sequence[MacroOutline]:
+        """Return the macros of the old repository that an old call may name."""
+        return _find_called(self.find_old_macros, call)
+
     def names_hardware(self, call: Element) -> bool:
         """Return whether the name in an old call of a macro of the repository is only that of a ``<ros2_control>``."""
-        macros = _find_called(self.find_old_macros, call)
+        macros = self.find_called_macros(call)
         uses = [element for macro in macros for element in macro.element.walk() if uses_name(element, "name")]
         return bool(uses) and all(element.tag == ROS2_CONTROL for element in uses)
 
