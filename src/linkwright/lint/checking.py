@@ -74,6 +74,7 @@ class Checker:
         config: the settings file to use instead of the nearest one.
         folders: the folders to search for packages, in addition to those around each file.
         shares: the share folders of packages that take precedence, such as those of a commit, by name.
+        overlay: texts that replace the contents of the files of `check`.
     """
 
     values: Mapping[str, str] = field(default_factory=dict)
@@ -82,6 +83,7 @@ class Checker:
     config: Path | None = None
     folders: tuple[Path, ...] = ()
     shares: Mapping[str, Path] = field(default_factory=dict)
+    overlay: Overlay | None = None
     _finders: dict[Path, PackageFinder] = field(default_factory=dict)
     _callers: list[ArgumentSets] = field(default_factory=list)
 
@@ -129,7 +131,7 @@ class Checker:
         examined_files: list[Examined] = []
         all_settings_findings: list[tuple[Diagnostic, ...]] = []
         for file in targets.files:
-            checked, settings_findings = self.check_file(file, targets, contexts=contexts)
+            checked, settings_findings = self.check_file(file, targets, self.overlay, contexts)
             if on_checked is not None:
                 on_checked(checked)
             examined_files.append(Examined.of(checked, file))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import PurePosixPath
 
 from linkwright.descriptions.comparison import Difference
@@ -27,7 +27,7 @@ _TOPIC_TAGS = re.compile(r"topic", re.IGNORECASE)
 _PART_TAGS = ("plugin", "sensor")
 _SENSOR_TOPIC = re.compile(r"(?:.* )?sensor (?P<name>\S+) topic")
 """The path of the topic of a sensor."""
-_PLUGIN_PARAMETER = re.compile(r"plugin (?P<name>\S+) (?:\S+ )*(?P<tag>\S+)")
+_PLUGIN_PARAMETER = re.compile(r"plugin (?P<name>\S+) (?:\S+ )*?(?P<tag>\S+)(?: \d+)?")
 """The path of a parameter of a plugin."""
 _MAX_VALUES = 12
 """The maximum number of values of a plugin, sensor or other element in a line."""
@@ -224,20 +224,34 @@ def names_same_topic(difference: Difference, old: Iterable[Element], new: Iterab
     match = _PLUGIN_PARAMETER.fullmatch(difference.property)
     if match is None or difference.kind != "changed" or not difference.old or not difference.new:
         return False
-    is_topic = _TOPIC_TAGS.search(match["tag"]) is not None
-    if not is_topic or difference.old.strip().lstrip("/") != difference.new.strip().lstrip("/"):
+    is_topic = _TOPIC_TAGS.search(match["tag"]) is not None or match["tag"] == "remapping"
+    if not is_topic or not differ_only_in_slash(difference.old, difference.new):
         return False
-    return all(_is_in_root_namespace(elements, match["name"]) for elements in (old, new))
+    return all(is_in_root_namespace(elements, match["name"]) for elements in (old, new))
 
 
-def _is_in_root_namespace(elements: Iterable[Element], name: str) -> bool:
+def differ_only_in_slash(old: str, new: str) -> bool:
+    """Return whether two topics or remappings name the same topics except for the slash at the start."""
+    return [part.strip().lstrip("/") for part in old.split(":=")] == [
+        part.strip().lstrip("/") for part in new.split(":=")
+    ]
+
+
+def is_in_root_namespace(elements: Iterable[Element], name: str, evaluate: Callable[[str], str] = str) -> bool:
     """Return whether all plugins of a name are in the root namespace.
 
     Without a namespace, a plugin of ``gazebo_ros`` for ROS 1 is in that of its model.
+
+    Args:
+        elements: the elements with the plugins.
+        name: the name of the plugins.
+        evaluate: a function that returns the value of an unexpanded text.
     """
     plugins = [plugin for element in elements for plugin in find_plugins(element) if find_plugin_name(plugin) == name]
     for plugin in plugins:
-        spaces = [child.text().strip("/ \t\n") for child in plugin.walk() if NAMESPACE_TAG.search(child.tag)]
+        spaces = [
+            evaluate(child.text().strip()).strip("/ ") for child in plugin.walk() if NAMESPACE_TAG.search(child.tag)
+        ]
         is_classic = "gazebo_ros" in plugin.attributes.get("filename", "") and plugin.first("ros") is None
         if any(spaces) or (is_classic and not spaces):
             return False

@@ -135,9 +135,9 @@ class Version:
     def checker(self) -> Checker:
         """Return a checker that finds the packages of this version.
 
-        They take precedence over those of the working tree.
+        They take precedence over those of the working tree. Calls without the prefix are those of the compared robots.
         """
-        return Checker(folders=(self.root,), shares=self.shares)
+        return Checker(folders=(self.root,), shares=self.shares, overlay=self.overlay)
 
     def model(self, path: str, values: Mapping[str, str]) -> Model:
         """Return the model of a description in this version with values of its arguments."""

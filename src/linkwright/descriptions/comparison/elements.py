@@ -98,7 +98,7 @@ class ElementComparison:
             old_items, new_items = old_rest.get(base, []), new_rest.get(base, [])
             if old_items and new_items and new_items[0][1].tag == GAZEBO:
                 old_items, new_items = _join_gazebo_elements(base, old_items), _join_gazebo_elements(base, new_items)
-            for old_item, new_item in zip_longest(old_items, new_items):
+            for old_item, new_item in zip_longest(*_align_remappings(old_items, new_items)):
                 key, _ = new_item or old_item
                 yield key, old_item and old_item[1], new_item and new_item[1]
 
@@ -239,6 +239,27 @@ def _remove_common(
 def _join_gazebo_elements(base: str, items: Sequence[tuple[str, Element]]) -> list[tuple[str, Element]]:
     """Return the ``<gazebo>`` elements of a link as one, with the key of a lone one."""
     return [(base.strip(), joined_block([element for _, element in items]))]
+
+
+def _align_remappings(
+    old: list[tuple[str, Element]], new: list[tuple[str, Element]]
+) -> tuple[list[tuple[str, Element]], list[tuple[str, Element]]]:
+    """Return elements with the same tag and name, the remappings of the same name first, at the same places."""
+    aligned_old, aligned_new, others = [], [], list(new)
+    for item in old:
+        name = find_remapped_name(item[1])
+        match = next((other for other in others if name and find_remapped_name(other[1]) == name), None)
+        if match is not None:
+            aligned_old.append(item)
+            aligned_new.append(match)
+            others.remove(match)
+    return [*aligned_old, *(item for item in old if item not in aligned_old)], [*aligned_new, *others]
+
+
+def find_remapped_name(element: Element) -> str | None:
+    """Return the name that a ``<remapping>`` of a plugin replaces, without the first slash; None for other elements."""
+    name, sign, _ = element.text().partition(":=")
+    return name.strip().removeprefix("/") if sign and element.tag == "remapping" else None
 
 
 def _find_name(element: Element, parts: Mapping[int, str]) -> str | None:

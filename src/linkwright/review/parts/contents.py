@@ -28,9 +28,11 @@ from linkwright.review.joint_limits import find_written_reason
 from linkwright.review.merged_reasons import merge_reasons
 from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import find_left_out_reason, find_lost_choice_reason
-from linkwright.review.parts.default_values import is_same_by_default
+from linkwright.review.parts.default_conditions import find_missing_part_reason, find_missing_plugin_reason
+from linkwright.review.parts.default_values import is_same_by_default, names_same_topic_by_default
 from linkwright.review.parts.elements import BLOCK, CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
+from linkwright.review.parts.made_names import makes_same_names
 from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
 from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
 from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
@@ -393,11 +395,14 @@ class _ReportedDifference:
             return None
         if difference.new_element is None and root.startswith("gazebo"):
             return self._find_lost_name_reason(old)
+        if names_same_topic_by_default(self.pair, self.macro, difference):
+            return None
         if difference.is_whole and not name:
             return find_extension_reason(Difference("extension", root, "removed"))
         changed = Difference("extension", root, "changed", name, difference.old or "-", difference.new)
         return (
-            find_extension_reason(changed)
+            find_missing_plugin_reason(self.pair, self.macro, difference)
+            or find_extension_reason(changed)
             or find_controller_file_reason(changed, self.pair.versions)
             or find_simulator_reason(changed, self.pair.versions.new, self.pair.new_path)
         )
@@ -431,6 +436,8 @@ class _ReportedDifference:
         added = [condition for condition in new.split(CONDITION_SEPARATOR) if condition not in old_conditions]
         is_further = len(added) == len(new.split(CONDITION_SEPARATOR)) - len(list(filter(None, old_conditions)))
         reason = find_left_out_reason(self.pair.new, added) if is_further else None
+        if reason is None and is_further:
+            reason = find_missing_part_reason(self.pair, self.macro, self.difference)
         return reason or find_lost_choice_reason(old, new)
 
     def _find_default_topic_reason(self) -> Phrase | None:
@@ -461,7 +468,7 @@ class _ReportedDifference:
             removed = Difference("extension", f"{ROS2_CONTROL} {name}", "removed")
             return find_extension_reason(removed) if self.difference.new_element is None else None
         is_lost = is_call and name not in _collect_words(self.pair.new.root) and not self._calls_missing_macro(old)
-        return call_reason(name) if is_lost else None
+        return call_reason(name) if is_lost and not makes_same_names(self.pair, self.macro, old) else None
 
     def _calls_missing_macro(self, call: Element) -> bool:
         """Return whether the old version could not expand a call, because a file of the repository does not exist."""

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from itertools import chain
 
+from linkwright.descriptions.comparison import find_remapped_name
 from linkwright.review.parts.elements import PartDifference
-from linkwright.review.parts.name_substitution import iterate_properties
-from linkwright.review.parts.outline import MacroOutline
+from linkwright.review.parts.known_values import collect_values, evaluate_text
 from linkwright.review.parts.part_pair import PartPair
+from linkwright.review.plugins import differ_only_in_slash, find_plugin_name, find_plugins, is_in_root_namespace
 
-_REFERENCE = re.compile(r"\$\(arg\s+(?P<argument>[^\s()]+)\s*\)|\$\{\s*(?P<name>[A-Za-z_]\w*)\s*\}")
-"""The use of an argument, or of a property or parameter of a macro."""
-_MAX_DEPTH = 5
-"""The maximum number of properties and defaults that name each other."""
+_REFERENCE = re.compile(r"\$\(arg\s+(?P<argument>[^\s()]+)\s*\)|\$\{(?P<expression>[^{}]*)\}")
+"""The use of an argument, or of properties and parameters of a macro."""
+_WORD = re.compile(r"[A-Za-z_]\w*")
 
 
 def is_same_by_default(pair: PartPair, macro: str | None, difference: PartDifference) -> bool:
@@ -28,29 +27,49 @@ def is_same_by_default(pair: PartPair, macro: str | None, difference: PartDiffer
     if difference.old is None or difference.new is None or difference.value == "conditions":
         return False
     old, new = " ".join(difference.old.split()), " ".join(difference.new.split())
-    used = {match[0] for match in _REFERENCE.finditer(old)}
-    values = _collect_defaults(pair, None if macro is None else pair.new.macros.get(macro))
-
-    def resolve(match: re.Match[str]) -> str:
-        name = "$" + match["argument"] if match["argument"] else match["name"]
-        return match[0] if match[0] in used else values.get(name, match[0])
-
-    for _ in range(_MAX_DEPTH):
-        new = " ".join(_REFERENCE.sub(resolve, new).split())
-        if new == old:
-            return True
-    return False
+    return " ".join(evaluate_text(new, collect_new_values(pair, macro), _find_names(old)).split()) == old
 
 
-def _collect_defaults(pair: PartPair, macro: MacroOutline | None) -> Mapping[str, str]:
-    """Return the values of properties and parameters by name, and those of arguments by ``$`` and the name."""
-    values: dict[str, str] = {"$" + name: default for name, default in pair.defaults.items()}
-    properties: dict[str, set[str]] = {}
-    for name, element in chain.from_iterable(iterate_properties(outline.root) for outline in (pair.new, *pair.robots)):
-        properties.setdefault(name, set()).add(element.attributes.get("value", ""))
-    values |= {name: next(iter(texts)) for name, texts in properties.items() if len(texts) == 1}
-    for name, parameter in () if macro is None else macro.parameters.items():
-        values.pop(name, None)
-        if parameter.default is not None and not parameter.forward:
-            values[name] = parameter.default.strip("'\"")
-    return values
+def collect_new_values(pair: PartPair, macro: str | None) -> dict[str, str]:
+    """Return the values by default of names in the new version of a file, or of a macro in it."""
+    outlines = pair.new, *pair.robots
+    return collect_values(pair.defaults, outlines, None if macro is None else pair.new.macros.get(macro))
+
+
+def names_same_topic_by_default(pair: PartPair, macro: str | None, difference: PartDifference) -> bool:
+    """Return whether a topic of a plugin only gains or loses its first slash, and the plugin has no namespace.
+
+    Args:
+        pair: both versions of the file.
+        macro: the macro with the plugin; None outside of macros.
+        difference: the difference between the texts.
+    """
+    elements = difference.old_element, difference.new_element
+    if difference.value != "text" or None in elements or not difference.old or not difference.new:
+        return False
+    is_topic = elements[1] is not None and (
+        "topic" in elements[1].tag.lower() or find_remapped_name(elements[1]) is not None
+    )
+    if not is_topic or not differ_only_in_slash(difference.old, difference.new):
+        return False
+    values = collect_new_values(pair, macro)
+    plugins = [
+        plugin
+        for outline, element in zip((pair.old, pair.new), elements, strict=True)
+        for plugin in find_plugins(outline.root)
+        if element is not None and any(child.offset == element.offset for child in plugin.walk())
+    ]
+    return len(plugins) == len(elements) and all(
+        is_in_root_namespace([plugin], find_plugin_name(plugin), lambda text: evaluate_text(text, values))
+        for plugin in plugins
+    )
+
+
+def _find_names(text: str) -> set[str]:
+    """Return the names that a text uses, those of arguments with ``$``."""
+    return set(
+        chain.from_iterable(
+            [f"${match['argument']}"] if match["argument"] else _WORD.findall(match["expression"])
+            for match in _REFERENCE.finditer(text)
+        )
+    )

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from linkwright.descriptions.comparison import GAZEBO
+from linkwright.descriptions.comparison import GAZEBO, find_remapped_name
 from linkwright.review.element_values import format_own_content
 from linkwright.review.parts.name_substitution import CALL, NameSubstitution
 from linkwright.review.parts.outline import STATEMENTS, Item, iterate_items, join_items
@@ -115,8 +115,12 @@ class ItemComparison:
         def is_identical(old_item: Item, new_item: Item) -> bool:
             return is_equal(old_item, new_item) and has_same_conditions(old_item, new_item)
 
+        def remap_same_name(old_item: Item, new_item: Item) -> bool:
+            name = find_remapped_name(new_item.element)
+            return name is not None and find_remapped_name(old_item.element) == name
+
         pairs: list[tuple[Item | None, Item | None]] = []
-        for matches in (is_identical, is_equal):
+        for matches in (is_identical, is_equal, remap_same_name):
             pairs += self._take_matched(remaining_old, remaining_new, matches)
         pairs += self._take_joined_blocks(remaining_old, remaining_new)
         pairs += self._take_matched(remaining_old, remaining_new, has_same_conditions)

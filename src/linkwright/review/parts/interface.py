@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -9,11 +10,12 @@ from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.list_changes import change_text
 from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import compare_chosen_parts
+from linkwright.review.parts.default_values import collect_new_values
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.outline import MacroOutline, Outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.renamed_names import find_renamed_names
-from linkwright.review.parts.undefined_names import find_lost_definitions, find_undefined_names
+from linkwright.review.parts.undefined_names import find_lost_definitions, find_undefined_names, find_unmet_condition
 from linkwright.review.parts.unused_arguments import is_unused_argument
 from linkwright.xacro.macros import Parameter
 from linkwright.xmltree import Element
@@ -75,11 +77,20 @@ def _declares_macro(graph: IncludeGraph, path: str, name: str) -> bool:
 
 
 def _report_undefined_names(pair: PartPair, graph: IncludeGraph, old: MacroOutline, new: MacroOutline) -> None:
-    """Report the names that a macro newly uses although nothing defines them."""
-    names = find_undefined_names(graph, pair.new_path, old, new)
-    if names:
+    """Report the names that a macro newly uses although nothing defines them, with a condition unmet by default."""
+    values = collect_new_values(pair, new.name)
+    groups: dict[str | None, list[str]] = {}
+    for name in find_undefined_names(graph, pair.new_path, old, new):
+        groups.setdefault(find_unmet_condition(new, name, values), []).append(name)
+    for condition, names in groups.items():
         text = phrase("macro '{name}': uses {names}, which nothing defines", name=new.name, names=quoted_names(names))
-        pair.add(text, old.element, new.element, phrase("calls of the macro fail unless the caller defines the name"))
+        reason: Phrase | None = phrase("calls of the macro fail unless the caller defines the name")
+        if condition is not None:
+            text = phrase("{change} ({condition})", change=text, condition=condition)
+            used = [name for name in new.parameters if re.search(rf"\b{re.escape(name)}\b", condition)]
+            if used and not any(name in old.parameters for name in used):
+                reason = None
+        pair.add(text, old.element, new.element, reason)
 
 
 def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) -> None:

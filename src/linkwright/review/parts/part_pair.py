@@ -78,18 +78,27 @@ class PartPair:
             for element in outline.root.elements()
         )
 
+    def find_called_macros(self, call: Element) -> Sequence[MacroOutline]:
+        """Return the macros of the old repository that an old call may name."""
+        return _find_called(self.find_old_macros, call)
+
     def names_hardware(self, call: Element) -> bool:
         """Return whether the name in an old call of a macro of the repository is only that of a ``<ros2_control>``."""
-        macros = self.find_old_macros(call.tag.removeprefix(CALL))
+        macros = self.find_called_macros(call)
         uses = [element for macro in macros for element in macro.element.walk() if uses_name(element, "name")]
         return bool(uses) and all(element.tag == ROS2_CONTROL for element in uses)
 
     def loses_parameter(self, call: Element, name: str) -> bool:
         """Return whether a call passes a parameter that its macro has only in the old repository."""
-        macro = call.tag.removeprefix(CALL)
-        old, new = self.find_old_macros(macro), self.find_new_macros(macro)
+        old, new = _find_called(self.find_old_macros, call), _find_called(self.find_new_macros, call)
         return any(name in outline.parameters for outline in old) and not any(name in item.parameters for item in new)
 
     def is_read(self, *, is_old: bool) -> bool:
         """Return whether the expansion of a compared robot read the file in one of the versions."""
         return ExpandedElement(self.old_path if is_old else self.new_path, FILE, is_old) in self.expanded
+
+
+def _find_called(find_macros: Callable[[str], Sequence[MacroOutline]], call: Element) -> Sequence[MacroOutline]:
+    """Return the macros that an element may call, also with the namespace of an ``<xacro:include>``."""
+    name = call.tag.removeprefix(CALL)
+    return find_macros(name) or find_macros(name.rpartition(".")[2])

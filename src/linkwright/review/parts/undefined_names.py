@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from linkwright.lint.xacro_names import mentions
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
+from linkwright.review.parts.known_values import evaluate_condition
 from linkwright.review.parts.name_substitution import iterate_properties
-from linkwright.review.parts.outline import MACRO, MacroOutline, Outline
+from linkwright.review.parts.outline import MACRO, MacroOutline, Outline, iterate_items
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.xacro.expressions.builtin_names import BARE_NAMES, MATHEMATICS
 from linkwright.xmltree import Element
@@ -44,6 +45,33 @@ def find_undefined_names(graph: IncludeGraph, path: str, old: MacroOutline, new:
         if any(element.tag == f"{_XACRO}{new.name}" for element in outline.root.walk()):
             return []
     return sorted(names)
+
+
+def find_unmet_condition(macro: MacroOutline, name: str, values: Mapping[str, str]) -> str | None:
+    """Return a condition around a use of a name that does not hold by default; None if a use is reached by default.
+
+    Args:
+        macro: the macro that uses the name.
+        name: the name.
+        values: the values of names by default.
+    """
+    found: str | None = None
+    for texts, conditions in _iterate_conditional_texts(macro.element, ()):
+        if any(name in _find_looked_up_names(part) for text in texts for part in _EXPRESSION.findall(text)):
+            unmet = [condition for condition in conditions if evaluate_condition(condition, values) is False]
+            if not unmet:
+                return None
+            found = found or unmet[0]
+    return found
+
+
+def _iterate_conditional_texts(
+    element: Element, conditions: tuple[str, ...]
+) -> Iterator[tuple[list[str], tuple[str, ...]]]:
+    """Yield the texts of an element and the elements in it, with the conditions around them."""
+    yield [element.text(), *element.attributes.values()], conditions
+    for item in iterate_items(element, conditions):
+        yield from _iterate_conditional_texts(item.element, item.conditions)
 
 
 def find_lost_definitions(graphs: IncludeGraphs, pair: PartPair) -> list[str]:

@@ -1,0 +1,80 @@
+"""Parts of macros behind conditions on parameters that have a default."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.review.conftest import breaking, sentences
+
+PATH = "arm/urdf/gripper.xacro"
+MACRO = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="gripper" params="name{parameters}">
+    <ros2_control name="${{name}}" type="system"><hardware>{hardware}</hardware></ros2_control>{other}
+  </xacro:macro>
+</robot>
+"""
+PLUGIN = "<plugin>{}</plugin>"
+IF, UNLESS = '<xacro:if value="{}">{}</xacro:if>', '<xacro:unless value="{}">{}</xacro:unless>'
+FAKE, REAL = PLUGIN.format("mock/System"), PLUGIN.format("gripper/System")
+CONDITION = "macro 'gripper': ros2_control ${name} hardware plugin: condition always -> if ${fake}"
+REMOVED = "macro 'gripper': ros2_control ${name} hardware plugin gripper/System removed"
+
+
+def _compare(repository, compare, old, new):
+    macros = [MACRO.format(**{"parameters": "", "hardware": REAL, "other": ""} | values) for values in (old, new)]
+    repository.commit({PATH: macros[0]})
+    repository.write({PATH: macros[1]})
+    return compare(repository)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "hardware", "expected"),
+    [
+        (" fake:=false", IF.format("${fake}", FAKE), CONDITION),
+        (" fake:=false isaac:=0", IF.format("${fake}", FAKE) + IF.format("${isaac}", PLUGIN.format("isaac")), REMOVED),
+        (" fake:=false", UNLESS.format("${fake}", FAKE), None),
+        (" fake:=true", IF.format("${fake}", FAKE), None),
+        (" fake", IF.format("${fake}", FAKE), "parameter fake without a default added"),
+        (" fake:=false", IF.format("${fake}", FAKE) + '<xacro:plugins fake="${fake}"/>', None),
+        ("", "", REMOVED),
+    ],
+)
+def test_hardware_without_a_plugin_by_default_is_breaking(repository, compare, parameters, hardware, expected):
+    result = _compare(repository, compare, {}, {"parameters": parameters, "hardware": hardware})
+    lines = breaking(result)
+    assert len(lines) == (expected is not None)
+    assert all(expected in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "other", "is_breaking"),
+    [
+        (" lamp:=false", IF.format("${lamp}", '<link name="${name}_lamp"/>'), True),
+        (" lamp:=none", IF.format("${lamp == 'red'}", '<link name="${name}_lamp"/>'), True),
+        (" lamp:=true", IF.format("${lamp}", '<link name="${name}_lamp"/>'), False),
+        (" lamp:=red", IF.format("${lamp == 'red' or lamp == 'blue'}", '<link name="${name}_lamp"/>'), False),
+        (" lamp:=''", IF.format("${lamp == ''}", '<link name="${name}_lamp"/>'), False),
+    ],
+)
+def test_part_behind_a_parameter_that_is_false_by_default_is_lost(repository, compare, parameters, other, is_breaking):
+    new = {"parameters": parameters, "other": other}
+    result = _compare(repository, compare, {"other": '<link name="${name}_lamp"/>'}, new)
+    assert ["link ${name}_lamp: condition always -> if" in line for line in breaking(result)] == [True] * is_breaking
+
+
+@pytest.mark.parametrize(
+    ("old", "parameters", "param", "is_breaking"),
+    [
+        ("", " fake:=false", IF.format("${fake}", '<param name="rate">${rate}</param>'), False),
+        (" fake:=false", " fake:=false", IF.format("${fake}", '<param name="rate">${rate}</param>'), True),
+        ("", " fake:=true", IF.format("${fake}", '<param name="rate">${rate}</param>'), True),
+        ("", " fake:=false", '<param name="rate">${rate}</param>', True),
+    ],
+)
+def test_undefined_name_behind_a_new_condition_breaks_no_old_call(
+    repository, compare, old, parameters, param, is_breaking
+):
+    result = _compare(repository, compare, {"parameters": old}, {"parameters": parameters, "hardware": REAL + param})
+    (line,) = [line for item in result.subjects for line in sentences(item) if "which nothing defines" in line]
+    assert line.startswith("macro 'gripper': uses 'rate', which nothing defines")
+    assert (line in breaking(result)) is is_breaking
