@@ -166,6 +166,13 @@ def test_environment_variable_that_only_another_file_still_reads_is_breaking(rev
     assert found_breaking == changes[1:]
 
 
+def test_environment_variable_that_another_file_only_mentions_in_a_comment_is_breaking(review_changes):
+    robot = ROBOT.replace("  <xacro:arg", "  <!-- <xacro:arg").replace("/>\n<", "/> -->\n<")
+    text = '<arg name="tool" default="$(env TOOL)"/>'
+    _, found_breaking = review_changes(text, '<arg name="tool" default="a"/>', **{"urdf/arm.xacro": robot})
+    assert found_breaking == ["use of environment variable 'TOOL' removed"]
+
+
 def test_name_that_callers_choose_is_not_a_lost_name(review_changes):
     node = '<node pkg="cam" type="driver" name="$(arg name)"/>'
     _, found_breaking = review_changes(
