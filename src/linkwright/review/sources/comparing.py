@@ -13,6 +13,10 @@ from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
 from linkwright.review.sources.conditions import ConditionChange, compare_conditions
+from linkwright.review.sources.cpp_calls import GRAPH_KINDS
+from linkwright.review.sources.cpp_members import read_included_headers
+from linkwright.review.sources.cpp_text import blank_comments
+from linkwright.review.sources.default_arguments import find_default_argument
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import (
     compare_computed,
@@ -44,6 +48,7 @@ from linkwright.review.sources.names import (
     SourceNames,
 )
 from linkwright.review.sources.new_users import describe_new_user
+from linkwright.review.sources.node_namespaces import have_same_full_name
 from linkwright.review.sources.other_nodes import (
     find_other_node_reason,
     has_only_in_other_nodes,
@@ -335,6 +340,8 @@ class _SourcePair(PairedNames):
         """
         if old_item.kind is NameKind.MESSAGE_FRAME:
             return find_message_frame_reason(old_item, names)
+        if self._is_same_name(old_item, new_item):
+            return None
         if old_item.kind is NameKind.CLAIMED_INTERFACE:
             return find_claim_reason([new_item], self.read_texts()[0], self.new.get_names(self.file.new_path))
         reason = self._find_removal_reason([old_item], names)
@@ -387,7 +394,7 @@ class _SourcePair(PairedNames):
             reason = self._find_default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
             if default is not None and not default.name:
                 reason = self._find_lost_reason(item, old_names)
-            if reason is None and not can_make(other.name, item.name):
+            if reason is None and not can_make(other.name, item.name) and not self._is_same_name(item, other):
                 reason = self._find_removal_reason([item], old_names)
             yield self.make_change(text, other.span, self.new, reason)
         for item, other in take_pairs(added, removed_expressions):
@@ -446,9 +453,30 @@ class _SourcePair(PairedNames):
             added.remove(new)
         names = joined_first([f"{format_name(old)} -> {new.name}" for old, new in pairs], MAX_NAMES)
         text = phrase("{kind} that have computed names now: {names}", kind=kind.plural, names=names)
-        lost = [old for old, new in pairs if not can_make(new.name, old.name)]
+        lost = [old for old, new in pairs if not can_make(new.name, old.name) and not self._is_same_name(old, new)]
         reason = self._find_removal_reason(lost, self.old.get_names(self.file.old_path)) if lost else None
+        reason = reason or next(filter(None, (self._find_argument_reason(old, new) for old, new in pairs)), None)
         yield self.make_change(text, pairs[0][1].span, self.new, reason)
+
+    def _find_argument_reason(self, old: SourceName, new: SourceName) -> Phrase | None:
+        """Return the reason why it is breaking that the default of an argument is a part of a name now, or None."""
+        path = self.file.new_path or self.file.path
+        if new.kind not in GRAPH_KINDS or path.endswith(PYTHON_SUFFIX) or not self.has_library():
+            return None
+        headers = [blank_comments(text) for text in read_included_headers(self.new.version.file(path))]
+        found = find_default_argument(new.name, new.span.line, blank_comments(self.read_texts()[1]), headers)
+        if found is None or found.name.strip("/") == old.name.strip("/"):
+            return None
+        return phrase(
+            "callers that do not pass '{argument}' use the name '{new}' instead of '{old}'",
+            argument=found.argument,
+            new=found.name,
+            old=old.name,
+        )
+
+    def _is_same_name(self, old: SourceName, new: SourceName) -> bool:
+        """Return whether a topic or the like has the same full name, of which the namespace is a part or no longer."""
+        return old.kind in GRAPH_KINDS and have_same_full_name(old.name, new.name, *self.read_texts())
 
     def _find_lost_reason(self, item: SourceName, names: SourceNames) -> Phrase | None:
         """Return the reason why it is breaking that a parameter gives another name by default; None if it is not."""
