@@ -34,6 +34,7 @@ from linkwright.review.sources.function_changes import (
     merge_function_changes,
 )
 from linkwright.review.sources.given_frames import find_given_frame, format_given
+from linkwright.review.sources.hardware_interfaces import find_description_without
 from linkwright.review.sources.interface_patterns import find_claim_reason
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
@@ -287,7 +288,7 @@ class _SourcePair(PairedNames):
             added = [item for item in added if is_module and "." not in item.name and item.name != _MAIN]
         if added:
             text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
-            reason = find_required_reason(added) if self.file.old_path is not None else None
+            reason = self._find_required_reason(added) if self.file.old_path is not None else None
             reason = reason or find_claim_reason(added, self.read_texts()[0], self.new.get_names(self.file.new_path))
             yield self.make_change(text, added[0].span, self.new, reason)
         new_names = self.new.get_names(self.file.new_path)
@@ -306,6 +307,15 @@ class _SourcePair(PairedNames):
             yield self.make_change(
                 text, newly_hidden[0].span, self.old, self._find_removal_reason(newly_hidden, old_names)
             )
+
+    def _find_required_reason(self, added: Sequence[SourceName]) -> Phrase | None:
+        """Return the reason why added names are breaking, with a description that lacks a required element, or None."""
+        reason = find_required_reason(added)
+        if reason is None or added[0].kind is not NameKind.HARDWARE_ELEMENT:
+            return reason
+        classes = [item.name for item in self.new.get_names(self.file.new_path).of_kind(NameKind.PLUGINLIB_CLASS)]
+        path = find_description_without(self.new.version, classes, [item.name for item in added])
+        return reason if path is None else phrase("{reason}, such as {file}", reason=reason, file=path)
 
     def _is_left_to_others(self, item: SourceName) -> bool:
         """Return whether only other nodes of the package still have a name that they had before."""

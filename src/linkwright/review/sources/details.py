@@ -312,6 +312,8 @@ def make_required_reason(kind: NameKind, names: Sequence[str]) -> Phrase:
         return phrase("the program fails where {names} is not set", names=text)
     if kind is NameKind.HARDWARE_PARAMETER:
         return phrase("the hardware fails where the description does not give {names}", names=text)
+    if kind is NameKind.HARDWARE_ELEMENT:
+        return phrase("the hardware fails where the description does not have {names}", names=text)
     return phrase("callers that do not pass {names} get an error", names=text)
 
 
