@@ -208,6 +208,13 @@ def test_name_that_a_known_program_has_anyway_is_not_lost(review_changes, name, 
     assert bool(found_breaking) is is_breaking
 
 
+@pytest.mark.parametrize(("name", "is_breaking"), [("set_pose", True), ("imu/data", False)])
+def test_name_to_which_others_send_is_lost_if_a_known_program_serves_it(review_changes, name, is_breaking):
+    node = '<node pkg="robot_localization" exec="ekf_node">{}</node>'
+    _, found_breaking = review_changes(node.format(""), node.format(f'<remap from="{name}" to="filter/{name}"/>'))
+    assert bool(found_breaking) is is_breaking
+
+
 def test_deleted_parameters_of_ros_1_are_called_deleted(repository, compare):
     path, node = "arm/launch/arm.launch", '<launch>{}<node pkg="arm" type="d" name="d">{}</node></launch>'
     old = node.format("", '<rosparam command="delete" param="old"/>')

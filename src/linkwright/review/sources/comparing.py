@@ -22,6 +22,7 @@ from linkwright.review.sources.details import (
     compare_computed,
     compare_details,
     find_required_reason,
+    format_added_names,
     format_name,
     format_names,
     format_rename,
@@ -287,7 +288,7 @@ class _SourcePair(PairedNames):
             is_module = self.file.path.endswith(PYTHON_SUFFIX)
             added = [item for item in added if is_module and "." not in item.name and item.name != _MAIN]
         if added:
-            text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
+            text = phrase("{kind} added: {names}", kind=kind.plural, names=format_added_names(added))
             reason = self._find_required_reason(added) if self.file.old_path is not None else None
             reason = reason or find_claim_reason(added, self.read_texts()[0], self.new.get_names(self.file.new_path))
             yield self.make_change(text, added[0].span, self.new, reason)

@@ -58,6 +58,7 @@ def compare_statements(
         changes += _compare_keys(old, new, file, changes)
         changes += _find_deprecations(old, new, file)
     elif file.new_path is not None:
+        changes += _compare_commands(old, new, file, changes)
         changes += _find_added_code(old, new, file.new_path, changes)
     return changes[len(reported) :]
 
