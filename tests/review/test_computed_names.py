@@ -180,3 +180,63 @@ def test_a_client_with_another_name_needs_a_server(repository, compare, served, 
     assert (
         "service client 'state' (Trigger) renamed to 'status' (Trigger)" in breaking(compare(repository))
     ) is is_lost
+
+
+NODE = """#include "arm/arm.hpp"
+void Arm::start(const std::string & side) {{
+  node_ = rclcpp::Node::make_shared({});
+  a_ = node_->create_subscription<arm_msgs::msg::State>({}, 10, fill);
+  b_ = node_->create_subscription<arm_msgs::msg::Mode>({}, 10, fill);
+}}
+"""
+PYTHON_NODE = """import rclpy
+node = rclpy.create_node({})
+node.create_subscription(State, {}, fill, 10)
+node.create_subscription(Mode, {}, fill, 10)
+"""
+LITERALS = '"states"', '"modes"'
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "old", "new", "is_breaking"),
+    [
+        (CPP_PATH, NODE, '"arm", side', ('side + "/states"', 'side + "/modes"'), False),
+        (CPP_PATH, NODE, '"arm", side', ('other + "/states"', 'other + "/modes"'), True),
+        (CPP_PATH, NODE, '"arm"', ('side + "/states"', 'side + "/modes"'), True),
+        (CPP_PATH, NODE, '"arm", "left"', ('"left/states"', '"left/modes"'), False),
+        (CPP_PATH, NODE, '"arm", "left"', ('"right/states"', '"right/modes"'), True),
+        (PATH, PYTHON_NODE, '"arm", namespace=side', ('f"{side}/states"', 'f"{side}/modes"'), False),
+        (PATH, PYTHON_NODE, '"arm", namespace=side', ('f"{other}/states"', 'f"{other}/modes"'), True),
+    ],
+)
+def test_name_that_gets_the_namespace_of_its_node_is_the_same(repository, compare, path, text, old, new, is_breaking):
+    repository.commit({**MANIFEST, path: text.format(old, *LITERALS)})
+    repository.write({path: text.format('"arm"', *new)})
+    assert bool(breaking(compare(repository))) == is_breaking
+
+
+HEADER = "class Arm {{\npublic:\n  void init(rclcpp::Node::SharedPtr node{});\n}};\n"
+CLIENTS = """#include "arm/arm.hpp"
+void Arm::init(rclcpp::Node::SharedPtr node{}) {{
+  std::string ns = {};
+  a_ = node->create_client<arm_msgs::srv::Move>(ns + "move");
+  b_ = node->create_client<arm_msgs::srv::Stop>(ns + "stop");
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("default", "value", "is_breaking"),
+    [('"left"', 'side_ + "/"', True), ('""', "side_", False), ('"left"', 'compute() + "/"', False)],
+)
+def test_default_of_a_new_argument_is_a_part_of_the_names(repository, compare, default, value, is_breaking):
+    path, header_path = "arm/src/arm.cpp", "arm/include/arm/arm.hpp"
+    old = CLIENTS.format("", '""').replace("ns + ", "")
+    repository.commit({**MANIFEST, header_path: HEADER.format(""), path: old})
+    new_header = HEADER.format(f", std::string side = {default}")
+    repository.write({header_path: new_header, path: CLIENTS.format(", std::string side_", value)})
+    reasons = [
+        str(change.reason) for subject in compare(repository).subjects for change in subject.changes if change.reason
+    ]
+    expected = "callers that do not pass 'side' use the name 'left/move' instead of 'move'"
+    assert (expected in reasons) == is_breaking

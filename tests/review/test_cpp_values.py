@@ -173,3 +173,42 @@ def test_a_text_without_a_value_is_an_empty_default(repository, compare, before,
     repository.write({"arm/src/drive.cpp": text})
     lines = [line for found in compare(repository).subjects for line in sentences(found)]
     assert [line for line in lines if line.startswith("parameters")] == [expected]
+
+
+LISTS = """class Arm : public rclcpp::Node {{
+  std::vector<double> pose_ = {};
+  void init() {{
+    {}
+    pose_ = declare_parameter<std::vector<double>>("pose", pose_);
+  }}
+}};
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("start();", ["parameter 'pose': default [0.5, 1.0] -> [0.5, -1.0]"]),
+        ("pose_.push_back(3.0);", []),
+        ("pose_ = {2.0};", []),
+    ],
+)
+def test_initial_list_of_a_member_is_a_default(repository, compare, line, expected):
+    old, new = (LISTS.format(value, line) for value in ("{0.5, 1.0}", "{0.5,\n    -1.0}"))
+    repository.commit({**MANIFEST, "arm/a.cpp": old})
+    repository.write({"arm/a.cpp": new})
+    lines = [line for found in compare(repository).subjects for line in sentences(found)]
+    assert [line for line in lines if line.startswith("parameter ")] == expected
+
+
+@pytest.mark.parametrize(
+    ("call", "is_told"),
+    [('nh.param(joint->name() + "/offset", offset_, 0.0)', True), ("nh.param(joint->name(), offset_, 0.0)", False)],
+)
+def test_parameter_of_ros_1_with_a_partly_known_name_is_told(repository, compare, call, is_told):
+    text = "void Arm::load(const ros::NodeHandle & nh) {{\n  {};\n}}\n"
+    repository.commit({**MANIFEST, "arm/a.cpp": text.format("start()")})
+    repository.write({"arm/a.cpp": text.format(call)})
+    (found,) = compare(repository).subjects
+    line = "parameters with computed names added: 'joint->name() + \"/offset\"' (0.0)"
+    assert (line in sentences(found)) == is_told

@@ -226,6 +226,24 @@ def test_package_of_launch_files_is_declared_only_by_their_manifest(package, fil
     assert bool(find_fixed(package, "LW848", "arm_description/package.xml", message)) == is_fixed
 
 
+@pytest.mark.parametrize(
+    ("name", "new", "is_fixed"),
+    [
+        ("all.launch", "$(eval find(arg('model') + '_description'))", False),
+        ("all.launch", "$(eval find('other_' + arg('model')))", True),
+        ("all.launch.xml", "$(find-pkg-share $(var model)_description)/urdf/arm.xacro", False),
+    ],
+)
+def test_package_whose_name_an_argument_completes_is_still_used(package, name, new, is_fixed):
+    path = f"arm_description/launch/{name}"
+    arguments = "".join(f'<arg name="{name}" default="{{}}"/>' for name in ("model", "tool", "path"))
+    text = f"<launch>{arguments}</launch>".format("grip", "$(find tool)", "{}")
+    package.commit({path: text.format("grip_description")})
+    package.commit({path: text.format(new)})
+    message = "launch files use a package on which package.xml does not depend: 'grip_description'"
+    assert bool(find_fixed(package, "LW848", "arm_description/package.xml", message)) == is_fixed
+
+
 @pytest.mark.parametrize(("name", "is_new"), [("gripper_bringup", True), ("warehouse_ros_mongo", False)])
 def test_generated_launch_file_of_moveit_that_newly_uses_a_package_of_the_repository(package, compare, name, is_new):
     """MoveIt generates launch files that start packages for every possible use."""

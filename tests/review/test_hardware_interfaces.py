@@ -89,6 +89,37 @@ def test_parameters_that_hardware_reads_from_its_description_are_names(repositor
     assert not [line for line in sentences(result.subjects[0]) if "keys" in line]
 
 
+HARDWARE = """#include <hardware_interface/system_interface.hpp>
+int Arm::on_init(const HardwareInfo & info) {{
+  {}
+}}
+PLUGINLIB_EXPORT_CLASS(arm::Arm, hardware_interface::SystemInterface)
+"""
+CONTROL = """<robot name="arm"><ros2_control name="a" type="system">
+  <hardware><plugin>arm/Arm</plugin></hardware>{}
+</ros2_control></robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "content", "reason"),
+    [
+        ("n_ = info_.sensors[0].state_interfaces.size();", "",
+         "the hardware fails where the description does not have '<sensor>', such as arm/urdf/arm.xacro"),
+        ("n_ = info_.sensors.at(0).name;", '<sensor name="imu"/>',
+         "the hardware fails where the description does not have '<sensor>'"),
+        ("if (info_.gpios.size() == 1) { n_ = info_.gpios[0].name; }", "", None),
+        ("for (size_t i = 0; i < count_; i++) { n_ = info_.sensors[i].name; }", "", None),
+    ],
+)  # fmt: skip
+def test_hardware_that_newly_reads_an_element_needs_it(repository, compare, line, content, reason):
+    path = "arm/src/arm.cpp"
+    repository.commit({**MANIFEST, "arm/urdf/arm.xacro": CONTROL.format(content), path: HARDWARE.format("n_ = 1;")})
+    repository.write({path: HARDWARE.format(line)})
+    (found,) = compare(repository).subjects
+    assert [str(change.reason) for change in found.changes if change.reason] == [reason] * (reason is not None)
+
+
 KEPT = """class Arm : public hardware_interface::SystemInterface {{
   double limit_ = {};
   void init() {{

@@ -34,3 +34,26 @@ def test_a_second_marker_and_one_beside_an_added_package_change_nothing(reposito
     repository.write({"parts/arm/COLCON_IGNORE": "", "leg/toe/COLCON_IGNORE": "", "leg/toe/a.txt": ""})
     repository.write({"foot/package.xml": PACKAGE_XML.replace("arm", "foot"), "foot/COLCON_IGNORE": ""})
     assert breaking(compare(repository)) == []
+
+
+LAUNCH = """from launch import LaunchDescription
+from launch_ros.actions import Node
+from ament_index_python.packages import get_package_share_directory
+import os
+
+
+def generate_launch_description():
+    path = os.path.join(get_package_share_directory("arm_description"), "config", "arm.yaml")
+    return LaunchDescription([Node(package="arm", executable="arm", parameters=[path])])
+"""
+
+
+@pytest.mark.parametrize(("marker", "is_breaking"), [("parts/COLCON_IGNORE", False), ("leg/COLCON_IGNORE", True)])
+def test_lost_file_of_a_package_that_was_not_built_breaks_only_its_users(repository, compare, marker, is_breaking):
+    path = "parts/arm/config/arm.yaml"
+    repository.commit({**FILES, marker: "", path: "arm:\n  ros__parameters:\n    a: 1\n"})
+    repository.commit({"parts/arm/launch/arm.launch.py": LAUNCH})
+    repository.write({marker: None, path: None})
+    found = breaking(compare(repository))
+    assert any(line.startswith("parameter file removed") for line in found) == is_breaking
+    assert "names 'config/arm.yaml' of 'arm_description', which no longer exists" in found

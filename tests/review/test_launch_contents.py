@@ -166,6 +166,13 @@ def test_environment_variable_that_only_another_file_still_reads_is_breaking(rev
     assert found_breaking == changes[1:]
 
 
+def test_environment_variable_that_another_file_only_mentions_in_a_comment_is_breaking(review_changes):
+    robot = ROBOT.replace("  <xacro:arg", "  <!-- <xacro:arg").replace("/>\n<", "/> -->\n<")
+    text = '<arg name="tool" default="$(env TOOL)"/>'
+    _, found_breaking = review_changes(text, '<arg name="tool" default="a"/>', **{"urdf/arm.xacro": robot})
+    assert found_breaking == ["use of environment variable 'TOOL' removed"]
+
+
 def test_name_that_callers_choose_is_not_a_lost_name(review_changes):
     node = '<node pkg="cam" type="driver" name="$(arg name)"/>'
     _, found_breaking = review_changes(
@@ -198,6 +205,13 @@ def test_name_to_which_another_topic_of_the_node_is_remapped_is_not_lost(review_
 def test_name_that_a_known_program_has_anyway_is_not_lost(review_changes, name, is_breaking):
     node = '<node pkg="robot_localization" exec="ekf_node"{}/>'
     _, found_breaking = review_changes(node.format(f' name="{name}"'), node.format(""))
+    assert bool(found_breaking) is is_breaking
+
+
+@pytest.mark.parametrize(("name", "is_breaking"), [("set_pose", True), ("imu/data", False)])
+def test_name_to_which_others_send_is_lost_if_a_known_program_serves_it(review_changes, name, is_breaking):
+    node = '<node pkg="robot_localization" exec="ekf_node">{}</node>'
+    _, found_breaking = review_changes(node.format(""), node.format(f'<remap from="{name}" to="filter/{name}"/>'))
     assert bool(found_breaking) is is_breaking
 
 

@@ -67,3 +67,19 @@ def test_preset_profile_of_a_topic_with_another_type(repository, compare, old, n
     repository.commit({**MANIFEST, "arm/arm/arm.py": source.format("Bool", old)})
     repository.write({"arm/arm/arm.py": source.format("Int8", new)})
     assert breaking(compare(repository)) == expected
+
+
+@pytest.mark.parametrize(
+    ("qos", "shown"),
+    [
+        ("QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)", "'state' (String, transient_local)"),
+        ("qos_profile_sensor_data", "'state' (String, best_effort)"),
+        ("10", "'state' (String)"),
+    ],
+)
+def test_added_topic_with_another_qos_than_the_default_is_told_with_it(repository, compare, qos, shown):
+    text = "from rclpy.node import Node\n\n\nclass Arm(Node):\n    def __init__(self):\n        {}\n"
+    repository.commit({**MANIFEST, "arm/arm.py": text.format("pass")})
+    repository.write({"arm/arm.py": text.format(f"self.create_publisher(String, 'state', {qos})")})
+    (found,) = compare(repository).subjects
+    assert f"publishers added: {shown}" in sentences(found)

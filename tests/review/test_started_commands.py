@@ -58,3 +58,10 @@ def test_a_command_that_moves_to_another_source_is_not_told(repository, compare)
     repository.write({"arm/scripts/a.py": new, "arm/scripts/b.py": old})
     result = compare(repository)
     assert not any("commands" in line for found in result.subjects for line in sentences(found))
+
+
+def test_commands_of_an_added_program_are_told(repository, compare):
+    repository.commit(FILES)
+    repository.write({"arm/scripts/stop.py": PYTHON.format('os.system("systemctl reboot")')})
+    lines = sentences(subject(compare(repository), "arm/scripts/stop.py"))
+    assert 'commands added: os.system("systemctl reboot")' in lines

@@ -90,6 +90,7 @@ from linkwright.review.robots.semantics import find_semantic_files
 from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.unfixed_findings import drop_unfixed_findings
+from linkwright.review.users.ignored_packages import relieve_ignored_packages
 from linkwright.review.users.left_collision_pairs import find_left_collision_pairs
 from linkwright.review.users.left_robot_names import find_left_robot_names
 from linkwright.review.users.lost_files import find_lost_files
@@ -196,6 +197,7 @@ class _Reviewer:
             old_findings, new_findings = self._collect_findings(findings, expanded)
         all_subjects = self._add_failures(all_subjects)
         all_subjects = compare_parts(self._versions, self._changed_files, all_subjects, self._is_complete)
+        all_subjects = relieve_ignored_packages(self._versions, all_subjects)
         moved = {subject.path: subject.changes[0].sentence for subject in all_subjects if _is_only_moved(subject)}
         all_subjects = [subject for subject in all_subjects if subject.path not in moved]
         reported = _list_reported_paths(all_subjects)

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
 
-from linkwright.diagnostics import Diagnostic
+from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.launch_paths import is_launch_file
+from linkwright.review.launches.reading import read_outline
 from linkwright.review.versions import Version, Versions
 
 _MESH_RULES = ("LW42", "LW43")
@@ -15,6 +20,8 @@ _UNDECLARED_CODE = "LW848"
 """The finding about a package that launch files use and package.xml does not name."""
 _LAUNCH_FILES = "*launch*"
 _QUOTED_NAME = re.compile(r"'([\w-]+)'")
+_JOINED_LITERALS = re.compile(r"(['\"])\s*\+\s*\1")
+"""The end of a literal text and the beginning of the next, which an expression joins."""
 
 
 def drop_unfixed_findings(
@@ -44,11 +51,26 @@ def drop_unfixed_findings(
 
 
 def _uses_packages(version: Version, finding: Diagnostic) -> bool:
-    """Return whether launch files of the package of a finding still contain the names that it quotes."""
+    """Return whether launch files of the package of a finding still contain the names that it quotes.
+
+    A launch file may join a name from the default of an argument and a literal text.
+    """
     folder = version.file(_get_path(finding)).parent
-    texts = [file.read_bytes() for file in sorted(folder.rglob(_LAUNCH_FILES)) if file.is_file()]
+    files = [file for file in sorted(folder.rglob(_LAUNCH_FILES)) if file.is_file()]
     names = _QUOTED_NAME.findall(str(finding.message))
-    return any(name.encode() in text for name in names for text in texts)
+    texts = [file.read_bytes() for file in files]
+    if any(name.encode() in text for name in names for text in texts):
+        return True
+    resolved = [value for file in files if is_launch_file(file.name) for value in _resolve_values(version, file)]
+    return any(re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", value) for name in names for value in resolved)
+
+
+def _resolve_values(version: Version, file: Path) -> Iterator[str]:
+    """Yield the values in a launch file with the defaults of its arguments; none if it cannot be read."""
+    with suppress(LinkwrightError, UnreadableFileError, OSError, ValueError):
+        outline = read_outline(file, version.root)
+        for entry in outline.entries:
+            yield from (_JOINED_LITERALS.sub("", outline.resolve(value)) for value in entry.settings.values())
 
 
 def _get_path(finding: Diagnostic) -> str:

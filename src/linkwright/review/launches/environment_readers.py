@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 
 from linkwright.review.caching import cached_in_review
+from linkwright.review.comments import without_comments
 from linkwright.review.versions import Version
 
 _SEARCHED_SUFFIXES = (".launch", ".xml", ".py", ".yaml", ".yml", ".xacro", ".urdf", ".cpp", ".hpp", ".h", ".c")
@@ -32,12 +33,15 @@ def reads_variable(version: Version, name: str, path: str) -> bool:
 
 @cached_in_review(maxsize=2)
 def _find_readers_by_variable(version: Version) -> Mapping[str, list[str]]:
-    """Return the files that read environment variables, by the name of the variable.
+    """Return the files that read environment variables outside of comments, by the name of the variable.
 
     The paths are relative to the root.
     """
     readers: dict[str, list[str]] = {}
     for path in version.paths(_SEARCHED_SUFFIXES):
-        for variable in {match["name"] for match in _READING.finditer(version.text(path))}:
+        names = {match["name"] for match in _READING.finditer(version.text(path))}
+        if names:
+            names = {match["name"] for match in _READING.finditer(without_comments(version.text(path), path))}
+        for variable in names:
             readers.setdefault(variable, []).append(path)
     return readers

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-_EVALUATION = re.compile(r"\$\(eval (?P<text>(?:[^()]|\([^()]*\))*)\)")
+_EVALUATION = re.compile(r"\$\(eval (?P<text>(?:[^()]|\((?:[^()]|\([^()]*\))*\))*)\)")
 _NAME = re.compile(
     r"(?P<quoted>'[^']*'|\"[^\"]*\")|\barg\(\s*(?P<quote>['\"])(?P<argument>\w+)(?P=quote)\s*\)|"
     r"(?<![\w.])(?P<name>[A-Za-z_]\w*)(?!\w*\s*[(.])"

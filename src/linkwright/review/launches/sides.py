@@ -27,10 +27,6 @@ _INPUTS = {
     "amcl/amcl": {"map", "initialpose"},
     "nav2_amcl/amcl": {"map", "initialpose"},
     "map_server/map_saver": {"map"},
-    "robot_localization/ekf_node": {"set_pose"},
-    "robot_localization/ukf_node": {"set_pose"},
-    "robot_localization/ekf_localization_node": {"set_pose"},
-    "robot_localization/ukf_localization_node": {"set_pose"},
 }
 """More topics to which well-known programs subscribe."""
 _OUTPUTS = {
@@ -41,15 +37,15 @@ _OUTPUTS = {
     "nav2_map_server/map_server": {"map"},
     "map_server/map_server": {"map"},
     "gmapping/slam_gmapping": {"map"},
-    "robot_localization/ekf_node": {"odometry/filtered"},
-    "robot_localization/ukf_node": {"odometry/filtered"},
-    "robot_localization/ekf_localization_node": {"odometry/filtered"},
-    "robot_localization/ukf_localization_node": {"odometry/filtered"},
+    "robot_localization/ekf_node": {"odometry/filtered", "set_pose", "enable", "toggle"},
+    "robot_localization/ukf_node": {"odometry/filtered", "set_pose", "enable", "toggle"},
+    "robot_localization/ekf_localization_node": {"odometry/filtered", "set_pose"},
+    "robot_localization/ukf_localization_node": {"odometry/filtered", "set_pose"},
     "joint_state_publisher/joint_state_publisher": {"joint_states"},
     "depthimage_to_laserscan/depthimage_to_laserscan": {"scan"},
     "pointcloud_to_laserscan/pointcloud_to_laserscan_node": {"scan"},
 }
-"""Topics that well-known programs publish."""
+"""Topics and services that well-known programs offer."""
 _ALL_OUTPUTS: dict[str, set[str]] = {
     "move_base/move_base": {"cmd_vel", "current_goal", "goal", "make_plan", "clear_costmaps", "clear_unknown_space"},
     "joint_state_publisher/joint_state_publisher": {"joint_states"},

@@ -13,11 +13,16 @@ from linkwright.review.renamed_packages import find_renamed_packages
 from linkwright.review.sources.changed_sources import COMMUNICATION_KINDS, ChangedSources, get_comparison_name
 from linkwright.review.sources.compared_files import is_compared_source
 from linkwright.review.sources.conditions import ConditionChange, compare_conditions
+from linkwright.review.sources.cpp_calls import GRAPH_KINDS
+from linkwright.review.sources.cpp_members import read_included_headers
+from linkwright.review.sources.cpp_text import blank_comments
+from linkwright.review.sources.default_arguments import find_default_argument
 from linkwright.review.sources.default_names import find_default_reason, is_set_in_package
 from linkwright.review.sources.details import (
     compare_computed,
     compare_details,
     find_required_reason,
+    format_added_names,
     format_name,
     format_names,
     format_rename,
@@ -30,6 +35,7 @@ from linkwright.review.sources.function_changes import (
     merge_function_changes,
 )
 from linkwright.review.sources.given_frames import find_given_frame, format_given
+from linkwright.review.sources.hardware_interfaces import find_description_without
 from linkwright.review.sources.interface_patterns import find_claim_reason
 from linkwright.review.sources.lost_patterns import find_lost_pattern_reason
 from linkwright.review.sources.merged_renames import merge_renames
@@ -44,6 +50,7 @@ from linkwright.review.sources.names import (
     SourceNames,
 )
 from linkwright.review.sources.new_users import describe_new_user
+from linkwright.review.sources.node_namespaces import have_same_full_name
 from linkwright.review.sources.other_nodes import (
     find_other_node_reason,
     has_only_in_other_nodes,
@@ -281,8 +288,8 @@ class _SourcePair(PairedNames):
             is_module = self.file.path.endswith(PYTHON_SUFFIX)
             added = [item for item in added if is_module and "." not in item.name and item.name != _MAIN]
         if added:
-            text = phrase("{kind} added: {names}", kind=kind.plural, names=format_names(added))
-            reason = find_required_reason(added) if self.file.old_path is not None else None
+            text = phrase("{kind} added: {names}", kind=kind.plural, names=format_added_names(added))
+            reason = self._find_required_reason(added) if self.file.old_path is not None else None
             reason = reason or find_claim_reason(added, self.read_texts()[0], self.new.get_names(self.file.new_path))
             yield self.make_change(text, added[0].span, self.new, reason)
         new_names = self.new.get_names(self.file.new_path)
@@ -301,6 +308,15 @@ class _SourcePair(PairedNames):
             yield self.make_change(
                 text, newly_hidden[0].span, self.old, self._find_removal_reason(newly_hidden, old_names)
             )
+
+    def _find_required_reason(self, added: Sequence[SourceName]) -> Phrase | None:
+        """Return the reason why added names are breaking, with a description that lacks a required element, or None."""
+        reason = find_required_reason(added)
+        if reason is None or added[0].kind is not NameKind.HARDWARE_ELEMENT:
+            return reason
+        classes = [item.name for item in self.new.get_names(self.file.new_path).of_kind(NameKind.PLUGINLIB_CLASS)]
+        path = find_description_without(self.new.version, classes, [item.name for item in added])
+        return reason if path is None else phrase("{reason}, such as {file}", reason=reason, file=path)
 
     def _is_left_to_others(self, item: SourceName) -> bool:
         """Return whether only other nodes of the package still have a name that they had before."""
@@ -335,6 +351,8 @@ class _SourcePair(PairedNames):
         """
         if old_item.kind is NameKind.MESSAGE_FRAME:
             return find_message_frame_reason(old_item, names)
+        if self._is_same_name(old_item, new_item):
+            return None
         if old_item.kind is NameKind.CLAIMED_INTERFACE:
             return find_claim_reason([new_item], self.read_texts()[0], self.new.get_names(self.file.new_path))
         reason = self._find_removal_reason([old_item], names)
@@ -387,7 +405,7 @@ class _SourcePair(PairedNames):
             reason = self._find_default_reason(item, item.name, new_names.defaults.get(other.name, ""), old_names)
             if default is not None and not default.name:
                 reason = self._find_lost_reason(item, old_names)
-            if reason is None and not can_make(other.name, item.name):
+            if reason is None and not can_make(other.name, item.name) and not self._is_same_name(item, other):
                 reason = self._find_removal_reason([item], old_names)
             yield self.make_change(text, other.span, self.new, reason)
         for item, other in take_pairs(added, removed_expressions):
@@ -446,9 +464,30 @@ class _SourcePair(PairedNames):
             added.remove(new)
         names = joined_first([f"{format_name(old)} -> {new.name}" for old, new in pairs], MAX_NAMES)
         text = phrase("{kind} that have computed names now: {names}", kind=kind.plural, names=names)
-        lost = [old for old, new in pairs if not can_make(new.name, old.name)]
+        lost = [old for old, new in pairs if not can_make(new.name, old.name) and not self._is_same_name(old, new)]
         reason = self._find_removal_reason(lost, self.old.get_names(self.file.old_path)) if lost else None
+        reason = reason or next(filter(None, (self._find_argument_reason(old, new) for old, new in pairs)), None)
         yield self.make_change(text, pairs[0][1].span, self.new, reason)
+
+    def _find_argument_reason(self, old: SourceName, new: SourceName) -> Phrase | None:
+        """Return the reason why it is breaking that the default of an argument is a part of a name now, or None."""
+        path = self.file.new_path or self.file.path
+        if new.kind not in GRAPH_KINDS or path.endswith(PYTHON_SUFFIX) or not self.has_library():
+            return None
+        headers = [blank_comments(text) for text in read_included_headers(self.new.version.file(path))]
+        found = find_default_argument(new.name, new.span.line, blank_comments(self.read_texts()[1]), headers)
+        if found is None or found.name.strip("/") == old.name.strip("/"):
+            return None
+        return phrase(
+            "callers that do not pass '{argument}' use the name '{new}' instead of '{old}'",
+            argument=found.argument,
+            new=found.name,
+            old=old.name,
+        )
+
+    def _is_same_name(self, old: SourceName, new: SourceName) -> bool:
+        """Return whether a topic or the like has the same full name, of which the namespace is a part or no longer."""
+        return old.kind in GRAPH_KINDS and have_same_full_name(old.name, new.name, *self.read_texts())
 
     def _find_lost_reason(self, item: SourceName, names: SourceNames) -> Phrase | None:
         """Return the reason why it is breaking that a parameter gives another name by default; None if it is not."""

@@ -56,7 +56,7 @@ from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
 from linkwright.review.sources.interface_types import find_cpp_type
-from linkwright.review.sources.name_patterns import find_format
+from linkwright.review.sources.name_patterns import extract_pattern, find_format
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames, Timer
 from linkwright.review.sources.node_options import Remappings, read_remappings
 from linkwright.review.sources.parameter_defaults import find_cpp_parameter_default
@@ -75,6 +75,7 @@ _SERVICE_QOS_INDEX = {"create_service": 1, "create_client": 0}
 """The index of the QoS behind the name of a service."""
 _PARAM_ARGUMENTS = 3
 """The number of arguments of ``param`` of ROS 1, which also has the variable for the value."""
+_NODE_HANDLE = "NodeHandle"
 _MEMBER_CALLBACK = re.compile(r",\s*&\s*\w+::\w+\s*,\s*this\b")
 _OUTPUT_CALLS = frozenset({"getParam", "getParamCached", "get"})
 _ROS2_PARAMETER_CALLS = frozenset({"declare_parameter", "auto_declare", "declare_parameter_if_not_declared"})
@@ -302,7 +303,8 @@ class _Reader:
         name = " ".join(self._text[slice(*offsets)].split())
         is_ros = self._add_default(kind, name) or call.function not in ROS1_CALLS
         details: tuple[tuple[Detail, str], ...] = ()
-        if call.function == "param" and type_name and len(call.arguments) == _PARAM_ARGUMENTS:
+        is_param = call.function == "param" and len(call.arguments) == _PARAM_ARGUMENTS
+        if is_param and (type_name or (extract_pattern(name) is not None and _NODE_HANDLE in self._text)):
             is_ros, type_name = True, self._parameter_defaults.find(call, texts)
         elif kind is not NameKind.PARAMETER:
             is_ros = is_ros or bool(type_name) or _MEMBER_CALLBACK.search(", ".join(["", *texts])) is not None

@@ -117,7 +117,7 @@ def read_declared_members(text: str, access: Collection[str] = PUBLIC) -> Iterat
     """
     for chunk, classes, start, _ in _read_chunks(text, access):
         declaration = re.sub(r"(?<!:):(?!:)\s*\d+$", "", chunk)
-        items = list(_split_parameters(declaration))
+        items = list(split_parameters(declaration))
         first_match = _MEMBER.fullmatch(items[0].partition("=")[0].strip()) if items and classes else None
         if first_match is None or not _NOT_MEMBERS.isdisjoint((*first_match["type"].split(), first_match["name"])):
             continue
@@ -232,7 +232,7 @@ def _read_result(prefix: str, suffix: str) -> str:
 
 def read_parameters(text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the types and the names of the parameters in the text between parentheses."""
-    texts = list(_split_parameters(text))
+    texts = list(split_parameters(text))
     return tuple(map(_parse_parameter_type, texts)), tuple(map(_parse_parameter_name, texts))
 
 
@@ -266,7 +266,7 @@ def _find_closing_parenthesis(text: str, start: int) -> int:
     return -1
 
 
-def _split_parameters(text: str) -> Iterator[str]:
+def split_parameters(text: str) -> Iterator[str]:
     """Yield the parameters in the text between parentheses."""
     depth = begin = 0
     for index, character in enumerate(text):

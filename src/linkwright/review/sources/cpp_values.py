@@ -28,6 +28,11 @@ _SET = rf"\w+\s*(?:=\s*{_UNNAMED_VALUE}|[({{]\s*{_UNNAMED_VALUE}\s*[)}}])?"
 _INITIAL = re.compile(rf"{_TYPE}\s+(?P<list>{_SET}(?:\s*,\s*{_SET})*)\s*;")
 """A declaration of members or variables with literal values."""
 _INITIAL_ITEM = re.compile(rf"(?P<name>\w+)\s*(?:=|[({{])\s*{_VALUE}")
+_INITIAL_LIST = re.compile(
+    rf"\bvector\s*<[^;{{}}=]*>\s*(?P<name>\w+)\s*=?\s*\{{(?P<items>\s*{_UNNAMED_VALUE}(?:\s*,\s*{_UNNAMED_VALUE})*\s*)\}}\s*;"
+)
+"""A declaration of a list with literal values."""
+_MAX_LIST_CHARACTERS = 120
 _INITIALIZED = re.compile(rf"(?<=[:,])\s*(?P<name>\w+)\s*(?:\(\s*|\{{\s*){_VALUE}\s*[)}}]\s*(?=[,{{])")
 """An entry of the initializer list of a constructor."""
 _MEMBER = re.compile(r"\s*(?:\*?this\s*->\s*)?(?:\w+\s*(?:\.|->)\s*)*(?P<name>[A-Za-z_]\w*)\s*")
@@ -113,7 +118,7 @@ class InitialValues:
     def __init__(self, text: str, headers: Sequence[str]) -> None:
         self._text = text
         self._headers = headers
-        self._code = _blank_callbacks(text)
+        self._code = _INITIAL_LIST.sub(lambda match: " " * len(match[0]), _blank_callbacks(text))
         declared, initial, listed = set[str](), dict[str, set[str]](), dict[str, set[str]]()
         for source in (*headers, text):
             declared |= {name for match in _DECLARED.finditer(source) for name in re.findall(r"\w+", match["names"])}
@@ -143,6 +148,8 @@ class InitialValues:
         start = max(self._text.rfind(mark, 0, position) for mark in ";{}") + 1
         name = re.escape(match["name"])
         assigned = re.compile(rf"(?<!\w){name}\s*(?:[-+*/|&]?=(?!=))(?!\s*{re.escape(value)}\s*;)|>>\s*{name}\b")
+        if value.startswith("["):
+            assigned = re.compile(rf"(?<!\w){name}\s*(?:=(?!=)|\[|\.\s*(?!size|empty|at|data|begin|end)\w+\s*\()")
         read = re.compile(rf"\b{_READ}[^;()]*[,&.>\s]{name}\s*[,)]")
         is_changed = any(pattern.search(self._code, 0, start) for pattern in (assigned, read))
         return None if is_changed else value
@@ -186,7 +193,7 @@ class InitialValues:
     def find_kept_value(self, name: str) -> str | None:
         """Return the literal with which a member or variable is initialized and that nothing else sets, or None."""
         value = self._values.get(name)
-        if value is None or _is_output(self._text, name):
+        if value is None or value.startswith("[") or _is_output(self._text, name):
             return None
         is_assigned = re.search(rf"(?<![\w\"]){name}\s*[-+*/]?=(?!=)(?!\s*{re.escape(value)}\s*[;,])", self._text)
         return None if is_assigned else value
@@ -196,6 +203,10 @@ def _find_initial_values(text: str) -> Iterator[tuple[str, str]]:
     """Yield the members and variables that declarations initialize with literals, each with its value."""
     for match in _INITIAL.finditer(text):
         yield from ((item["name"], item["value"]) for item in _INITIAL_ITEM.finditer(match["list"]))
+    for match in _INITIAL_LIST.finditer(text):
+        value = f"[{' '.join(match['items'].split())}]"
+        if len(value) <= _MAX_LIST_CHARACTERS:
+            yield match["name"], value
 
 
 def _blank_callbacks(text: str) -> str:
@@ -207,8 +218,9 @@ def _blank_callbacks(text: str) -> str:
 
 
 def read_initial_values(text: str) -> dict[str, str]:
-    """Return the literals with which a header initializes members. Names with several values are left out."""
+    """Return the literals, but not lists, with which a header initializes members, if each has one value."""
     values: dict[str, set[str]] = {}
     for name, value in _find_initial_values(text):
-        values.setdefault(name, set()).add(value)
+        if not value.startswith("["):
+            values.setdefault(name, set()).add(value)
     return {name: next(iter(found)) for name, found in values.items() if len(found) == 1}

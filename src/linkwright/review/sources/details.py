@@ -12,7 +12,7 @@ from linkwright.review.changes import MAX_NAMES
 from linkwright.review.sources.cpp_types import accepts_type, can_use_result, is_convertible, is_same_type
 from linkwright.review.sources.cpp_variable_types import normalize_read_type, rejects_values
 from linkwright.review.sources.names import NO, YES, Detail, NameKind, SourceName
-from linkwright.review.sources.qos import find_depth, find_qos_reason, normalize_qos
+from linkwright.review.sources.qos import find_depth, find_qos_reason, list_policies, normalize_qos
 from linkwright.review.sources.signatures import NOTHING, parse_signature
 
 _KNOWN_IN_BOTH = (
@@ -44,6 +44,16 @@ def format_name(item: SourceName) -> str:
 def format_names(items: Sequence[SourceName]) -> Phrase:
     """Return the names with their types, up to a limit."""
     return joined_first(map(format_name, items), MAX_NAMES)
+
+
+def format_added_names(items: Sequence[SourceName]) -> Phrase:
+    """Return added names with their types, and the QoS of topics if it differs from the default, up to a limit."""
+    return joined_first(map(_format_added_name, items), MAX_NAMES)
+
+
+def _format_added_name(item: SourceName) -> str:
+    policies = list_policies(item) if item.kind in (NameKind.PUBLISHER, NameKind.SUBSCRIPTION) else []
+    return format_name(replace(item, type=", ".join(filter(None, [item.type, *policies]))))
 
 
 def format_rename(old: SourceName, new: SourceName) -> Phrase:
@@ -312,6 +322,8 @@ def make_required_reason(kind: NameKind, names: Sequence[str]) -> Phrase:
         return phrase("the program fails where {names} is not set", names=text)
     if kind is NameKind.HARDWARE_PARAMETER:
         return phrase("the hardware fails where the description does not give {names}", names=text)
+    if kind is NameKind.HARDWARE_ELEMENT:
+        return phrase("the hardware fails where the description does not have {names}", names=text)
     return phrase("callers that do not pass {names} get an error", names=text)
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 
+from linkwright.review.comments import without_comments
 from linkwright.review.sources.cpp_text import find_arguments
 from linkwright.review.sources.names import FoundName, NameKind
 from linkwright.review.sources.parameter_defaults import split_sum
+from linkwright.review.versions import Version
 
 NAME_PART, NUMBER_PART, UNKNOWN_PART = "<name>", "<number>", "<...>"
 """The marks for a name of the description, a number and another unknown text in the name of an interface."""
@@ -29,10 +31,16 @@ _PARAMETER = re.compile(
 )
 """A parameter that hardware reads from its description, such as ``info_.hardware_parameters["port"]``."""
 _HARDWARE = re.compile(r"\bhardware_interface\b|\bHardwareInfo\b")
+_ELEMENT = re.compile(
+    r"\binfo_?\s*\.\s*(?P<list>sensors|gpios|transmissions)\s*"
+    r"(?:\[\s*\d+\s*\]|\.\s*(?:at\s*\(\s*\d+|(?:front|back)\s*\()\s*\))"
+)
+"""An element of the description that hardware reads at a fixed index, such as ``info_.sensors[0]``."""
 _CHECKS = frozenset({"find", "count", "contains"})
 _MAX_BRANCH_CHARACTERS = 250
 _MIN_ARGUMENTS = 3
 """The minimum number of arguments of an interface that a list constructs: two names and a variable."""
+_DESCRIPTION_SUFFIXES = (".xacro", ".urdf")
 _CONTROLLER = re.compile(r"\bInterfaceConfiguration\b")
 
 
@@ -66,6 +74,31 @@ def find_hardware_interfaces(text: str, evaluate: Callable[[int, int], str | Non
         name, start, end = match["name"], match.start("name"), match.end("name")
         variable = "" if match["call"] not in _CHECKS else _find_variable(text, match.end(), name)
         yield FoundName(NameKind.HARDWARE_PARAMETER, name, start, end, is_required=is_required, variable=variable)
+    for match in _ELEMENT.finditer(text) if _HARDWARE.search(text) else ():
+        is_checked = re.search(rf"\b{match['list']}\s*\.\s*(?:size|empty)\s*\(", text) is not None
+        name = f"<{match['list'].removesuffix('s')}>"
+        is_required = not is_checked and not is_caught
+        yield FoundName(NameKind.HARDWARE_ELEMENT, name, *match.span("list"), is_required=is_required)
+
+
+def find_description_without(version: Version, classes: Collection[str], elements: Collection[str]) -> str | None:
+    """Return a description that uses hardware but certainly lacks an element; None if there is none.
+
+    Args:
+        version: the version of the repository.
+        classes: the names of the classes of the hardware, such as ``arm::ArmHardware``.
+        elements: the elements, such as ``<sensor>``.
+    """
+    names = "|".join(sorted({re.escape(name.rpartition("::")[2]) for name in classes}))
+    plugin = re.compile(rf"<plugin>\s*(?:\w+(?:/|::))*(?:{names})\s*</plugin>")
+    for path in version.paths(_DESCRIPTION_SUFFIXES):
+        text = version.text(path)
+        if names and plugin.search(text) is not None:
+            code = without_comments(text, path)
+            is_complete = "<ros2_control" in code and "include" not in code and "insert_block" not in code
+            if is_complete and any(f"{element[:-1]} " not in code for element in elements):
+                return path
+    return None
 
 
 def _find_variable(text: str, position: int, name: str) -> str:

@@ -43,6 +43,10 @@ class NameKind(Enum):
     STATE_INTERFACE = (phrase("state interface"), phrase("state interfaces"))
     CLAIMED_INTERFACE = (phrase("claimed interface"), phrase("claimed interfaces"))
     HARDWARE_PARAMETER = (phrase("parameter of the hardware"), phrase("parameters of the hardware"))
+    HARDWARE_ELEMENT = (
+        phrase("element of ros2_control that the hardware reads"),
+        phrase("elements of ros2_control that the hardware reads"),
+    )
     OPTION = (phrase("command-line option"), phrase("command-line options"))
     PLUGIN = (phrase("exported class"), phrase("exported classes"))
     PLUGINLIB_CLASS = (phrase("class for pluginlib"), phrase("classes for pluginlib"))

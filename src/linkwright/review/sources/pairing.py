@@ -15,7 +15,7 @@ _MIN_SIMILARITY = 0.6
 _MAX_COMPARED_PAIRS = 10_000
 """The maximum number of pairs of names among which similar names are searched."""
 _UNTYPED_KINDS = (
-    *(NameKind.PARAMETER, NameKind.ELEMENT, NameKind.HARDWARE_PARAMETER),
+    *(NameKind.PARAMETER, NameKind.ELEMENT, NameKind.HARDWARE_PARAMETER, NameKind.HARDWARE_ELEMENT),
     *(NameKind.CLASS, NameKind.FUNCTION, NameKind.OPTION),
 )
 """The kinds for which equal types do not suggest a rename."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.review.sources.names import NameKind, SourceName
+from linkwright.review.sources.names import YES, Detail, NameKind, SourceName
 
 _BEST_EFFORT = re.compile(r"best_?effort|sensor_?data", re.IGNORECASE)
 _RELIABLE = re.compile(r"\breliable\b|[._]RELIABLE\b|_RELIABLE\b")
@@ -53,6 +53,15 @@ def normalize_qos(text: str) -> str:
     compact = _DEFAULT_PROFILE.sub("10", re.sub(r"\s+|\b(?:rclcpp|rmw)::", "", text))
     match = _DEPTH.fullmatch(compact)
     return compact if match is None else f"{match['depth']}{_DEFAULTS.sub('', match['rest'])}"
+
+
+def list_policies(name: SourceName) -> list[str]:
+    """Return the policies of a topic that differ from the default: ``best_effort``, ``transient_local``, ``latch``."""
+    details = dict(name.details)
+    text = details.get(Detail.QOS, "")
+    policies = (("best_effort", _BEST_EFFORT), ("transient_local", _TRANSIENT))
+    found = [policy for policy, pattern in policies if pattern.search(text) is not None]
+    return [*found, "latch"] if details.get(Detail.LATCH) == YES else found
 
 
 def find_depth(text: str) -> str | None:

@@ -11,7 +11,7 @@ from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKin
 
 _HARMLESS_KINDS = (
     *(NameKind.CLIENT, NameKind.ACTION_CLIENT, NameKind.FRAME_LOOKUP, NameKind.MESSAGE_FRAME),
-    *(NameKind.CLAIMED_INTERFACE, NameKind.PLUGINLIB_CLASS),
+    *(NameKind.CLAIMED_INTERFACE, NameKind.PLUGINLIB_CLASS, NameKind.HARDWARE_ELEMENT),
 )
 _REQUESTS = frozenset({NameKind.CLIENT, NameKind.ACTION_CLIENT})
 _OTHER_NODES = frozenset(

@@ -18,6 +18,7 @@ from linkwright.review.sources.code_changes import CodeChange, ReportedLines, fi
 from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.frame_changes import find_frame_changes
 from linkwright.review.sources.lost_message_frames import find_lost_message_frames
+from linkwright.review.sources.moved_calls import find_moved_calls
 from linkwright.review.sources.moved_code import without_functions, without_statements
 from linkwright.review.sources.names import CPP_SUFFIXES, DYNAMIC_SUFFIX
 from linkwright.review.sources.new_assertions import find_new_assertions
@@ -48,6 +49,7 @@ def compare_statements(
     if file.old_path is not None and file.new_path is not None:
         changes += _compare_frames(old, new, file, reported)
         changes += _find_failures(old, new, file.old_path, file.new_path)
+        changes += _find_moved_calls(old, new, file.old_path, file.new_path)
         changes += _find_assertions(old, new, file.old_path, file.new_path)
         changes += _find_returned_codes(old, new, file.old_path, file.new_path)
         changes += _compare_values(old, new, file, changes)
@@ -58,6 +60,7 @@ def compare_statements(
         changes += _compare_keys(old, new, file, changes)
         changes += _find_deprecations(old, new, file)
     elif file.new_path is not None:
+        changes += _compare_commands(old, new, file, changes)
         changes += _find_added_code(old, new, file.new_path, changes)
     return changes[len(reported) :]
 
@@ -140,6 +143,14 @@ def _find_failures(old: ChangedSources, new: ChangedSources, old_path: str, new_
     for change in find_new_failures(*sides):
         effect = Effect.CHANGED if change.reason is None else Effect.BREAKING
         yield Change(change.sentence, effect, change.reason, Location(new_path, change.line, 1))
+
+
+def _find_moved_calls(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:
+    """Yield the calls that send something and that move into a condition, or out of one."""
+    before, after = old.codes.get(old_path), new.codes.get(new_path)
+    if before is not None and after is not None:
+        for item in find_moved_calls(before, after, old.get_names(old_path), new.get_names(new_path)):
+            yield Change(item.text, location=Location(new_path, item.line, 1))
 
 
 def _find_assertions(old: ChangedSources, new: ChangedSources, old_path: str, new_path: str) -> Iterator[Change]:

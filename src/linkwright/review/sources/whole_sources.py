@@ -119,7 +119,11 @@ class WholeSourcePair:
         )
         if path.endswith(PYTHON_SUFFIX) or not is_declared:
             return True
-        package = self.old.find_package(path)
+        return self.has_library()
+
+    def has_library(self) -> bool:
+        """Return whether the package of the old source may build a library."""
+        package = self.old.find_package(self.file.old_path or self.file.path)
         facts = None if package is None else read_package_facts(self.old.version, package)
         return facts is None or facts.has_library
 

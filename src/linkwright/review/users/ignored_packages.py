@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.manifest import IGNORE_MARKERS, MANIFEST
-from linkwright.review.changes import Change, Effect, Location
+from linkwright.review.changes import Change, Effect, Location, Subject
+from linkwright.review.launches.missing_programs import RepositoryPackage
 from linkwright.review.versions import Version, Versions
 
 
@@ -35,6 +37,34 @@ def find_ignored_packages(versions: Versions, changed_files: Sequence[ChangedFil
         elif before is not None and after is None:
             text = phrase("built now, without '{file}'", file=before)
             yield path, Change(text, location=Location(before, 1, 1, is_old=True))
+
+
+def relieve_ignored_packages(versions: Versions, subjects: Sequence[Subject]) -> list[Subject]:
+    """Return the subjects, in which a lost name or file of a package of ROS 2 that was not built breaks nothing.
+
+    Nobody could install the package. catkin may build a package in spite of ``COLCON_IGNORE``.
+    """
+    return [
+        replace(subject, changes=list(map(_relieve, subject.changes)))
+        if subject.old_path is not None and _was_ignored(versions.old, subject.old_path)
+        else subject
+        for subject in subjects
+    ]
+
+
+def _relieve(change: Change) -> Change:
+    is_lost = change.location is None or change.location.is_old
+    return replace(change, effect=Effect.CHANGED, reason=None) if is_lost else change
+
+
+def _was_ignored(version: Version, path: str) -> bool:
+    """Return whether build tools skipped the package of a file, which is one of ROS 2."""
+    folders = [
+        folder for folder in PurePosixPath(path).parents if version.file((folder / MANIFEST).as_posix()).is_file()
+    ]
+    if not folders or _find_marker(version, (folders[0] / MANIFEST).as_posix()) is None:
+        return False
+    return not RepositoryPackage(version, folders[0].as_posix()).is_ros1
 
 
 def _find_manifests(version: Version, folder: str) -> Iterator[str]:

@@ -10,9 +10,8 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import SourceText, Span
 from linkwright.packages.readers.python_values import PythonFile, SharePath, called_name, join_path
+from linkwright.review.comments import CPP_SUFFIXES, XML_SUFFIXES, without_comments
 
-CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".hpp", ".hh", ".h")
-XML_SUFFIXES = (".launch", ".xml", ".xacro", ".urdf", ".srdf", ".sdf", ".world", ".test")
 _OTHER_SUFFIXES = (".yaml", ".yml", ".rviz", ".sh", ".bash", ".service", ".cmake", "CMakeLists.txt")
 READER_SUFFIXES = (".py", *CPP_SUFFIXES, *XML_SUFFIXES, *_OTHER_SUFFIXES)
 """The ends of the names of files that may read installed files."""
@@ -32,11 +31,6 @@ _CPP_PATH = re.compile(rf"{_SHARE_CALL}\s*[+/]\s*\"/?(?P<path>[^\"\n]*)\"(?P<res
 _CPP_VARIABLE = re.compile(rf"\b(?P<name>\w+)\s*(?:=|\(|\{{)\s*{_SHARE_CALL}\s*[;)}}]")
 _CPP_VARIABLE_PATH = r"\b{name}\s*[+/]\s*\"/?(?P<path>[^\"\n]*)\"(?P<rest>\s*[+/])?"
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"](?P<path>[\w./+-]+)[>\"]", re.MULTILINE)
-_COMMENTS = {
-    "xml": re.compile(r"<!--.*?-->", re.DOTALL),
-    "cpp": re.compile(r"/\*.*?\*/|(?<![:\"])//[^\n]*", re.DOTALL),
-    "hash": re.compile(r"(?:(?<=\s)|^)#[^\n]*", re.MULTILINE),
-}
 _OPEN_ENDS = ("$", "{", "%", "*")
 """The characters that begin a part of a path that is not known."""
 _JOIN_NAMES = frozenset({"join", "Path", "PurePath", "joinpath", "PathJoinSubstitution"})
@@ -80,12 +74,6 @@ def find_named_paths(source: SourceText, path: str) -> Iterator[NamedPath]:
     if path.endswith((".cmake", "CMakeLists.txt")):
         for match in _CMAKE_FOLDER.finditer(text):
             yield _make_named_path(source, match, match["package"], "cmake/")
-
-
-def without_comments(text: str, path: str) -> str:
-    """Return a text of the same length, with spaces in place of comments."""
-    kind = "cpp" if path.endswith(CPP_SUFFIXES) else "xml" if path.endswith(XML_SUFFIXES) else "hash"
-    return _COMMENTS[kind].sub(lambda match: " " * len(match[0]), text)
 
 
 def _make_named_path(source: SourceText, match: re.Match[str], package: str, folder: str = "") -> NamedPath:

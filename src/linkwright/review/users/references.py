@@ -148,9 +148,11 @@ def _is_lost(versions: Versions, path: str, package: str, subpath: str, lost: Co
     old_share, new_share = (
         version.share_of(package, version.file(path).parent) for version in (versions.old, versions.new)
     )
-    if old_share is None or not (old_share / subpath).is_file():
-        return False
     if new_share is not None and (new_share / subpath).exists():
+        return False
+    if old_share is None and new_share is not None:  # build tools skipped the old package
+        return versions.new.relative(new_share / subpath) in lost
+    if old_share is None or not (old_share / subpath).is_file():
         return False
     return versions.old.relative(old_share / subpath) in lost
 
