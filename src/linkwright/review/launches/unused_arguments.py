@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
+from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.argument_uses import USED_ARGUMENT, is_used, may_use, read_code
 from linkwright.review.launches.conditions import evaluate_condition
@@ -73,8 +74,8 @@ def _read_used_code(file: Path) -> str:
     if file.suffix != PYTHON_SUFFIX:
         return text
     try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError):
+        tree = parse_python(text)
+    except (SyntaxError, ValueError):
         return text
     while True:
         remover = _UnusedVariableRemover(tree)
