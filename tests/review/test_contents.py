@@ -186,7 +186,7 @@ def test_quotes_around_texts_in_a_template_make_no_difference(repository, compar
     assert list(compare(repository).subjects) == []
 
 
-@pytest.mark.parametrize("suffix", [".sdf.jinja", ".world.em"])
+@pytest.mark.parametrize("suffix", [".sdf.jinja", ".world.em", ".world.template"])
 def test_template_in_which_no_difference_is_found_is_listed(repository, compare, suffix):
     path = f"arm/models/arm{suffix}"
     text = "<sdf>\n@# one\n{% if a %}\n<model name='a'/>\n{% endif %}\n</sdf>\n"
