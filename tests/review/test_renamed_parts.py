@@ -212,6 +212,11 @@ def test_removed_file_has_its_values_and_the_number_of_the_others(review_changes
     assert sentences(found)[0].endswith(" and 2 more")
 
 
+def test_items_of_a_list_that_have_only_a_name_are_shown_by_it(review_changes):
+    found, _ = review_changes("wheels:\n- name: left\n- {name: right, arm: {length: 1}}\n- id: rear\n", None)
+    assert sentences(found) == ["parameter file removed: wheels (left, [right].arm.length 1, rear)"]
+
+
 PLANNERS = """planners:
   SBLkOld: {type: g.SBL, range: 0.0}
   ESTkOld: {type: g.EST, range: 0.0, bias: 0.05}
