@@ -331,3 +331,11 @@ def test_one_of_several_new_groups_is_no_renamed_one(repository, compare, values
     repository.write({path: values})
     found = [line for line in sentences(subject(compare(repository), path)) if "renamed" in line]
     assert found == (["r_min renamed to h_min"] if renamed else [])
+
+
+def test_parts_with_equal_values_are_one_line(review_changes):
+    limits = "".join(f"  joint_{number}: {{has_limit: true, velocity: 0.5}}\n" for number in range(3))
+    old = "limits:\n  own: {has_limit: true, velocity: 1.0}\n"
+    found, _ = review_changes(old, f"{old}{limits}")
+    assert sentences(found) == ["limits.joint_0 added: has_limit true, velocity 0.5"]
+    assert found.changes[0].other_names == ("limits.joint_1", "limits.joint_2")
