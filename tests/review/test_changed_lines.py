@@ -6,6 +6,7 @@ import pytest
 
 from tests.review.conftest import breaking
 
+PACKAGES = " ".join(f"ros-jazzy-tool-{number}" for number in range(10))
 LONG_OPTIONS = " ".join(f"_option_{number}:=value" for number in range(15))
 
 
@@ -26,6 +27,9 @@ LONG_OPTIONS = " ".join(f"_option_{number}:=value" for number in range(15))
         ("map.lua", "-- a\nx = {\n  min_range = 0.1,\n}\n", "-- b\nx = {\n  min_range = 0.3,\n}\n",
          "min_range = 0.1, -> min_range = 0.3,"),
         ("ports.ini", "; old\n[a]\nport=1\n", "; new\n[a]\nport=1\nrate=2\n", "rate=2 added"),
+        ("Dockerfile", f"RUN apt-get install {PACKAGES} joy\n", f"RUN apt-get install {PACKAGES} nav\nUSER a\n",
+         ("`RUN apt-get install ros-jazzy-tool-0 ros-jazzy-tool-1 ros-jazzy-tool-2 ...`: nav added; joy removed; "
+          "`USER a` added")),
         ("tox.ini", "[a]\nport=1\n", "[a]\nport=2\n", None),
     ],
 )  # fmt: skip

@@ -443,3 +443,20 @@ def test_a_new_package_without_which_nothing_is_built(repository, compare):
     (change,) = subject(compare(repository), "a/CMakeLists.txt").changes
     assert str(change.sentence) == "calls of find_package added: 'gz-sim8 any version, without which nothing is built'"
     assert change.reason is not None
+
+
+def test_a_call_whose_macro_is_defined_now_is_not_removed(repository, compare):
+    head = "cmake_minimum_required(VERSION 3.8)\nproject(arm)\ninclude(macros.cmake)\n"
+    build = f"{head}arm_component(driver src/driver.cpp)\n"
+    macro = "macro(arm_component name source)\n  add_library(${name} SHARED ${source})\nendmacro()\n"
+    repository.commit({**MANIFEST, "a/CMakeLists.txt": build, "a/macros.cmake": "", "a/src/driver.cpp": ""})
+    repository.commit({"a/macros.cmake": macro})
+    assert sentences(subject(compare(repository, "HEAD~"), "a/CMakeLists.txt")) == [
+        "built targets added: 'driver'",
+        "'arm_component', which the file already called, is defined now",
+    ]
+    repository.write({"a/macros.cmake": ""})
+    assert sentences(subject(compare(repository), "a/CMakeLists.txt")) == [
+        "built targets removed: 'driver'",
+        "'arm_component', which the file still calls, is no longer defined",
+    ]

@@ -186,7 +186,7 @@ def test_quotes_around_texts_in_a_template_make_no_difference(repository, compar
     assert list(compare(repository).subjects) == []
 
 
-@pytest.mark.parametrize("suffix", [".sdf.jinja", ".world.em"])
+@pytest.mark.parametrize("suffix", [".sdf.jinja", ".world.em", ".world.template"])
 def test_template_in_which_no_difference_is_found_is_listed(repository, compare, suffix):
     path = f"arm/models/arm{suffix}"
     text = "<sdf>\n@# one\n{% if a %}\n<model name='a'/>\n{% endif %}\n</sdf>\n"
@@ -318,3 +318,12 @@ def test_values_that_a_call_gains_or_loses_are_one_line(repository, compare, mor
     repository.write({path: CALLS.replace("{more}", "")})
     removed = subject(compare(repository), path).changes
     assert [str(change.sentence) for change in removed] == [line.replace("added", "removed") for line, _ in lines]
+
+
+@pytest.mark.parametrize(("old_file", "is_kept"), [("", True), ("  speed: 2\n", False)])
+def test_an_added_file_that_is_a_copy_names_the_other_one(repository, compare, old_file, is_kept):
+    text = "arm:\n  ros__parameters:\n" + "".join(f"    gain_{number}: {number}.5\n" for number in range(9))
+    repository.commit({"a/config/left.yaml": text})
+    repository.write({"a/config/left.yaml": f"{text}{old_file}", "a/config/right.yaml": text})
+    copied = "a copy of a/config/left.yaml" if is_kept else "a copy of the old a/config/left.yaml"
+    assert sentences(subject(compare(repository), "a/config/right.yaml")) == [f"parameter file added: {copied}"]

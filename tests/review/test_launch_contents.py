@@ -298,3 +298,17 @@ def test_unused_arguments_of_an_added_launch_file_are_marked(repository, compare
     (line,) = sentences(subject(compare(repository), PATH))
     assert ("argument 'gui' (default false, unused)" in line) is is_unused
     assert "argument 'rate' (default 1)" in line
+
+
+@pytest.mark.parametrize(("value", "is_told"), [("true", True), ("1", True), ("false", False)])
+def test_an_include_that_passes_all_arguments_is_told(repository, compare, value, is_told):
+    include = '<include file="$(find arm)/launch/b.launch"{}><arg name="rate" value="2"/></include>'
+    text = f'<launch><arg name="rate" default="1"/><arg name="gui" default="1"/>{include}</launch>'
+    included = '<launch><arg name="rate"/><arg name="gui" default="0"/></launch>'
+    other = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/launch/b.launch": included}
+    repository.commit({**other, PATH: text.format("")})
+    repository.write({PATH: text.format(f' pass_all_args="{value}"')})
+    result = compare(repository)
+    found = [sentence for item in result.subjects for sentence in sentences(item)]
+    assert found == (["include of '$(find arm)/launch/b.launch': pass_all_args true added"] if is_told else [])
+    assert not result.breaking_changes

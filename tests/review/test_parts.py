@@ -201,7 +201,8 @@ def test_removed_and_renamed_parts_are_breaking(library, compare):
         "description file added",
         (
             "macro 'gripper' added: parameters name, parent, side:=left, *origin, link ${name}, link ${name}_tip,"
-            " joint ${name}_joint, gazebo ${name}"
+            " joint ${name}_joint, gazebo ${name} (sensor 'camera',"
+            " plugin 'driver' (filename=driver.so, topicName image))"
         ),
     ]
 
@@ -487,3 +488,17 @@ def test_link_that_callers_make_instead_of_a_macro_is_breaking_for_other_callers
     (change,) = changes
     assert str(change.sentence) == f"macro 'stand': no longer makes 'world', but {folder}/cell.urdf.xacro does"
     assert str(change.reason) == "other callers of the macro lack 'world' unless they make it"
+
+
+def test_sensors_and_plugins_of_an_added_macro_are_shown(package, compare):
+    sensor = """<sensor type="ray" name="laser"><update_rate>5</update_rate><visualize>${visual}</visualize>
+      <plugin name="scanner" filename="libgazebo_ros_ray_sensor.so"><topicName>scan</topicName></plugin></sensor>"""
+    macro = f"""<xacro:macro name="laser" params="visual:=false"><gazebo reference="laser">{sensor}</gazebo>
+      <gazebo reference="base"><mu1>0.2</mu1></gazebo></xacro:macro>"""
+    path = "arm_description/urdf/laser.gazebo.xacro"
+    package.write({path: f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{macro}</robot>'})
+    assert sentences(subject(compare(package), path))[1] == (
+        "macro 'laser' added: parameters visual:=false, "
+        "gazebo laser (sensor 'laser' (type=ray, update_rate 5, visualize ${visual}), "
+        "plugin 'scanner' (filename=libgazebo_ros_ray_sensor.so, topicName scan)), gazebo base"
+    )

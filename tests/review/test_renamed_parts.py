@@ -212,6 +212,11 @@ def test_removed_file_has_its_values_and_the_number_of_the_others(review_changes
     assert sentences(found)[0].endswith(" and 2 more")
 
 
+def test_items_of_a_list_that_have_only_a_name_are_shown_by_it(review_changes):
+    found, _ = review_changes("wheels:\n- name: left\n- {name: right, arm: {length: 1}}\n- id: rear\n", None)
+    assert sentences(found) == ["parameter file removed: wheels (left, [right].arm.length 1, rear)"]
+
+
 PLANNERS = """planners:
   SBLkOld: {type: g.SBL, range: 0.0}
   ESTkOld: {type: g.EST, range: 0.0, bias: 0.05}
@@ -326,3 +331,11 @@ def test_one_of_several_new_groups_is_no_renamed_one(repository, compare, values
     repository.write({path: values})
     found = [line for line in sentences(subject(compare(repository), path)) if "renamed" in line]
     assert found == (["r_min renamed to h_min"] if renamed else [])
+
+
+def test_parts_with_equal_values_are_one_line(review_changes):
+    limits = "".join(f"  joint_{number}: {{has_limit: true, velocity: 0.5}}\n" for number in range(3))
+    old = "limits:\n  own: {has_limit: true, velocity: 1.0}\n"
+    found, _ = review_changes(old, f"{old}{limits}")
+    assert sentences(found) == ["limits.joint_0 added: has_limit true, velocity 0.5"]
+    assert found.changes[0].other_names == ("limits.joint_1", "limits.joint_2")

@@ -245,3 +245,26 @@ def test_name_of_a_camera_of_gazebo_ros_is_the_namespace_of_its_topics(repositor
     assert [sentence.rpartition(" plugin ")[2] for sentence in breaking(compare(repository))] == [
         "driver camera_name: front -> rear"
     ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "is_breaking"),
+    [
+        ("<sdf version='1.6'>model.sdf</sdf>", "", "sdf 1.6 model.sdf removed", True),
+        ("", "<sdf version='1.4'>old.sdf</sdf>", "sdf 1.4 old.sdf added", False),
+        ("<version>1.0<", "<version>1.1<", "version 1.0 -> 1.1", False),
+        ("<name>Ana<", "<name>Bo<", None, False),
+    ],
+)
+def test_files_of_a_model_configuration_are_compared(repository, compare, old, new, expected, is_breaking):
+    text = (
+        "<?xml version='1.0'?>\n<model><name>Tree</name><version>1.0</version><sdf version='1.6'>model.sdf</sdf>"
+        "<author><name>Ana</name></author></model>"
+    )
+    path = "w/models/tree/model.config"
+    repository.commit({path: text})
+    repository.write({path: text.replace(old, new) if old else text.replace("<author>", f"{new}<author>")})
+    result = compare(repository)
+    found = [str(change.sentence) for item in result.subjects for change in item.changes]
+    assert found == ([expected] if expected else [])
+    assert bool(breaking(result)) is is_breaking

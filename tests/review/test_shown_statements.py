@@ -127,3 +127,9 @@ def test_statement_that_another_line_reports_is_left_out(repository, compare):
     lines = list_lines(repository, compare, "pass", code)
     assert "in 'Arm.move()': `self.arm.wait_for_service()` added" in lines
     assert not any(line.startswith("code changed") for line in lines)
+
+
+def test_equal_added_statements_are_shown_with_their_number(repository, compare):
+    send = "self.arm.publish(pose)"
+    lines = list_lines(repository, compare, send, f"{send}\ntime.sleep(1)\n{send}\ntime.sleep(1)\n{send}")
+    assert lines == ["in 'Arm.move()': `time.sleep(1)` added (2 times); `self.arm.publish(pose)` added (2 times)"]

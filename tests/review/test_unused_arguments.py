@@ -42,3 +42,24 @@ def test_argument_that_an_absent_file_may_use_is_not_called_unused(package, comp
     package.commit({ROBOT: robot.replace("  <link", f"{ARGUMENT}  <link", 1)})
     package.write({ROBOT: robot})
     assert breaking(compare(package)) == ["argument 'vendor' removed"]
+
+
+def test_no_warning_about_the_code_of_a_launch_file_reaches_the_user(repository, compare, recwarn):
+    launch = """import os
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, ExecuteProcess
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    pattern = r'arm' + '\\ .py'
+    return LaunchDescription([
+        DeclareLaunchArgument('model', default_value='a'),
+        Node(package='arm', executable='driver', name=LaunchConfiguration('model')),
+    ])
+"""
+    repository.commit({"arm/package.xml": "<package/>", "arm/launch/arm.launch.py": launch})
+    repository.write({"arm/launch/arm.launch.py": launch.replace("LaunchConfiguration('model')", "'b'")})
+    assert breaking(compare(repository))
+    assert not [warning for warning in recwarn if issubclass(warning.category, SyntaxWarning)]

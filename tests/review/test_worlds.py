@@ -267,3 +267,29 @@ def test_added_element_is_shown_without_text_between_its_elements(repository, co
     repository.write({PATH: WORLD.replace("<range>", "+<range>+")})
     (line,) = sentences(subject(compare(repository), PATH))
     assert "+" not in line
+
+
+@pytest.mark.parametrize(
+    ("name", "model", "is_renamed"), [("wide_yard", "robot", True), ("field", "robot", False), ("yard2", "car", False)]
+)
+def test_world_that_takes_the_place_of_another_one_is_compared_with_it(repository, compare, name, model, is_renamed):
+    light = '<light name="lamp" type="point"/>'
+    world = f"""<sdf version="1.9"><world name="{name}"><gravity>0 0 -3.7</gravity>{light}
+  <physics type="ode"><real_time_update_rate>100</real_time_update_rate><max_step_size>0.01</max_step_size>
+    <ode><solver><type>quick</type></solver></ode></physics><scene><ambient>1 1 1 1</ambient></scene>
+  <model name="{model}"/></world></sdf>"""
+    repository.commit({PATH: WORLD})
+    repository.write({PATH: None, f"w/worlds/{name}.sdf": world})
+    found = sentences(subject(compare(repository), f"w/worlds/{name}.sdf"))
+    if is_renamed:
+        assert "renamed from w/worlds/yard.sdf" in found
+    else:
+        lines = f"models {model}, lights lamp, physics real_time_update_rate 100, max_step_size 0.01, gravity 0 0 -3.7"
+        assert found == [f"world added: {lines}"]
+        assert sentences(subject(compare(repository), PATH)) == [
+            (
+                "world removed: models robot, physics max_step_size 0.001, "
+                "sensor 'lidar' (type=gpu_lidar, topic scan, gz_frame_id laser, lidar range max 9), "
+                "plugin 'drive' (filename=libgazebo_ros_diff_drive.so, ros remapping cmd_vel:=drive/cmd, topics 'odom')"
+            )
+        ]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from difflib import SequenceMatcher
+from itertools import takewhile
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, counted, joined, joined_first, phrase
@@ -49,6 +50,8 @@ _MAX_COMMAND_LENGTH = 500
 """The maximum number of characters of a command, whose last words are its remappings."""
 _MAX_BYTES = 1 << 18
 _MIN_SIMILARITY = 0.5
+_MIN_SHARE_OF_WORDS = 0.7
+"""The minimum share of the words of two long commands that both have."""
 
 
 def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
@@ -76,11 +79,41 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
     if is_single_line and SequenceMatcher(None, removed[0], added[0], autojunk=False).ratio() >= _MIN_SIMILARITY:
         before, after = differing_excerpts(removed[0], added[0])
         return phrase("{old} -> {new}", old=before, new=after)
+    changed = list(_take_changed_commands(removed, added))
     if len(removed) + len(added) <= _MAX_LINES:
-        return _format_lines(
-            *(joined([f"`{shorten(line, _MAX_LINE_LENGTH)}`" for line in lines]) for lines in (added, removed))
-        )
-    return _format_lines(*(_format_first(lines) if lines else "" for lines in (added, removed)))
+        texts: list[Phrase | str] = [
+            joined([f"`{shorten(line, _MAX_LINE_LENGTH)}`" for line in lines]) for lines in (added, removed)
+        ]
+    else:
+        texts = [_format_first(lines) if lines else "" for lines in (added, removed)]
+    return _format_lines(texts[0], texts[1], changed)
+
+
+def _take_changed_commands(removed: list[str], added: list[str]) -> Iterator[Phrase]:
+    """Yield the words that long commands gain and lose, and remove these commands from both lists.
+
+    A command with the same words in another order is not a change of words.
+    """
+    for old in list(removed):
+        words = old.split()
+        for new in added:
+            new_words = new.split()
+            is_long = max(len(old), len(new)) > _MAX_LINE_LENGTH and words[0] == new_words[0]
+            gained, lost = Counter(new_words) - Counter(words), Counter(words) - Counter(new_words)
+            share = 1 - (gained.total() + lost.total()) / (len(words) + len(new_words))
+            if is_long and (gained or lost) and share >= _MIN_SHARE_OF_WORDS:
+                removed.remove(old)
+                added.remove(new)
+                gained_text, lost_text = (joined_first(list(items.elements()), MAX_NAMES) for items in (gained, lost))
+                change = _format_lines(gained_text if gained else "", lost_text if lost else "")
+                yield phrase("{entry}: {change}", entry=f"`{_find_start(old, new)}`", change=change)
+                break
+
+
+def _find_start(old: str, new: str) -> str:
+    """Return the first words that two commands have in common, not more than a short line has."""
+    common = takewhile(lambda pair: pair[0] == pair[1], zip(old.split(), new.split(), strict=False))
+    return shorten(" ".join(word for word, _ in common), _MAX_SHORT_LENGTH)
 
 
 def list_commands(version: Version, path: str) -> Phrase | None:
@@ -123,8 +156,10 @@ def _format_first(lines: list[str]) -> Phrase:
     return joined(texts)
 
 
-def _format_lines(added: Phrase | str, removed: Phrase | str) -> Phrase:
-    parts = [phrase("{items} added", items=added)] if added else []
+def _format_lines(added: Phrase | str, removed: Phrase | str, changed: Sequence[Phrase] = ()) -> Phrase:
+    parts = [*changed]
+    if added:
+        parts.append(phrase("{items} added", items=added))
     if removed:
         parts.append(phrase("{items} removed", items=removed))
     return joined(parts, "; ")

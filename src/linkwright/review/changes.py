@@ -47,6 +47,7 @@ class SubjectKind(Enum):
     SOURCE = "node source"
     PLUGINS = "plugin description"
     RVIZ = "RViz configuration"
+    MODEL_CONFIGURATION = "model.config"
     GUI = "configuration of Gazebo's window"
     BUILD = "build file"
     MANIFEST = "package manifest"

@@ -28,6 +28,10 @@ from linkwright.xmltree.reader import read_bytes
 _TESTED_KINDS = (SubjectKind.PARAMETERS, SubjectKind.LAUNCH_FILE)
 """The kinds of files whose changes are not breaking if only tests use the files."""
 
+_COPIED_KINDS = (SubjectKind.PARAMETERS, SubjectKind.LAUNCH_FILE, SubjectKind.RVIZ)
+"""The kinds of added files that, as copies of other files, are shown without contents."""
+_MIN_COPIED_CHARACTERS = 100
+
 
 def compare_file(
     versions: Versions, rule: KindRule, old_path: str | None, new_path: str | None, drawings: Drawings
@@ -100,7 +104,10 @@ def _describe_unpaired_file(
     try:
         rule = adapt_rule_to_contents(rule, version, path)
         text = rule.added if new_path is not None else rule.removed
-        if new_path is not None or rule.shows_removed:
+        copied = None if new_path is None or kind not in _COPIED_KINDS else _find_copied_file(versions, new_path)
+        if copied is not None:
+            text = phrase("{change}: {items}", change=text, items=copied)
+        elif new_path is not None or rule.shows_removed:
             text = _add_contents(rule, text, version, path)
         changes, images = _describe_contents(version, kind, path, drawings)
         problems += [] if new_path is None else _find_unreadable(version, kind, path, text, changes)
@@ -151,6 +158,18 @@ def _make_renaming_change(versions: Versions, rule: KindRule, old_path: str, new
     effect = Effect.CHANGED if reason is None else Effect.BREAKING
     text = phrase("renamed from {path}", path=old_path)
     return Change(text, effect, reason, path_change=PathChange.RENAMED)
+
+
+def _find_copied_file(versions: Versions, path: str) -> Phrase | None:
+    """Return the file of the same folder of which an added file is a copy, or None."""
+    text, folder = versions.new.text(path), PurePosixPath(path).parent.as_posix()
+    if len(text) < _MIN_COPIED_CHARACTERS or not versions.old.file(folder).is_dir():
+        return None
+    for other in versions.old.paths((PurePosixPath(path).suffix,), "" if folder == "." else folder):
+        if PurePosixPath(other).parent.as_posix() == folder and versions.old.text(other) == text:
+            is_kept = versions.new.text(other) == text
+            return phrase("a copy of {path}", path=other) if is_kept else phrase("a copy of the old {path}", path=other)
+    return None
 
 
 def _add_contents(rule: KindRule, text: Phrase, version: Version, path: str) -> Phrase:

@@ -29,6 +29,7 @@ from linkwright.review.files.interfaces import compare_interfaces, interface_con
 from linkwright.review.files.manifests import compare_manifests, manifest_contents
 from linkwright.review.files.maps import compare_map_files, compare_maps, map_contents
 from linkwright.review.files.meshes import compare_meshes, mesh_contents
+from linkwright.review.files.model_configurations import MODEL_CONFIGURATION, compare_model_configurations
 from linkwright.review.files.parameter_files import parameter_contents
 from linkwright.review.files.python_settings import (
     PYPROJECT,
@@ -123,6 +124,15 @@ _RULES = (
         phrase("world removed"),
         phrase("launch files and users that name the file do not find it"),
         contents=world_contents,
+        shows_removed=True,
+    ),
+    KindRule(
+        SubjectKind.MODEL_CONFIGURATION,
+        compare_model_configurations,
+        (MODEL_CONFIGURATION,),
+        phrase("model configuration added"),
+        phrase("model configuration removed"),
+        needs_contents=True,  # the model itself is reported
     ),
     KindRule(
         SubjectKind.TEMPLATE,

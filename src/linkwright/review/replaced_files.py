@@ -1,4 +1,4 @@
-"""Find launch and parameter files that took the place of removed ones and that git does not recognize as renamed."""
+"""Find launch files, parameter files and worlds that replaced others and that git does not recognize as renamed."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from pathlib import PurePosixPath
 
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.file_pair import UnreadableFileError
+from linkwright.review.files.worlds import read_world_models
 from linkwright.review.files.yaml_values import read_yaml_text, read_yaml_values
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.programs import try_read_outline
 from linkwright.review.versions import Version, Versions
 
+_WORLD_SUFFIXES = (".world", ".sdf")
 _YAML_SUFFIXES = (".yaml", ".yml")
 _MIN_NAME_SIMILARITY = 0.7
 _MIN_SHARE_OF_VALUES = 0.8
@@ -29,13 +31,14 @@ def join_replaced_files(versions: Versions, files: Sequence[ChangedFile]) -> lis
     """Return the changed files, with a removed and an added file with alike names and contents as one renamed file.
 
     Git recognizes renamed files by the share of equal lines, also if the added one lacks many of them. Launch files of
-    a folder are one if they start the same programs; parameter files of a package, if one has nearly all values of
-    the other one.
+    a folder are one if they start the same programs, and worlds if they have the same models; parameter files of a
+    package, if one has nearly all values of the other one.
     """
     pairs: dict[str, str] = {}
     for is_candidate, read, are_alike, get_group in (
-        (is_launch_file, _read_programs, _have_equal_programs, _get_folder),
+        (is_launch_file, _read_programs, _have_equal_keys, _get_folder),
         (_is_parameter_file, _read_values, _have_common_values, _get_package),
+        (_is_world, _read_models, _have_equal_keys, _get_folder),
     ):
         removed = [file.old_path for file in files if file.old_path and not file.new_path and is_candidate(file.path)]
         added = [file.new_path for file in files if file.new_path and not file.old_path and is_candidate(file.path)]
@@ -76,9 +79,24 @@ def _rank_pairs(
         for new_path, new_group, new_contents in added:
             old_name, new_name = (PurePosixPath(path).name.partition(".")[0] for path in (old_path, new_path))
             similarity = SequenceMatcher(None, old_name, new_name, autojunk=False).ratio()
-            is_close = old_group == new_group and similarity >= _MIN_NAME_SIMILARITY
+            has_words_of_other = _have_common_words(old_name, new_name)
+            is_close = old_group == new_group and (similarity >= _MIN_NAME_SIMILARITY or has_words_of_other)
             if is_close and are_alike(old_contents, new_contents):
                 yield similarity, old_path, new_path
+
+
+def _have_common_words(old_name: str, new_name: str) -> bool:
+    """Return whether one of two names is the other one with more words before or after it."""
+    shorter, longer = sorted((f"_{name.replace('-', '_')}_" for name in (old_name, new_name)), key=len)
+    return longer.startswith(shorter) or longer.endswith(shorter)
+
+
+def _is_world(path: str) -> bool:
+    return path.endswith(_WORLD_SUFFIXES)
+
+
+def _read_models(version: Version, path: str) -> _Contents:
+    return Counter(read_world_models(version, path))
 
 
 def _is_parameter_file(path: str) -> bool:
@@ -98,7 +116,7 @@ def _read_programs(version: Version, path: str) -> _Contents:
     return Counter() if outline is None else Counter(entry.name for entry in outline.entries if entry.kind == "node")
 
 
-def _have_equal_programs(old: _Contents, new: _Contents) -> bool:
+def _have_equal_keys(old: _Contents, new: _Contents) -> bool:
     return bool(old) and old.keys() == new.keys()
 
 

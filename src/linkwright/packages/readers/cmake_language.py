@@ -168,6 +168,11 @@ class CMakeProgram:
     _block_depth: int = 0
     _count: int = 0
 
+    @property
+    def routines(self) -> frozenset[str]:
+        """The names of the functions and macros that the run file and its included files define."""
+        return frozenset(self._routines)
+
     def run(self, source: SourceText) -> Iterator[Command]:
         """Yield the commands of a file, including commands in called functions and included files."""
         try:

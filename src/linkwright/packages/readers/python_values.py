@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from enum import Enum
 from functools import cached_property
 
@@ -268,10 +269,28 @@ def parse_python(text: str) -> ast.Module:
         SyntaxError: the text is not Python.
         ValueError: it is nested too deeply.
     """
+    with _reading_foreign_code():
+        return ast.parse(text)
+
+
+def parse_python_expression(text: str) -> ast.expr:
+    """Return the syntax tree of a Python expression, without warnings about its code.
+
+    Raises:
+        SyntaxError: the text is not an expression.
+        ValueError: it is nested too deeply.
+    """
+    with _reading_foreign_code():
+        return ast.parse(text, mode="eval").body
+
+
+@contextmanager
+def _reading_foreign_code() -> Iterator[None]:
+    """Ignore warnings about the user's code, such as invalid escapes, and report deep nesting as a ValueError."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # ignore warnings about the user's code, such as invalid escapes
-            return ast.parse(text)
+            warnings.simplefilter("ignore")
+            yield
     except (RecursionError, MemoryError):
         raise ValueError(phrase("it is nested too deeply")) from None
 

@@ -103,8 +103,24 @@ def _compare_facts(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     _report_conditions(pair, conditions)
     _report_repeated_exports(pair, old, new)
     compare_installed_files(pair, old, new)
-    compare_other_commands(pair, old.other_commands, new.other_commands)
+    _report_defined_routines(pair, old, new)
+    old_commands, new_commands = (
+        [command for command in facts.other_commands if command[0] not in (old.routines | new.routines)]
+        for facts in (old, new)
+    )
+    compare_other_commands(pair, old_commands, new_commands)
     old.environment.compare(pair, new.environment)
+
+
+def _report_defined_routines(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
+    """Report the functions and macros that one version calls and only the other version defines.
+
+    The calls themselves are not changes: only one version shows the commands that they run.
+    """
+    for name in dict.fromkeys(name for name, _ in old.other_commands if name in new.routines - old.routines):
+        pair.add(phrase("'{name}', which the file already called, is defined now", name=name), None)
+    for name in dict.fromkeys(name for name, _ in new.other_commands if name in old.routines - new.routines):
+        pair.add(phrase("'{name}', which the file still calls, is no longer defined", name=name), None)
 
 
 _FactIndex: TypeAlias = "dict[tuple[str, str | None], Fact]"

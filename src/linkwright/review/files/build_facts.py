@@ -173,6 +173,7 @@ class BuildFacts:
         files: the sources of the installed files relative to the package, by destination relative to the prefix.
         unknown: the reasons why more files may be installed than `files` contains.
         other_commands: the other commands or settings, each with its name and its text.
+        routines: the names of the functions and macros that the file and the files that it includes define.
         package: the path of the folder of the package relative to the root.
         project: the name of the package; empty if it is not known.
         environment: the environment variables that the file reads.
@@ -192,6 +193,7 @@ class BuildFacts:
     files: dict[str, str] = field(default_factory=dict)
     unknown: frozenset[str] = frozenset()
     other_commands: list[tuple[str, str]] = field(default_factory=list)
+    routines: frozenset[str] = frozenset()
     package: str = ""
     project: str = ""
     environment: EnvironmentVariables = field(default_factory=lambda: EnvironmentVariables(()))

@@ -116,6 +116,7 @@ def read_cmake_facts(version: Version, path: str, options: Iterable[str] = ()) -
     program = CMakeProgram(file.parent)
     program.variables |= dict.fromkeys(options, "OFF")
     commands = list(program.run(source))
+    facts.routines = program.routines
     for reader in (
         _read_installed_targets,
         _read_interfaces,

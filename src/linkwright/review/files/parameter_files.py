@@ -269,7 +269,15 @@ def _list_values(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]:
     if part in values:
         return (values[part].shown,)
     names = {name: name.removeprefix(part).lstrip(".").removeprefix("ros__parameters.") for name in values}
-    return tuple(f"{names[name]} {value.shown}" for name, value in values.items() if not _is_label(name, value))
+    items = Counter(name[: end.end()] for name in values for end in _ITEM_END.finditer(name))
+    return tuple(
+        value.shown if _is_label(name, value) else f"{names[name]} {value.shown}"
+        for name, value in values.items()
+        if not _is_label(name, value) or items[name.rpartition(".")[0]] == 1
+    )
+
+
+_ITEM_END = re.compile(r"\](?=\.)")
 
 
 def _is_label(name: str, value: YamlValue) -> bool:

@@ -13,6 +13,9 @@ from linkwright.xmltree import Element
 
 _MAX_VALUES_OF_PLUGIN = 4
 """The maximum number of values of each plugin or sensor in the line about an added world or model."""
+_WORLD = "world"
+_ENGINES = ("ode", "bullet", "dart", "simbody")
+"""The elements of ``<physics>`` with the settings of an engine."""
 _INCLUDE = "include"
 """The tag of elements that have their name, or else their URI, as a child."""
 
@@ -29,7 +32,22 @@ def summarize_element(element: Element) -> Iterator[Phrase]:
         yield phrase("links {names}", names=joined_first(names["link"], MAX_NAMES))
     if names["joint"]:
         yield phrase("joints {names}", names=joined_first(names["joint"], MAX_NAMES))
+    if element.tag == _WORLD:
+        yield from _summarize_surroundings(element)
     yield from format_plugins(element, _MAX_VALUES_OF_PLUGIN)
+
+
+def _summarize_surroundings(world: Element) -> Iterator[Phrase]:
+    """Yield the lights, the steps of the physics and the gravity of a world."""
+    lights = [_get_name(light) for light in world.elements("light")]
+    if lights:
+        yield phrase("lights {names}", names=joined_first(lights, MAX_NAMES))
+    for physics in world.elements("physics"):
+        values = format_values(physics, _MAX_VALUES_OF_PLUGIN, _ENGINES)
+        if values is not None:
+            yield phrase("physics {values}", values=values)
+    for gravity in world.elements("gravity"):
+        yield phrase("gravity {values}", values=gravity.text().strip())
 
 
 def summarize_shapes_and_mass(model: Element) -> Iterator[Phrase]:

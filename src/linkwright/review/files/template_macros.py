@@ -7,6 +7,7 @@ import re
 from collections.abc import Collection, Iterator
 
 from linkwright.diagnostics import Phrase, joined, phrase, quoted_names
+from linkwright.packages.readers.python_values import parse_python_expression
 
 PARAMETERS = re.compile(r"(?:^|.* )macro \S+ @parameters")
 """The path of the parameters of a macro."""
@@ -61,8 +62,8 @@ def read_call(content: str, names: Collection[str]) -> tuple[str, list[tuple[str
         names: the names of macros and of modules with macros.
     """
     try:
-        call = ast.parse(" ".join(content.split()), mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        call = parse_python_expression(" ".join(content.split()))
+    except (SyntaxError, ValueError):
         return None
     if not isinstance(call, ast.Call) or any(keyword.arg is None for keyword in call.keywords):
         return None

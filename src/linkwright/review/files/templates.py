@@ -12,7 +12,9 @@ from linkwright.sdf.text import parse_as_gazebo
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
 
-TEMPLATE_SUFFIXES = (".sdf.jinja", ".sdf.jinja2", ".world.jinja", ".sdf.em", ".world.em")
+TEMPLATE_SUFFIXES = tuple(
+    f".{kind}.{engine}" for kind in ("sdf", "world") for engine in ("jinja", "jinja2", "j2", "em", "template")
+)
 _STATEMENT = re.compile(r"\{%.*?%\}|\{#.*?#\}|@\[.*?\]@?(?=\s*$)|^\s*@#.*?$", re.DOTALL | re.MULTILINE)
 _SET = re.compile(r"\{%[-+]?\s*set\s+(?P<name>[\w.]+)\s*=(?!=)\s*(?P<value>.*?)\s*[-+]?%\}", re.DOTALL)
 _MACRO = re.compile(r"\{%[-+]?\s*macro\s+(?P<name>\w+)\s*\((?P<parameters>.*)\)\s*[-+]?%\}", re.DOTALL)

@@ -133,7 +133,8 @@ def merge_values(changes: Iterable[ValueChange]) -> Iterator[Change]:
         else:
             lines[id(group[0])] = _merge_group(group)
     for together in _group_by_parent(lone):
-        lines[id(together[0])] = _merge_group(together) if len(together) == 1 else _list_values(together)
+        is_group = len(together) == 1 or len(together[0].values) > 1
+        lines[id(together[0])] = _merge_group(together) if is_group else _list_values(together)
     yield from (lines[id(change)] for group in groups.values() for change in group if id(change) in lines)
     for name, group in lists.items():
         yield from (
@@ -148,13 +149,22 @@ _Vector = list[tuple[Component, ValueChange]]
 
 
 def _group_by_parent(changes: Iterable[ValueChange]) -> Iterator[list[ValueChange]]:
-    """Yield the changes; many single values that one part gains or loses are together."""
+    """Yield the changes.
+
+    Parts with equal values that one part gains or loses are together, and so are many single values.
+    """
     groups: dict[Hashable, list[ValueChange]] = {}
     for change in changes:
         is_short = len(change.values) == 1 and len(change.values[0]) <= _MAX_LISTED_CHARACTERS
         is_value = change.kind != "changed" and is_short and change.reason is None is change.note
-        groups.setdefault((change.kind, change.name.rpartition(".")[0]) if is_value else id(change), []).append(change)
+        is_part = change.kind != "changed" and len(change.values) > 1 and change.reason is None is change.note
+        parent = change.name.rpartition(".")[0]
+        key = (change.kind, parent, change.values if is_part else ()) if is_value or is_part else id(change)
+        groups.setdefault(key, []).append(change)
     for group in groups.values():
+        if len(group[0].values) > 1:
+            yield group
+            continue
         size = _MAX_LISTED_VALUES if len(group) >= _MIN_SIBLINGS else 1
         yield from (group[start : start + size] for start in range(0, len(group), size))
 

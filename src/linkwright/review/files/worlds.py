@@ -162,6 +162,15 @@ def world_contents(version: Version, path: str) -> Phrase | None:
     return joined(parts) if parts else None
 
 
+def read_world_models(version: Version, path: str) -> list[str]:
+    """Return the models and the addresses of the included models of a world; none if it cannot be read."""
+    try:
+        worlds = [element for element in _read_elements(version.file(path)) if element.tag == "world"]
+    except (LinkwrightError, OSError, ValueError, RecursionError):
+        return []
+    return [name for tag in ("model", "include") for name in sorted(_find_names(worlds, tag))]
+
+
 def is_model(version: Version, path: str) -> bool:
     """Return whether an SDF file has models and no world; False if it cannot be read."""
     try:

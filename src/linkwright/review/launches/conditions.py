@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Callable
 
+from linkwright.packages.readers.python_values import parse_python_expression
 from linkwright.review.list_changes import EMPTY
 
 _SEPARATOR = re.compile(r" and (?=(?:if|unless|after) )")
@@ -51,7 +52,7 @@ def _evaluate_text(text: str) -> bool | None:
             return (left == right) == (comparison["operator"] == "==")
         return _BOOLEANS.get(text.lower())
     try:
-        return _to_bool(_evaluate_expression(ast.parse(text, mode="eval").body))
+        return _to_bool(_evaluate_expression(parse_python_expression(text)))
     except (SyntaxError, ValueError, RecursionError):
         return None
 

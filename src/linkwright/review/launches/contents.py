@@ -8,10 +8,17 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, joined_first, phrase
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.launches.argument_uses import read_code, uses_argument
-from linkwright.review.launches.outlines import IGNORED_TAG, READING, SERVER_PARAMETER, TEST, Entry, LaunchOutline
+from linkwright.review.launches.outlines import (
+    IGNORED_TAG,
+    PASSES_ALL_ARGUMENTS,
+    READING,
+    SERVER_PARAMETER,
+    TEST,
+    Entry,
+    LaunchOutline,
+)
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.launches.titles import format_settings, format_title
-from linkwright.review.launches.unused_arguments import PASSING_ATTRIBUTE
 from linkwright.review.versions import Version
 
 _SHOWN_KINDS = (
@@ -54,7 +61,7 @@ def _find_unused_arguments(file: Path, outline: LaunchOutline) -> frozenset[str]
     """
     names = [entry.name for entry in outline.entries if entry.kind == "argument" and "value" not in entry.settings]
     has_include = any(entry.kind == "include" for entry in outline.entries) and not outline.is_ros1
-    if not names or has_include or outline.has_unknown_actions or PASSING_ATTRIBUTE in read_code(file):
+    if not names or has_include or outline.has_unknown_actions or PASSES_ALL_ARGUMENTS in read_code(file):
         return frozenset()
     if any(entry.kind == "action" for entry in outline.entries):
         return frozenset()

@@ -6,6 +6,8 @@ import ast
 import re
 from copy import deepcopy
 
+from linkwright.packages.readers.python_values import parse_python_expression
+
 _EXPRESSION = re.compile(r"\s*\$\(eval\s+(?P<text>.*)\)\s*", re.DOTALL)
 _SUBSTITUTION = re.compile(r"\$\([^()]*\)")
 _STRING_OR_BLANKS = re.compile(r"(?P<text>'[^']*'|\"[^\"]*\")|\s+")
@@ -29,7 +31,7 @@ def _normalize_layout(text: str) -> str:
         return substitutions.setdefault(match[0], f"_substitution_{len(substitutions)}")
 
     try:
-        normalized = ast.unparse(ast.parse(_SUBSTITUTION.sub(replace_substitution, text).strip(), mode="eval"))
+        normalized = ast.unparse(parse_python_expression(_SUBSTITUTION.sub(replace_substitution, text).strip()))
     except (SyntaxError, ValueError, RecursionError):
         return _STRING_OR_BLANKS.sub(lambda match: match["text"] or "", text)
     return f"{normalized} {list(substitutions)}"

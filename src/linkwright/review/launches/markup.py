@@ -22,6 +22,7 @@ from linkwright.review.launches.outlines import (
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PARAMETER,
+    PASSES_ALL_ARGUMENTS,
     PROGRAM_KINDS,
     REMAPPING,
     SERVER_PARAMETER,
@@ -382,4 +383,6 @@ def _read_passed_arguments(tag: LaunchTag) -> dict[str, str]:
     }
     if tag.attributes.get("ns"):
         settings[NAMESPACE_OF_INCLUDED] = tag.attributes["ns"]
+    if tag.attributes.get(PASSES_ALL_ARGUMENTS, "false").lower() not in ("false", "0"):
+        settings[PASSES_ALL_ARGUMENTS] = "true"
     return {**settings, **_read_environment_settings(tag)}

@@ -12,6 +12,7 @@ from linkwright.review.launches.outlines import (
     NAMESPACE,
     NAMESPACE_OF_INCLUDED,
     PARAMETER,
+    PASSES_ALL_ARGUMENTS,
     REMAPPING,
     SERVER_PARAMETER,
     Entry,
@@ -31,7 +32,7 @@ _MIN_SIMILARITY_OF_FILES = 0.6
 _SEPARATORS = re.compile(r"[\W_]+|node")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _PACKAGE_FOLDER = re.compile(r"\$\(find(?:-pkg-share)? [^()]+\)/")
-_CONTEXT_SETTINGS = frozenset({CONDITION, NAMESPACE_OF_INCLUDED})
+_CONTEXT_SETTINGS = frozenset({CONDITION, NAMESPACE_OF_INCLUDED, PASSES_ALL_ARGUMENTS})
 """The settings of an include that are not passed arguments."""
 _MIN_COMMON_ARGUMENTS = 2
 _MIN_SHARE_OF_COMMON_ARGUMENTS = 0.5

@@ -19,6 +19,8 @@ PROGRAM_KINDS = ("node", TEST)
 CONDITION = "condition"
 NAMESPACE = "namespace"
 NAMESPACE_OF_INCLUDED = "namespace of its nodes"
+PASSES_ALL_ARGUMENTS = "pass_all_args"
+"""The attribute of an include in ROS 1 that passes all arguments of the file."""
 """The setting of an include that is not a passed argument."""
 REMAPPING = "remapping "
 """The prefix of the settings that are remappings of a node, before the remapped name."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
-from linkwright.packages.readers.python_values import called_name
+from linkwright.packages.readers.python_values import called_name, parse_python
 from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.reading import try_read_source
 
@@ -20,8 +20,8 @@ def looks_up_package(file: Path, package: str) -> bool:
     """Return whether a Python launch file certainly looks up a package when it is loaded."""
     source = try_read_source(file) if file.suffix == PYTHON_SUFFIX else None
     try:
-        tree = None if source is None else ast.parse(source.text)
-    except (SyntaxError, ValueError, RecursionError):
+        tree = None if source is None else parse_python(source.text)
+    except (SyntaxError, ValueError):
         return False
     return tree is not None and package in _find_packages(tree)
 

@@ -18,6 +18,7 @@ from linkwright.review.launches.outlines import (
     CONDITION,
     ENVIRONMENT,
     NAMESPACE_OF_INCLUDED,
+    PASSES_ALL_ARGUMENTS,
     Entry,
     LaunchOutline,
     without_condition,
@@ -123,7 +124,7 @@ def _find_passed(version: Version, path: str, *, is_ros1: bool = False) -> Itera
         included_path = None if file is None else version.relative(file)
         if included_path is not None:
             names = {without_condition(name) for name in entry.settings if not name.startswith(ENVIRONMENT)}
-            yield entry, included_path, names - {CONDITION, NAMESPACE_OF_INCLUDED}
+            yield entry, included_path, names - {CONDITION, NAMESPACE_OF_INCLUDED, PASSES_ALL_ARGUMENTS}
 
 
 def _try_read(version: Version, path: str) -> LaunchOutline | None:

@@ -8,16 +8,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from linkwright.diagnostics import phrase
+from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launches.argument_uses import USED_ARGUMENT, is_used, may_use, read_code
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import explain_argument_removal
 from linkwright.review.launches.included import IncludedActions
-from linkwright.review.launches.outlines import CONDITION, Entry, LaunchOutline
+from linkwright.review.launches.outlines import CONDITION, PASSES_ALL_ARGUMENTS, Entry, LaunchOutline
 from linkwright.review.sources.names import PYTHON_SUFFIX
 
 _ARGUMENT_WITH_DEFAULT = re.compile(r"\$\(var ([\w.-]+) ")
-PASSING_ATTRIBUTE = "pass_all_args"
 """The attribute with which an include of ROS 1 passes all arguments."""
 
 
@@ -36,7 +36,7 @@ def report_unused_arguments(
     outline = new.outline
     _report_undeclared(pair, old, outline)
     content = _read_used_code(pair.new_file)
-    if PASSING_ATTRIBUTE in content:
+    if PASSES_ALL_ARGUMENTS in content:
         return
     arguments = {entry.name for entry in old.entries if _is_argument(entry)}
     switches = {name for name in arguments if _is_switch(name, removed, old)}
@@ -73,8 +73,8 @@ def _read_used_code(file: Path) -> str:
     if file.suffix != PYTHON_SUFFIX:
         return text
     try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError):
+        tree = parse_python(text)
+    except (SyntaxError, ValueError):
         return text
     while True:
         remover = _UnusedVariableRemover(tree)

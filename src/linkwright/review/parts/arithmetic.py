@@ -7,6 +7,8 @@ import math
 import operator
 from collections.abc import Callable, Mapping
 
+from linkwright.packages.readers.python_values import parse_python_expression
+
 _MAX_CHARACTERS = 200
 _CONSTANTS = {"pi": math.pi}
 _FUNCTIONS: dict[str, Callable[[float], float]] = {
@@ -37,7 +39,7 @@ def evaluate_number(expression: str, values: Mapping[str, str]) -> str | None:
     if len(expression) > _MAX_CHARACTERS:
         return None
     try:
-        number = _evaluate(ast.parse(expression.strip(), mode="eval").body, values)
+        number = _evaluate(parse_python_expression(expression.strip()), values)
     except (ArithmeticError, SyntaxError, ValueError):
         return None
     return f"{number:.12g}" if math.isfinite(number) else None

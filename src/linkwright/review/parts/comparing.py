@@ -25,10 +25,11 @@ from linkwright.review.parts.left_uses import find_left_uses
 from linkwright.review.parts.malformed_includes import includes_malformed_file
 from linkwright.review.parts.moved_to_callers import compare_moved_to_callers
 from linkwright.review.parts.name_substitution import CALL, ComparedContent
-from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, read_outline
+from linkwright.review.parts.outline import INCLUDE, PROPERTY, Item, MacroOutline, Outline, iterate_items, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.properties import compare_properties
 from linkwright.review.parts.readings import compare_readings
+from linkwright.review.plugins import format_plugins
 from linkwright.review.unprefixed_calls import compare_prefixes
 from linkwright.review.versions import Version, Versions
 
@@ -42,6 +43,8 @@ _MAX_MACROS = 4
 """The maximum number of added macros of a file that are shown with their contents."""
 _MAX_CONTENTS = 20
 """The maximum number of items in the contents of an added macro."""
+_MAX_PLUGIN_VALUES = 6
+"""The maximum number of values of each sensor and plugin in the contents of an added macro."""
 _MIN_SIMILARITY = 0.5
 """The minimum share of equal elements of a renamed macro."""
 
@@ -262,8 +265,14 @@ def _summarize_macro(macro: MacroOutline) -> list[Phrase]:
         if child.element.tag == INCLUDE:
             items.append(phrase("includes {name}", name=child.element.attributes.get("filename", "")))
         elif child.element.tag != PROPERTY:
-            items.append(as_phrase(child.key))
+            items.append(_summarize_item(child))
     return list({str(item): item for item in items}.values())[:_MAX_CONTENTS]
+
+
+def _summarize_item(item: Item) -> Phrase:
+    """Return an element of a macro; one for Gazebo with its sensors and plugins."""
+    contents = format_plugins(item.element, _MAX_PLUGIN_VALUES) if item.element.tag == "gazebo" else []
+    return phrase("{entry} ({items})", entry=item.key, items=joined(contents)) if contents else as_phrase(item.key)
 
 
 def _compare_whole_file(

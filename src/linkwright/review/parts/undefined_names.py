@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from linkwright.lint.xacro_names import mentions
+from linkwright.packages.readers.python_values import parse_python_expression
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.known_values import evaluate_condition
 from linkwright.review.parts.name_substitution import iterate_properties
@@ -135,8 +136,8 @@ def _iterate_texts(macro: Element) -> Iterator[str]:
 def _find_looked_up_names(expression: str) -> set[str]:
     """Return the names that an expression does not bind itself; none if it is not valid."""
     try:
-        nodes = [node for node in ast.walk(ast.parse(expression.strip(), mode="eval")) if isinstance(node, ast.Name)]
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        nodes = [node for node in ast.walk(parse_python_expression(expression.strip())) if isinstance(node, ast.Name)]
+    except (SyntaxError, ValueError):
         return set()
     bound = {node.id for node in nodes if not isinstance(node.ctx, ast.Load)}
     return {node.id for node in nodes} - bound

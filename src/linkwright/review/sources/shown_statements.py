@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from difflib import SequenceMatcher
 from typing import NamedTuple
 
@@ -55,11 +55,13 @@ class _Difference(NamedTuple):
         old: the old statement.
         new: the new statement.
         body: the first statement of a condition that only one version has.
+        number: the number of equal differences in the function.
     """
 
     old: FunctionStatement | None
     new: FunctionStatement | None
     body: FunctionStatement | None = None
+    number: int = 1
 
     @property
     def texts(self) -> tuple[str | None, ...]:
@@ -92,7 +94,7 @@ def find_shown_statements(old: Code, new: Code, lines: ReportedLines, names: Sou
         before = old.functions.get(name)
         if before is None or not lines.has_unreported_change(before, parts, name):
             continue
-        differences = list({item.texts: item for item in _compare(name, before, parts, lines, sides)}.values())
+        differences = _merge_equal(_compare(name, before, parts, lines, sides))
         shown = _select(differences)
         if shown:
             found.append((max(map(_score, shown)), name, shown, len(differences) - len(shown)))
@@ -222,6 +224,13 @@ def _compare(
             yield difference
 
 
+def _merge_equal(differences: Iterable[_Difference]) -> list[_Difference]:
+    """Return differences, equal ones as one with their number."""
+    items = list(differences)
+    counts = Counter(item.texts for item in items)
+    return [item._replace(number=counts[texts]) for texts, item in {item.texts: item for item in items}.items()]
+
+
 def _pair(old: Sequence[FunctionStatement], new: Sequence[FunctionStatement]) -> Iterator[_Difference]:
     """Yield differing statements in the order of the source: as pairs if one took the place of the other."""
     if len(old) == len(new) == 1 and old[0].kind == new[0].kind:
@@ -310,10 +319,16 @@ def _score_assignment(target: str, values: Sequence[str], *, is_pair: bool, has_
 
 
 def _join(shown: Sequence[_Difference], hidden: int) -> Phrase:
-    texts = [_describe(difference) for difference in shown]
+    texts = [_describe_repeated(difference) for difference in shown]
     if hidden:
         texts.append(phrase("and {count} more", count=hidden))
     return joined(texts, "; ")
+
+
+def _describe_repeated(difference: _Difference) -> Phrase:
+    """Return the text of a difference, with its number if there are several equal ones."""
+    text, count = _describe(difference), difference.number
+    return text if count == 1 else phrase("{part} ({count} times)", part=text, count=count)
 
 
 def _describe(difference: _Difference) -> Phrase:

@@ -7,6 +7,8 @@ import copy
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from linkwright.packages.readers.python_values import parse_python
+
 _DATA_CLASS, _NAMED_TUPLE = "dataclass", "NamedTuple"
 _PLAIN_OPTIONS = frozenset({"repr", "eq", "order", "unsafe_hash", "frozen", "match_args", "slots", "weakref_slot"})
 """The options of data classes that leave the parameters as they are."""
@@ -231,7 +233,7 @@ def find_argument_default(tree: ast.AST, name: ast.Name) -> ast.expr | None:
 def parse_signature(text: str) -> Signature | None:
     """Return the parameters in a parenthesized text, or None if the text is something else."""
     try:
-        (definition,) = ast.parse(f"def f{text}: ...").body
+        (definition,) = parse_python(f"def f{text}: ...").body
     except (SyntaxError, ValueError):
         return None
     return read_signature(definition)
