@@ -305,6 +305,8 @@ def _report_unpaired_entries(
         has_known_topics, topics_reason = explain_lost_topics(entry, *outlines)
         if has_known_topics and file is None:
             reason = topics_reason
+        if reason is not None and file is not None:
+            reason = phrase("where the file is started without {file}, {reason}", file=file, reason=reason)
         if reason is not None and lacks_program(pair.versions.old, entry):
             text, reason = phrase("{change}; its package never had the program", change=text), None
         _report_removed(pair, entry, text, reason, trees)
