@@ -76,3 +76,25 @@ def test_a_dropped_source_whose_topic_another_one_reads_breaks_nobody(repository
     repository.commit({"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), PATH: text})
     repository.write({PATH: NAV2})
     assert compare(repository).breaking_changes == []
+
+
+LOADING = """<launch>
+  <group>
+    <remap from="{}" to="/front/scan"/>
+    <node pkg="move_base" type="move_base" name="move_base">
+      <rosparam file="$(find arm)/{}" command="load" ns="local_costmap"/>
+    </node>
+  </group>
+</launch>
+"""
+
+
+@pytest.mark.parametrize(("old", "new", "reason"), [("scan", "laser", None), ("scan", "scan", REASON.format("scan"))])
+def test_a_costmap_that_reads_the_same_topic_by_another_remapping_loses_nothing(repository, compare, old, new, reason):
+    path = PATH.removeprefix("arm/")
+    manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    repository.commit({**manifest, PATH: ROS1, "arm/launch/a.launch": LOADING.format(old, path)})
+    new_text = ROS1.replace("topic: scan", "topic: laser")
+    repository.write({PATH: new_text, "arm/launch/a.launch": LOADING.format(new, path)})
+    (change,) = subject(compare(repository), PATH).changes
+    assert (None if change.reason is None else str(change.reason)) == reason

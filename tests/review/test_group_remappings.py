@@ -79,3 +79,24 @@ def test_a_remapping_that_moves_into_an_included_file_is_breaking_without_the_ot
     (change,) = subject(compare(repository), "arm/launch/inner.launch.py").changes
     assert str(change.sentence).endswith(f"; {PATH} no longer sets it")
     assert str(change.reason).startswith(f"where the file is started without {PATH}, if the node")
+
+
+GROUP = """<launch>
+  <node pkg="driver" type="driver" name="driver"/>
+  <group ns="planner">{}
+    <node pkg="{}" type="{}" name="planner"/>
+  </group>
+  <node pkg="other" type="other" name="other"/>
+</launch>
+"""
+REMAPPING = '<remap from="base_scan" to="/scan"/>'
+
+
+@pytest.mark.parametrize(("program", "is_breaking"), [("move_base", False), ("other", True)])
+@pytest.mark.parametrize("is_removed", [False, True])
+def test_a_remapping_of_a_group_concerns_only_its_nodes(review_changes, program, is_breaking, is_removed):
+    texts = [GROUP.format(remapping, program, program) for remapping in ("", REMAPPING)]
+    old, new = reversed(texts) if is_removed else texts
+    changes, found = review_changes("arm.launch", old, old, new)
+    assert len(changes) == 1
+    assert bool(found) is is_breaking

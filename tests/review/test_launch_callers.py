@@ -249,7 +249,10 @@ def test_node_that_moves_to_another_launch_file_is_missing_where_it_was(review_c
     alone = READING.replace('PathJoinSubstitution([ThisLaunchFileDir(), "part.launch.py"])', '"other.launch.py"')
     new = alone.replace('        Node(package="arm", executable="hand"),\n', "")
     assert review_changes_with_reasons(new, part, old=alone) == {
-        "node 'arm/hand' moved to arm/launch/part.launch.py": "the topics and services of the node are missing"
+        "node 'arm/hand' moved to arm/launch/part.launch.py": (
+            "where the file is started without arm/launch/part.launch.py, "
+            "the topics and services of the node are missing"
+        )
     }
 
 

@@ -14,6 +14,7 @@ from linkwright.review.file_pair import FilePair
 from linkwright.review.files.parameter_files import compare_parameter_files
 from linkwright.review.files.parameter_names import find_node_name
 from linkwright.review.files.yaml_values import YamlValue
+from linkwright.review.launches.loaded_remappings import find_loaded_remappings
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceName, SourceNames
 from linkwright.review.sources.parameter_defaults import SUM
 from linkwright.review.sources.reading import read_source_names
@@ -26,7 +27,15 @@ _NAME = re.compile(r"[~/\w]*[A-Za-z][/\w]*")
 
 def compare_parameters_with_sources(pair: FilePair) -> None:
     """Compare two versions of a YAML file, and decide by the sources of its nodes which names are breaking."""
-    compare_parameter_files(pair, lambda new: GivenNames(pair.versions, pair.new_path, new).find_change_reason)
+    versions = pair.versions
+    compare_parameter_files(
+        pair,
+        lambda new: GivenNames(versions, pair.new_path, new).find_change_reason,
+        lambda: (
+            find_loaded_remappings(versions.old, pair.old_path),
+            find_loaded_remappings(versions.new, pair.new_path),
+        ),
+    )
 
 
 @dataclass(frozen=True)

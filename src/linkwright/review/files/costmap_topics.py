@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
@@ -20,6 +20,8 @@ _LAYER_TOPIC = re.compile(
 A file that only has the layers, as for ROS 1, belongs to one costmap.
 """
 
+FindRemappings = Callable[[], "tuple[Sequence[Mapping[str, str]], Sequence[Mapping[str, str]]]"]
+
 
 class CostmapTopics:
     """The topics that the costmaps of a parameter file read before and after a change.
@@ -27,11 +29,15 @@ class CostmapTopics:
     Args:
         old: the old values by path.
         new: the new values by path.
+        find_remappings: a function that returns the remappings of the nodes that load either version of the file.
     """
 
-    def __init__(self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue]) -> None:
+    def __init__(
+        self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], find_remappings: FindRemappings
+    ) -> None:
         self._old = old
         self._new = new
+        self._find_remappings = find_remappings
 
     def find_reason(self, parameter: str) -> Phrase | None:
         """Return the reason why changing or removing a parameter is breaking, or None if no topic is lost by it."""
@@ -74,10 +80,21 @@ class CostmapTopics:
         """The topics that a costmap no longer reads, by the parameters that named them."""
         lost: dict[str, list[str]] = {}
         for owner, costmap, topic in _list_topics(self._old):
-            if (costmap, topic) not in self._new_topics:
+            if (costmap, topic) not in self._new_topics and not self._keeps_full_name(costmap, topic):
                 for parameter in {owner, _get_list_name(owner)}:
                     lost.setdefault(parameter, []).append(topic)
         return lost
+
+    def _keeps_full_name(self, costmap: str, topic: str) -> bool:
+        """Return whether a costmap still reads a topic under another name, which all launch files remap to it."""
+        old, new = self._remappings
+        full_names = {names.get(topic, topic) for names in old}
+        topics = {name for owner, name in self._new_topics if owner == costmap}
+        return bool(old and new) and all(full_names <= {names.get(name, name) for name in topics} for names in new)
+
+    @cached_property
+    def _remappings(self) -> tuple[Sequence[Mapping[str, str]], Sequence[Mapping[str, str]]]:
+        return self._find_remappings()
 
     @cached_property
     def _new_topics(self) -> set[tuple[str, str]]:

@@ -18,6 +18,7 @@ from linkwright.review.changes import MAX_NAMES, Change, Effect, Location
 from linkwright.review.excerpts import shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.bridges import compare_bridges, read_bridges
+from linkwright.review.files.costmap_topics import FindRemappings
 from linkwright.review.files.generated_parameters import compare_generated_parameters, is_parameter_description
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.lists_of_mappings import (
@@ -65,12 +66,15 @@ NameRule = Callable[[str, YamlValue, YamlValue], "Phrase | None"]
 """A function that returns the reason why another value of a parameter is breaking, or None if it is not."""
 
 
-def compare_parameter_files(pair: FilePair, read_names: Callable[[Mapping[str, YamlValue]], NameRule]) -> None:
+def compare_parameter_files(
+    pair: FilePair, read_names: Callable[[Mapping[str, YamlValue]], NameRule], find_remappings: FindRemappings
+) -> None:
     """Compare two versions of a YAML file, value by value.
 
     Args:
         pair: both versions of the file.
         read_names: a function that takes the new values and returns the rule for values that name topics and frames.
+        find_remappings: a function that returns the remappings of the nodes that load either version of the file.
     """
     texts = pair.read(read_yaml_text)
     if texts is None:
@@ -94,7 +98,9 @@ def compare_parameter_files(pair: FilePair, read_names: Callable[[Mapping[str, Y
             compare_generated_parameters(pair, old, new)
             return
         old, new = resolve_includes(pair, old, new)
-    changes, renamed_values = join_renamed_values(join_replaced_classes(_find_changes(pair, old, new, read_names)))
+    changes, renamed_values = join_renamed_values(
+        join_replaced_classes(_find_changes(pair, old, new, read_names, find_remappings))
+    )
     pair.changes += [*renamed_values, *merge_values(changes)]
 
 
@@ -168,13 +174,14 @@ def _find_changes(
     old_root: yaml.Node | None,
     new_root: yaml.Node | None,
     read_names: Callable[[Mapping[str, YamlValue]], NameRule],
+    find_remappings: FindRemappings,
 ) -> Iterator[ValueChange]:
     labels = find_item_labels(old_root, new_root) if old_root is not None and new_root is not None else {}
     old_values, new = ({} if root is None else collect_values(root, labels) for root in (old_root, new_root))
     lists = find_replaced_lists(old_values, new)
     report_replaced_lists(pair, lists, new)
     old_values = {lists.get(path, path): value for path, value in old_values.items()}
-    yield from drop_reasons_of_lists(_compare_values(pair, old_values, new, read_names), lists)
+    yield from drop_reasons_of_lists(_compare_values(pair, old_values, new, read_names, find_remappings), lists)
 
 
 def _compare_values(
@@ -182,6 +189,7 @@ def _compare_values(
     old_values: dict[str, YamlValue],
     new: dict[str, YamlValue],
     read_names: Callable[[Mapping[str, YamlValue]], NameRule],
+    find_remappings: FindRemappings,
 ) -> Iterator[ValueChange]:
     migrated = find_migrated_nodes(old_values, new)
     if migrated:
@@ -190,7 +198,7 @@ def _compare_values(
     moveit = MoveItRules(old_values, new, pair.versions, pair.new_path)
     readers = KeyReaders(pair.versions, pair.new_path)
     old = _report_renamed(pair, old_values, new, moveit, readers)
-    rules = NameRules(old, new, readers, has_types=not migrated)
+    rules = NameRules(old, new, readers, find_remappings, has_types=not migrated)
     plugins = PluginPackages(pair.versions, pair.new_path)
     find_name_reason = read_names(new)
     new_keys = frozenset(_get_last_key(part) for name in new for part in list_part_paths(name))

@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.breaking import names_reason
-from linkwright.review.files.costmap_topics import CostmapTopics
+from linkwright.review.files.costmap_topics import CostmapTopics, FindRemappings
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.replaced_classes import find_replaced_classes, is_below_any
 from linkwright.review.files.unread_plugins import is_unread_plugin
@@ -84,11 +84,18 @@ class NameRules:
         old: the old values by path.
         new: the new values by path.
         readers: the programs that may read the values.
+        find_remappings: a function that returns the remappings of the nodes that load either version of the file.
         has_types: whether another type of a value is another type of a parameter.
     """
 
     def __init__(
-        self, old: Mapping[str, YamlValue], new: Mapping[str, YamlValue], readers: KeyReaders, *, has_types: bool = True
+        self,
+        old: Mapping[str, YamlValue],
+        new: Mapping[str, YamlValue],
+        readers: KeyReaders,
+        find_remappings: FindRemappings,
+        *,
+        has_types: bool = True,
     ) -> None:
         self._readers = readers
         self._has_types = has_types
@@ -104,7 +111,7 @@ class NameRules:
         types = filter(None, map(_CONTROLLER_TYPE.fullmatch, old))
         self._lost_controllers = {match["controller"] for match in types} - self._new_controllers
         self._new_parts = {part for name in new for part in list_part_paths(name)}
-        self._topics = CostmapTopics(old, new)
+        self._topics = CostmapTopics(old, new, find_remappings)
         self._replaced = find_replaced_classes(old, new)
         self._new_frames = {value.text for name, value in new.items() if offers_frame(name)}
 

@@ -1,9 +1,13 @@
-"""Decide which added launch actions are breaking: they may fail, take the place of others or rename topics."""
+"""Decide which added launch actions are breaking: they may fail, take the place of others or rename topics.
+
+So may a removed remapping for the nodes that follow.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
 from linkwright.review.file_pair import FilePair
@@ -16,6 +20,7 @@ from linkwright.review.launches.outlines import CONDITION, REMAPPING, Entry, Lau
 from linkwright.review.launches.package_lookups import looks_up_package
 from linkwright.review.launches.sides import Side, find_old_side, is_new_name
 from linkwright.review.required_packages import is_undeclared_and_new
+from linkwright.review.sources.names import PYTHON_SUFFIX
 
 _PROGRAM = re.compile(r"(?P<package>[a-z][a-z0-9_]*)/\S+")
 _INCLUDED_FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w-]+)\)/.+")
@@ -107,19 +112,48 @@ def _find_group_remapping_reason(
         return None
     if find_moved_remapping(entry, *trees) is not None or _is_remapped_by_nodes(entry.name, old):
         return None
-    programs = included[0].count_all_started_programs() & included[1].count_all_started_programs()
-    roots = pair.versions.old.root, pair.versions.new.root
-    sides = set()
-    for kind, name in programs:
-        file = _INCLUDED_FILE.fullmatch(name) if kind == "include" else None
-        program = f"{file['package']}/" if file is not None else name
-        if kind in ("include", "node") and not is_new_name(program, entry.name, *roots):
-            sides.add(find_old_side(program, entry.name, *roots))
+    programs = _count_followers(included[1], entry) & included[0].count_all_started_programs()
+    sides = _find_sides(pair, entry.name, programs)
     offering = sides - {Side.USES, Side.LACKS}
     if not offering:
         return None
     target = entry.settings.get("to")
     return find_remapping_reason(entry.name, None, target, new, new, is_known=sides == {Side.OFFERS})
+
+
+def may_be_offered(pair: FilePair, remapping: Entry, included: tuple[IncludedActions, IncludedActions]) -> bool:
+    """Return whether a node that both versions start may offer a name that a removed action remapped for it.
+
+    Args:
+        pair: both versions of the launch file.
+        remapping: the action that only the old version has.
+        included: the actions of both versions with those of the included files.
+    """
+    old, new = included
+    programs = _count_followers(old, remapping) & new.count_all_started_programs()
+    return not _find_sides(pair, remapping.name, programs) <= {Side.USES, Side.LACKS}
+
+
+def _count_followers(actions: IncludedActions, remapping: Entry) -> Counter[tuple[str, str]]:
+    """Return the programs that start with a remapping: those of its group, or in Python all of the file."""
+    if actions.file.suffix == PYTHON_SUFFIX:
+        return actions.count_all_started_programs()
+    followers = [entry for entry in actions.outline.entries if remapping.name in dict(entry.remappings)]
+    resolve = actions.outline.resolve
+    included = sum(map(actions.count_started_programs, followers), Counter[tuple[str, str]]())
+    return included + Counter((entry.kind, resolve(entry.name)) for entry in followers if entry.kind == "node")
+
+
+def _find_sides(pair: FilePair, name: str, programs: Iterable[tuple[str, str]]) -> set[Side]:
+    """Return whether programs offer or use a name that only their groups remap."""
+    roots = pair.versions.old.root, pair.versions.new.root
+    sides = set()
+    for kind, program in programs:
+        file = _INCLUDED_FILE.fullmatch(program) if kind == "include" else None
+        program = f"{file['package']}/" if file is not None else program
+        if kind in ("include", "node") and not is_new_name(program, name, *roots):
+            sides.add(find_old_side(program, name, *roots))
+    return sides
 
 
 def _is_remapped_by_nodes(name: str, outline: LaunchOutline) -> bool:

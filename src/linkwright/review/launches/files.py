@@ -19,7 +19,7 @@ from linkwright.review.changes import MAX_NAMES, Effect
 from linkwright.review.excerpts import differing_excerpts, shorten_middle
 from linkwright.review.file_pair import FilePair
 from linkwright.review.launch_paths import is_launch_file
-from linkwright.review.launches.added_nodes import explain_addition, find_missing_package_reason
+from linkwright.review.launches.added_nodes import explain_addition, find_missing_package_reason, may_be_offered
 from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.bridged_topics import explain_lost_topics
@@ -300,9 +300,13 @@ def _report_unpaired_entries(
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         outlines = old_included.outline, new_included.outline
         reason = find_removal_reason(entry, *outlines, stops_nodes=stops_nodes) or explain_lost_value(entry, *outlines)
+        if entry.kind == "remapping" and not may_be_offered(pair, entry, included):
+            reason = None
         has_known_topics, topics_reason = explain_lost_topics(entry, *outlines)
         if has_known_topics and file is None:
             reason = topics_reason
+        if reason is not None and file is not None:
+            reason = phrase("where the file is started without {file}, {reason}", file=file, reason=reason)
         if reason is not None and lacks_program(pair.versions.old, entry):
             text, reason = phrase("{change}; its package never had the program", change=text), None
         _report_removed(pair, entry, text, reason, trees)

@@ -207,7 +207,8 @@ def _read_entries(parent: LaunchTag, scope: Scope, other_code: list[CodePart]) -
             for entry in entries:
                 settings = scope.add_to_settings(entry.kind, entry.settings)
                 namespaces = scope.namespaces if entry.kind == "parameter" else ()
-                yield Entry(entry.kind, entry.name, settings, entry.span, namespaces)
+                yield Entry(entry.kind, entry.name, settings, entry.span, namespaces, scope.remappings)
+                scope = scope.with_remapping(entry) if entry.kind == "remapping" else scope
             if entries:
                 if entries[0].kind == "node":
                     inner_tags = [child for child in tag.children if child.name in _NODE_TAGS]

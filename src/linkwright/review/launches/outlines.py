@@ -83,6 +83,7 @@ class Entry:
         settings: the values, by name. The value of an argument is its default.
         span: the location of the action.
         namespaces: the namespaces of the groups around a parameter, the outermost first; not among its settings.
+        remappings: the names that the groups around an action of XML or YAML remap before it, with their new names.
     """
 
     kind: str
@@ -90,6 +91,7 @@ class Entry:
     settings: dict[str, str]
     span: Span
     namespaces: tuple[str, ...] = ()
+    remappings: tuple[tuple[str, str], ...] = ()
 
     @property
     def has_value(self) -> bool:
@@ -293,10 +295,12 @@ class Scope:
     Attributes:
         conditions: the conditions of the groups, the outermost first.
         namespaces: the namespaces that they push.
+        remappings: the remappings that they set, each with the old and the new name.
     """
 
     conditions: tuple[str, ...] = ()
     namespaces: tuple[str, ...] = ()
+    remappings: tuple[tuple[str, str], ...] = ()
 
     @property
     def depth(self) -> int:
@@ -305,11 +309,15 @@ class Scope:
 
     def with_condition(self, condition: str) -> Scope:
         """Return the scope of the actions inside an action with a condition, which may be empty."""
-        return Scope((*self.conditions, condition), self.namespaces) if condition else self
+        return replace(self, conditions=(*self.conditions, condition)) if condition else self
 
     def with_namespace(self, namespace: str) -> Scope:
         """Return the scope after a namespace is pushed."""
-        return Scope(self.conditions, (*self.namespaces, namespace)) if namespace else self
+        return replace(self, namespaces=(*self.namespaces, namespace)) if namespace else self
+
+    def with_remapping(self, entry: Entry) -> Scope:
+        """Return the scope after an action that remaps a name."""
+        return replace(self, remappings=(*self.remappings, (entry.name, entry.settings.get("to", ""))))
 
     def add_to_settings(self, kind: str, own_settings: Mapping[str, str]) -> dict[str, str]:
         """Return the settings of an action together with the settings of its scope."""

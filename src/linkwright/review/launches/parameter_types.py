@@ -28,7 +28,7 @@ def accepts_type(entry: Entry, parameter: str, old: YamlValue, new: YamlValue, r
     folders = {} if root is None else find_package_folders(root)
     folder = folders.get(entry.name.partition("/")[0])
     if folder is None:
-        is_number = (old.type, new.type) == (YamlType.INTEGER, YamlType.FLOAT) and not old.is_list and not new.is_list
-        return is_number and float(old.text) == float(new.text)
+        is_double = (old.type, new.type) == (YamlType.INTEGER, YamlType.FLOAT) and not old.is_list and not new.is_list
+        return is_double and "." in new.text and new.text.rstrip("0").removesuffix(".") == old.text
     files = (file for file in folder.rglob("*") if file.suffix in _SUFFIXES and file.is_file())
     return declare_type((file.read_text("utf-8", "replace") for file in files), parameter, new)
