@@ -145,6 +145,7 @@ class _Comparer:
             pair.find_old_macros = self._graphs.old.find_macro_outlines
             pair.find_new_macros = self._graphs.new.find_macro_outlines
             pair.find_old_calls = self._graphs.old.find_calls
+            pair.find_new_calls = self._graphs.new.find_call_places
             pair.robots = self._graphs.new.find_outlines_of_robots(file.new_path) or ()
             pair.defaults = self._graphs.new.find_defaults(file.new_path)
             self._compare(pair)
