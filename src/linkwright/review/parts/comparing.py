@@ -23,6 +23,7 @@ from linkwright.review.parts.interface import (
 )
 from linkwright.review.parts.left_uses import find_left_uses
 from linkwright.review.parts.malformed_includes import includes_malformed_file
+from linkwright.review.parts.mesh_addresses import compare_mesh_addresses
 from linkwright.review.parts.moved_to_callers import compare_moved_to_callers
 from linkwright.review.parts.name_substitution import CALL, ComparedContent
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, MacroOutline, Outline, iterate_items, read_outline
@@ -186,6 +187,7 @@ class _Comparer:
         compare_arguments(pair, self._graphs)
         compare_properties(pair, self._graphs.new)
         compare_contents(pair, renamed)
+        compare_mesh_addresses(pair)
         compare_moved_to_callers(pair, self._graphs, renamed)
         compare_readings(pair, self._graphs)
 
