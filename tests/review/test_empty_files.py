@@ -32,3 +32,14 @@ def test_file_that_was_empty_is_an_added_file(repository, compare, path, text, e
     repository.commit({"a/package.xml": PACKAGE_XML.replace("arm_description", "a"), path: empty})
     repository.write({path: text})
     assert sentences(subject(compare(repository), path)) == expected
+
+
+def test_file_that_stays_empty_is_no_change(repository, compare):
+    blank = dict.fromkeys(("a/setup.py", "a/a/node.py", "a/a/__init__.py", "a/README.md"), "\n")
+    repository.commit({"a/package.xml": PACKAGE_XML.replace("arm_description", "a"), **blank})
+    repository.write(dict.fromkeys(blank, ""))
+    result = compare(repository)
+    assert (result.subjects, result.other_files) == ([], [])
+    repository.write({"a/a/__init__.py": "from a.node import *"})
+    result = compare(repository)
+    assert [*(found.path for found in result.subjects), *result.other_files] == ["a/a/__init__.py"]

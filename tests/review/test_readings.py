@@ -16,7 +16,7 @@ ROBOT = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   {part}
 </robot>
 """
-OFFSET = "environment variable 'ARM_OFFSET' is read now"
+OFFSET = "environment variable 'ARM_OFFSET' (0 0 1) is read now"
 
 
 @pytest.mark.parametrize(
@@ -44,6 +44,15 @@ def test_names_that_were_read_before_or_are_in_another_line_are_not_told(reposit
     lines = sentences(subject(compare(repository), PATH))
     assert lines
     assert [line for line in lines if "read now" in line] == []
+
+
+def test_list_of_new_variables_is_complete(repository, compare):
+    """Another line names ARM_LAMP, which the list repeats."""
+    repository.commit({PATH: ROBOT.format(default="1", xyz="0 0 1", part="")})
+    part = '<xacro:if value="$(optenv ARM_LAMP 0)"><lamp topic="$(env ARM_TOPIC)"/></xacro:if>'
+    repository.write({PATH: ROBOT.format(default="1", xyz="$(optenv ARM_OFFSET 0 0 1)", part=part)})
+    line = "environment variables 'ARM_OFFSET' (0 0 1), 'ARM_LAMP' (0), 'ARM_TOPIC' are read now"
+    assert line in sentences(subject(compare(repository), PATH))
 
 
 MACRO = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">

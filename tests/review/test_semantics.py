@@ -249,8 +249,22 @@ def test_many_pairs_of_a_lost_link_are_summarized(package, compare):
     package.commit({PATH: text % "".join(pair % names for names in [*pairs, ("link_0", "link_1")])})
     package.write({PATH: text % ""})
     assert sentences(subject(compare(package), PATH)) == [
-        "disable_collisions: 25 pairs removed: all pairs with cover, link_0 - link_1"
+        "disable_collisions: 25 pairs removed: 24 with cover, link_0 - link_1"
     ]
+
+
+@pytest.mark.parametrize(
+    ("links", "text"), [(["a"], "24 pairs added: all with a"), (["a", "b"], "48 pairs added: all with one of a, b")]
+)
+def test_many_pairs_of_new_links_need_not_be_all_pairs_of_them(package, compare, links, text):
+    """The new links have no pair with base_link."""
+    pair = '  <disable_collisions link1="%s" link2="%s" reason="Never"/>\n'
+    others = [f"link_{number}" for number in range(24)]
+    kept = "".join(pair % ("base_link", other) for other in others)
+    package.commit({PATH: SRDF.replace("</robot>", f"{kept}</robot>")})
+    added = "".join(pair % (link, other) for link in links for other in others)
+    package.write({PATH: SRDF.replace("</robot>", f"{kept}{added}</robot>")})
+    assert sentences(subject(compare(package), PATH)) == [f"disable_collisions: {text}"]
 
 
 def test_very_many_pairs_are_counted_by_their_links(package, compare):

@@ -297,7 +297,7 @@ def open_versions(folder: Path, range_text: str) -> Versions:
             stack.callback(new_files.close)
             new = Version(new_name, new_files.root, new_files, repository, is_old=False)
         stack.pop_all()
-        files = _drop_files_of_submodules(changed_files)
+        files = [file for file in _drop_files_of_submodules(changed_files) if not _is_blank(old, new, file)]
         return Versions(old, new, [_without_empty_version(old, file) for file in files])
 
 
@@ -309,9 +309,21 @@ def _without_empty_version(old: Version, file: ChangedFile) -> ChangedFile:
     path = file.old_path
     if path is None or file.new_path is None or not path.endswith(_FILLED_SUFFIXES) or path.endswith(_INIT_FILE):
         return file
-    is_small = old.file(path).is_file() and old.file(path).stat().st_size < _MAX_EMPTY_BYTES
-    is_empty = is_small and not old.text(path).strip()
-    return replace(file, old_path=None) if is_empty else file
+    return replace(file, old_path=None) if _is_empty(old, path) else file
+
+
+def _is_blank(old: Version, new: Version, file: ChangedFile) -> bool:
+    """Return whether a file has only blanks in both versions, so that nothing changed."""
+    paths = file.old_path, file.new_path
+    return not file.is_submodule and paths[0] == paths[1] and all(map(_is_empty, (old, new), paths))
+
+
+def _is_empty(version: Version, path: str | None) -> bool:
+    """Return whether a version has a file, which has only blanks."""
+    file = None if path is None else version.file(path)
+    if path is None or file is None or not file.is_file() or file.stat().st_size >= _MAX_EMPTY_BYTES:
+        return False
+    return not version.text(path).strip()
 
 
 def _open_repository(folder: Path) -> GitRepository:

@@ -406,10 +406,26 @@ def _summarize_pairs(pairs: Sequence[tuple[str, ...]], others: Collection[tuple[
     other_links = {link for other in others for link in other}
     links = list(dict.fromkeys(link for names in pairs for link in names if link not in other_links))
     rest = [names for names in pairs if other_links.issuperset(names)]
-    parts = [phrase("all pairs with {links}", links=joined_first(links, MAX_NAMES))] if links else []
+    parts = [_summarize_new_links(links, len(pairs) - len(rest), is_all=not rest)] if links else []
     if len(rest) > 2 * _MAX_PAIRS:
         return joined([*parts, *_count_by_link(rest)])
     return joined([*parts, *([joined_first(list(map(" - ".join, rest)), _MAX_PAIRS)] if rest else [])])
+
+
+def _summarize_new_links(links: Sequence[str], count: int, *, is_all: bool) -> Phrase:
+    """Return the links of which each of some pairs has at least one.
+
+    Args:
+        links: the links that the other version lacks.
+        count: the number of pairs.
+        is_all: whether these are all pairs of the line.
+    """
+    names = joined_first(links, MAX_NAMES)
+    if len(links) > 1:
+        names = phrase("one of {links}", links=names)
+    return (
+        phrase("all with {links}", links=names) if is_all else phrase("{count} with {links}", count=count, links=names)
+    )
 
 
 def _count_by_link(pairs: Sequence[tuple[str, ...]]) -> Iterator[Phrase]:

@@ -23,6 +23,7 @@ from linkwright.review.parts.interface import (
 )
 from linkwright.review.parts.left_uses import find_left_uses
 from linkwright.review.parts.malformed_includes import includes_malformed_file
+from linkwright.review.parts.mesh_addresses import compare_mesh_addresses
 from linkwright.review.parts.moved_to_callers import compare_moved_to_callers
 from linkwright.review.parts.name_substitution import CALL, ComparedContent
 from linkwright.review.parts.outline import INCLUDE, PROPERTY, Item, MacroOutline, Outline, iterate_items, read_outline
@@ -148,6 +149,7 @@ class _Comparer:
             pair.find_old_macros = self._graphs.old.find_macro_outlines
             pair.find_new_macros = self._graphs.new.find_macro_outlines
             pair.find_old_calls = self._graphs.old.find_calls
+            pair.find_new_calls = self._graphs.new.find_call_places
             pair.robots = self._graphs.new.find_outlines_of_robots(file.new_path) or ()
             pair.defaults = self._graphs.new.find_defaults(file.new_path)
             self._compare(pair)
@@ -188,6 +190,7 @@ class _Comparer:
         compare_arguments(pair, self._graphs)
         compare_properties(pair, self._graphs.new)
         compare_contents(pair, renamed)
+        compare_mesh_addresses(pair)
         compare_moved_to_callers(pair, self._graphs, renamed)
         compare_readings(pair, self._graphs)
 

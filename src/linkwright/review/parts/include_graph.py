@@ -85,6 +85,21 @@ class IncludeGraph:
         tag = f"xacro:{macro}"
         return [element for outline in self._outlines.values() for element in outline.root.walk() if element.tag == tag]
 
+    def find_call_places(self, macro: str) -> Iterator[tuple[str, Element]]:
+        """Yield the calls of a macro in all files with their paths, also those in the namespace of an include.
+
+        In packages of ROS 1, these are also the calls without a prefix in files that do not declare it, because xacro
+        expands them where a robot includes the file. If several files define the macro, none are found.
+        """
+        if len(self.find_files_with_macro(macro)) != 1:
+            return
+        has_plain_calls = self._version.overlay is not None and macro in self._version.macros
+        for path, outline in self._outlines.items():
+            for element in outline.root.walk():
+                name = element.tag.removeprefix("xacro:")
+                if name.rpartition(".")[2] == macro and (name != element.tag or has_plain_calls):
+                    yield path, element
+
     def find_macros(self, path: str) -> Collection[str]:
         """Return the names of the macros that a file defines."""
         outline = self._outlines.get(path)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
+from linkwright.diagnostics import Phrase, counted, joined_first, phrase, quoted_names
 from linkwright.review.list_changes import change_text
 from linkwright.review.merging import name_edit
 from linkwright.review.parts.chosen_parts import compare_chosen_parts
@@ -19,6 +19,9 @@ from linkwright.review.parts.undefined_names import find_lost_definitions, find_
 from linkwright.review.parts.unused_arguments import is_unused_argument
 from linkwright.xacro.macros import Parameter
 from linkwright.xmltree import Element
+
+_MAX_PLACES = 4
+"""The maximum number of calls of a macro that are named."""
 
 
 def compare_macros(pair: PartPair, graphs: IncludeGraphs, renamed: Mapping[str, str]) -> None:
@@ -108,7 +111,7 @@ def _compare_parameters(pair: PartPair, old: MacroOutline, new: MacroOutline) ->
     for old_name, name in renamed.items():
         change = phrase("parameter {old} renamed to {name}", old=old_name, name=name)
         text = phrase("macro '{name}': {change}", name=new.name, change=change)
-        pair.add(text, old.element, new.element, phrase("calls that pass it cannot be expanded"))
+        pair.add(text, old.element, new.element, _make_passed_reason(pair, new, [old_name]))
     removed = [name for name in removed if name not in renamed]
     added = [parameter for parameter in added if parameter.name not in renamed.values()]
     _report_unpaired_parameters(pair, old, new, removed, added)
@@ -127,7 +130,7 @@ def _report_unpaired_parameters(
         (
             removed,
             counted("parameter {names} removed", "parameters {names} removed", len(removed), names=", ".join(removed)),
-            phrase("calls that pass it cannot be expanded"),
+            _make_passed_reason(pair, new, removed),
         ),
         (
             required,
@@ -137,7 +140,7 @@ def _report_unpaired_parameters(
                 len(required),
                 names=", ".join(required),
             ),
-            phrase("calls that do not pass it cannot be expanded"),
+            _make_required_reason(pair, new, required),
         ),
         (
             optional,
@@ -150,6 +153,30 @@ def _report_unpaired_parameters(
             pair.add(text, old.element, new.element, reason)
 
 
+def _make_passed_reason(pair: PartPair, macro: MacroOutline, names: Sequence[str]) -> Phrase:
+    """Return why removed parameters of a macro are breaking, with calls of the repository that still pass them."""
+    places = _find_places(pair, macro, lambda call: any(name in call.attributes for name in names))
+    if places is None:
+        return phrase("calls that pass it cannot be expanded")
+    return phrase("calls that pass it cannot be expanded, such as {places}", places=places)
+
+
+def _make_required_reason(pair: PartPair, macro: MacroOutline, names: Sequence[str]) -> Phrase:
+    """Return why parameters without a default are breaking, with calls of the repository that do not pass them."""
+    values = [name for name in names if not name.startswith("*")]
+    places = _find_places(pair, macro, lambda call: any(name not in call.attributes for name in values))
+    if places is None:
+        return phrase("calls that do not pass it cannot be expanded")
+    return phrase("calls that do not pass it cannot be expanded, such as {places}", places=places)
+
+
+def _find_places(pair: PartPair, macro: MacroOutline, is_left: Callable[[Element], bool]) -> Phrase | None:
+    """Return the first calls of a macro that fulfill a condition, as paths with lines; None if there are none."""
+    calls = [(path, call.span()) for path, call in pair.find_new_calls(macro.name) if is_left(call)]
+    places = [f"{path}:{span.line}" for path, span in calls if span is not None]
+    return joined_first(places, _MAX_PLACES) if places else None
+
+
 def _compare_defaults(
     pair: PartPair, old_macro: MacroOutline, new_macro: MacroOutline, old: Parameter, new: Parameter
 ) -> None:
@@ -158,7 +185,7 @@ def _compare_defaults(
     reason = None
     if not _has_default(new):
         change = phrase("parameter {name} no longer has a default", name=new.name)
-        reason = phrase("calls that do not pass it cannot be expanded")
+        reason = _make_required_reason(pair, new_macro, [new.name])
     elif not _has_default(old):
         change = phrase("parameter {name} has the default {value}", name=new.name, value=_format_default(new))
     else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from linkwright.descriptions.comparison import ROS2_CONTROL
@@ -32,6 +32,7 @@ class PartPair:
         find_old_macros: a function that returns the definitions of a macro in the old repository.
         find_new_macros: a function that returns the definitions of a macro in the new repository.
         find_old_calls: a function that returns the calls of a macro in the old repository.
+        find_new_calls: a function that returns the paths and calls of a macro in the new repository.
         changes: the changes found so far.
     """
 
@@ -48,6 +49,7 @@ class PartPair:
     find_old_macros: Callable[[str], Sequence[MacroOutline]] = field(default=lambda _name: ())
     find_new_macros: Callable[[str], Sequence[MacroOutline]] = field(default=lambda _name: ())
     find_old_calls: Callable[[str], Sequence[Element]] = field(default=lambda _name: ())
+    find_new_calls: Callable[[str], Iterable[tuple[str, Element]]] = field(default=lambda _name: ())
     changes: list[Change] = field(default_factory=list)
 
     def add(self, sentence: Phrase, old: Element | None, new: Element | None, reason: Phrase | None = None) -> None:

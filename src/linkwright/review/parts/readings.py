@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from linkwright.diagnostics import counted, quoted_names
+from linkwright.diagnostics import counted, joined, quoted_names
 from linkwright.review.parts.include_graph import IncludeGraphs
 from linkwright.review.parts.outline import ARG
 from linkwright.review.parts.part_pair import PartPair
@@ -13,6 +13,7 @@ from linkwright.review.parts.unused_arguments import is_unused_argument, reads_a
 from linkwright.xmltree import Element
 
 _VARIABLE = re.compile(r"\$\((?:opt)?env\s+(\w+)")
+_FALLBACK = r"\$\(optenv\s+{}\s+([^()]*)\)"
 _ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
 _WORD = re.compile(r"\w+")
 
@@ -28,16 +29,18 @@ def compare_readings(pair: PartPair, graphs: IncludeGraphs) -> None:
         graphs: the includes of both versions.
     """
     shown = set(_WORD.findall(" ".join(str(change.sentence) for change in pair.changes)))
-    readers = {name: element for name, element in _find_readers(pair.new.root, _VARIABLE) if name not in shown}
-    outlines = graphs.old.iterate_outlines() if readers else ()
+    readers: dict[str, Element] = {}
+    for name, element in _find_readers(pair.new.root, _VARIABLE):
+        readers.setdefault(name, element)
+    outlines = graphs.old.iterate_outlines() if readers.keys() - shown else ()
     known = {name for _, outline in outlines for name, _ in _find_readers(outline.root, _VARIABLE, is_default=True)}
     names = [name for name in readers if name not in known]
-    if names:
+    if not shown.issuperset(names):
         text = counted(
             "environment variable {names} is read now",
             "environment variables {names} are read now",
             len(names),
-            names=quoted_names(names),
+            names=joined([_add_fallback(name, readers[name]) for name in names]),
         )
         pair.add(text, None, readers[names[0]])
     old, new = (dict(_find_readers(outline.root, _ARGUMENT)) for outline in (pair.old, pair.new))
@@ -53,6 +56,13 @@ def compare_readings(pair: PartPair, graphs: IncludeGraphs) -> None:
             "argument {names} is used now", "arguments {names} are used now", len(used), names=quoted_names(used)
         )
         pair.add(text, None, new[used[0]])
+
+
+def _add_fallback(name: str, reader: Element) -> str:
+    """Return the name of a variable, with its value if it is not set."""
+    pattern = re.compile(_FALLBACK.format(re.escape(name)))
+    match = next(filter(None, map(pattern.search, (*reader.attributes.values(), reader.text()))), None)
+    return f"'{name}' ({match[1].strip()})" if match is not None and match[1].strip() else f"'{name}'"
 
 
 def _find_readers(
