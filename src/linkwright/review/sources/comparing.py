@@ -134,6 +134,7 @@ class _SourcePair(PairedNames):
         changes += self.compare_definitions()
         changes += self.compare_packages(are_headers_told=not changes)
         changes += compare_statements(self.old, self.new, self.file, changes)
+        changes += self.find_changed_options(changes)
         yield from merge_renames(drop_told_frames(changes))
 
     def _compare_kind(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
