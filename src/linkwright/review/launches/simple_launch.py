@@ -52,7 +52,7 @@ def report_declared_arguments(
             told.add(name)
             pair.add(format_added_entry(entry), pair.location(entry.span), find_addition_reason(entry, new))
     rests = [
-        [part for part in parts if (entry := _read_declaration(part)) is None or entry.name not in told]
+        [part for part in parts if (declared := _read_declaration(part)) is None or declared.name not in told]
         for parts in (removed, added)
     ]
     return rests[0], rests[1]
