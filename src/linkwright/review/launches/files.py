@@ -69,6 +69,7 @@ from linkwright.review.launches.renames import (
 from linkwright.review.launches.repeated_arguments import report_repeated_arguments
 from linkwright.review.launches.repeated_nodes import report_repeated_nodes
 from linkwright.review.launches.settings import SettingChanges
+from linkwright.review.launches.simple_launch import report_declared_arguments
 from linkwright.review.launches.simulated_controllers import is_simulated_controller_manager
 from linkwright.review.launches.starting_nodes import find_starting_node
 from linkwright.review.launches.titles import (
@@ -446,6 +447,7 @@ def _compare_code(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> Non
     removed, added = drop_common_parts(old.code, new.code, equal), drop_common_parts(new.code, old.code, equal)
     if _differ_in_names(removed, added):
         return
+    removed, added = report_declared_arguments(pair, removed, added, old, new)
     common_sources = {part.source for part in removed} & {part.source for part in added}
     if common_sources:
         removed, added = ([part for part in parts if part.source not in common_sources] for parts in (removed, added))

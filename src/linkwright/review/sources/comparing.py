@@ -134,6 +134,7 @@ class _SourcePair(PairedNames):
         changes += self.compare_definitions()
         changes += self.compare_packages(are_headers_told=not changes)
         changes += compare_statements(self.old, self.new, self.file, changes)
+        changes += self.find_changed_options(changes)
         yield from merge_renames(drop_told_frames(changes))
 
     def _compare_kind(self, kind: NameKind, old_names: SourceNames, new_names: SourceNames) -> Iterator[Change]:
@@ -486,7 +487,7 @@ class _SourcePair(PairedNames):
         )
 
     def _is_same_name(self, old: SourceName, new: SourceName) -> bool:
-        """Return whether a topic or the like has the same full name, of which the namespace is a part or no longer."""
+        """Return whether a topic or the like has the same full name with the namespace of its node."""
         return old.kind in GRAPH_KINDS and have_same_full_name(old.name, new.name, *self.read_texts())
 
     def _find_lost_reason(self, item: SourceName, names: SourceNames) -> Phrase | None:

@@ -44,7 +44,7 @@ def find_default_argument(expression: str, line: int, text: str, headers: Sequen
     """Return the name that an expression in a function gives by default, or None if it is unknown.
 
     Args:
-        expression: a sum of literal texts and variables, of which one is an argument of the function, or a local
+        expression: a sum of literal texts and variables. One variable is an argument of the function, or a local
             variable that such a sum initializes.
         line: the line of the expression.
         text: the text of the source without comments.

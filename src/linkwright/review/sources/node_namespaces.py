@@ -42,7 +42,7 @@ def have_same_full_name(old: str, new: str, old_text: str, new_text: str) -> boo
 
 
 def _find_prefix(inner: str, outer: str) -> str | None:
-    """Return what stands before a name in another name or in an expression; None if it does not end with the name."""
+    """Return the text before a name in another name or in an expression; None if it does not end with the name."""
     computed = _F_STRING.fullmatch(outer) or _SUM.fullmatch(outer)
     if computed is not None:
         return computed["prefix"] if computed["name"] == inner else None

@@ -12,9 +12,11 @@ from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import Change, Effect, Location, Problem
 from linkwright.review.installed_paths import find_include_text, is_exported_header, read_package_facts
 from linkwright.review.sources.changed_sources import ChangedSources
+from linkwright.review.sources.cpp_text import blank_comments
 from linkwright.review.sources.enumerators import compare_enumerations
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX, NameKind, SourceNames
 from linkwright.review.sources.namespaces import compare_namespaces, has_namespace
+from linkwright.review.sources.node_options import find_executor_change, find_option_changes
 from linkwright.review.sources.package_imports import (
     find_failing_imports,
     is_certainly_uninstalled,
@@ -193,6 +195,20 @@ class WholeSourcePair:
             reason = None if name is None else phrase("programs that use '{name}' do not link", name=name)
             effect = Effect.CHANGED if reason is None else Effect.BREAKING
             yield Change(phrase("no target builds the source"), effect, reason, Location(path, 1, 1))
+
+    def find_changed_options(self, reported: Sequence[Change]) -> Iterator[Change]:
+        """Yield the changed options of nodes in C++, unless other lines do, and the executor of a generated program."""
+        old_path, new_path = self.file.old_path, self.file.new_path
+        if old_path is None or new_path is None or not new_path.endswith(CPP_SUFFIXES):
+            return
+        old, new = (blank_comments(text) for text in (self.old.version.text(old_path), self.new.version.text(new_path)))
+        package = self.new.find_package(self.file.path)
+        build_text = self.new.version.text((PurePosixPath(package or "") / "CMakeLists.txt").as_posix())
+        sentences = [str(change.sentence) for change in reported]
+        for change in (*find_option_changes(old, new, sentences), *find_executor_change(old, new, build_text)):
+            line = (old if change.is_old else new)[: change.offset].count("\n") + 1
+            path = old_path if change.is_old else new_path
+            yield Change(change.text, location=Location(path, line, 1, change.is_old))
 
     def find_changed_senders(self, reported: Sequence[Change]) -> Iterator[Change]:
         """Yield a line if the source no longer publishes transforms or newly does, unless a line names the frames."""

@@ -42,7 +42,7 @@ def find_ignored_packages(versions: Versions, changed_files: Sequence[ChangedFil
 def relieve_ignored_packages(versions: Versions, subjects: Sequence[Subject]) -> list[Subject]:
     """Return the subjects, in which a lost name or file of a package of ROS 2 that was not built breaks nothing.
 
-    Nobody could install the package. catkin may build a package in spite of ``COLCON_IGNORE``.
+    A user could not install the package. catkin may build a package in spite of ``COLCON_IGNORE``.
     """
     return [
         replace(subject, changes=list(map(_relieve, subject.changes)))
