@@ -53,6 +53,7 @@ _NAMESPACE = "namespace"
 _CONDITION = re.compile(r" ?\[(?:if|unless) .*\]$")
 """The conditions at the end of the summary of an element."""
 _XACRO = "xacro:"
+_MATERIAL = "material"
 _INCLUDE, _INSERT = "xacro:include", "xacro:insert_block"
 
 
@@ -119,6 +120,8 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
         return True  # the lost parameter is reported
     if None in (difference.old, difference.new) and f"${{{difference.value}}}" in (difference.old, difference.new):
         return True  # a call that passes a parameter on; the parameter itself is reported
+    if element.tag == _MATERIAL and difference.is_whole and len(difference.path) == 1:
+        return False  # robots only show the materials of their links
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
     if element.tag == _INCLUDE and any(_is_of_absent_package(pair, elements)):
