@@ -524,3 +524,18 @@ def test_added_and_removed_materials_of_an_included_file_are_told(package, compa
     package.commit({path: included, ROBOT: ARM})
     package.write({path: MACRO})
     assert sentences(subject(compare(package), path)) == ["material card removed: color rgba=0.5 0.25 0 1"]
+
+
+def test_names_that_get_the_same_prefix_are_one_line(package, compare):
+    path = "arm_description/urdf/tool.xacro"
+    joints = "".join(
+        f'<joint name="j{number}" type="fixed"><parent link="{{0}}a{number}"/><child link="{{0}}b{number}"/></joint>'
+        for number in range(2)
+    )
+    start = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="tool" params="prefix">'
+    file = f"{start}{{}}</xacro:macro></robot>"
+    package.commit({path: file.format(joints.format(""))})
+    package.write({path: file.format(joints.format("${prefix}"))})
+    (change,) = subject(compare(package), path).changes
+    assert str(change.sentence) == "macro 'tool': joint j0 parent link: '${prefix}' added before the value"
+    assert change.other_names == ("joint j0 child link", "joint j1 parent link", "joint j1 child link")
