@@ -50,7 +50,8 @@ _NAMES = (NAMESPACE, "name")
 """The settings that are parts of the full name of a node."""
 _PASSED_ARGUMENTS = "passed"
 """The group of arguments that an action passes to an included file."""
-
+_LIFECYCLE = "lifecycle"
+"""The setting that only lifecycle nodes have."""
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 
@@ -110,6 +111,8 @@ class _Setting:
     @property
     def _change_text(self) -> Phrase:
         old, new = (None if value is None else value or "''" for value in (self.old, self.new))
+        if self.name == _LIFECYCLE:
+            return phrase("is no longer a lifecycle node") if new is None else phrase("is a lifecycle node now")
         if old is None:
             return phrase("{parameter} {value} added", parameter=self.name, value=new or "")
         if new is None:
