@@ -375,7 +375,7 @@ def test_node_that_becomes_a_lifecycle_node_is_named(repository, compare):
     new = LIFECYCLE.replace("hand = Node", "hand = LifecycleNode").replace("    return ld\n", event)
     repository.write({path: new})
     assert sentences(subject(compare(repository), path)) == [
-        "node 'arm/hand': lifecycle true added",
+        "node 'arm/hand': is a lifecycle node now",
         "other code added: start = EmitEvent(event=make(hand)); ld.add_action(start)",
     ]
 
@@ -385,7 +385,7 @@ def test_node_of_xml_that_becomes_a_lifecycle_node_is_named(repository, compare)
     text = '<launch>\n  <node pkg="arm" exec="hand" name="hand" namespace=""/>\n</launch>\n'
     repository.commit({path: text})
     repository.write({path: text.replace("<node", "<lifecycle_node")})
-    assert sentences(subject(compare(repository), path)) == ["node 'arm/hand': lifecycle true added"]
+    assert sentences(subject(compare(repository), path)) == ["node 'arm/hand': is a lifecycle node now"]
 
 
 @pytest.mark.parametrize(

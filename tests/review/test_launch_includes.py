@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import subject
+from tests.review.conftest import sentences, subject
 
 PART = """<launch>
   <arg name="camera" default="true"/>
@@ -258,3 +258,16 @@ def test_an_include_can_become_a_node_whose_script_starts_the_file(repository, c
     repository.write({"arm/launch/arm.launch": FILE.replace(SAFETY, node)})
     changes = subject(compare(repository), "arm/launch/arm.launch").changes
     assert any(change.reason is not None for change in changes) is is_breaking
+
+
+@pytest.mark.parametrize(("name", "is_replaced"), [("pad", True), ("stick", False)])
+def test_a_node_of_an_added_include_with_the_same_name_replaces_the_node(repository, compare, name, is_replaced):
+    text = '<launch><node pkg="joy" exec="game_pad" name="pad"/></launch>'
+    manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    repository.commit({**manifest, "arm/launch/arm.launch.xml": text})
+    include = '<launch><include file="$(find-pkg-share arm)/launch/joy.launch.xml"/></launch>'
+    added = f'<launch><node pkg="joy" exec="joy_node" name="{name}"/></launch>'
+    repository.write({"arm/launch/arm.launch.xml": include, "arm/launch/joy.launch.xml": added})
+    found = sentences(subject(compare(repository), "arm/launch/arm.launch.xml"))
+    line = "node 'joy/game_pad' replaced by node 'joy/joy_node' in arm/launch/joy.launch.xml"
+    assert (line in found) is is_replaced

@@ -189,3 +189,15 @@ def test_a_single_frame_of_a_node_may_be_one_that_it_uses(repository, compare):
     repository.commit({path: text})
     repository.write({path: text.replace("$(arg robot)/", "")})
     assert not compare(repository).breaking_changes
+
+
+def test_several_changed_numbers_of_a_node_are_one_line(review_changes):
+    text = """<launch><node pkg="arm" exec="driver"><param name="a" value="1"/><param name="b" value="0.5"/>
+<param name="c" value="3"/><param name="on" value="true"/></node></launch>"""
+    old = text[text.index("<param") : text.index("</node>")]
+    new = old.replace('"1"', '"2"').replace('"0.5"', '"0.25"').replace('"3"', '"4"').replace("true", "false")
+    found, _ = review_changes("arm.launch.xml", text, old, new)
+    assert found == [
+        "node 'arm/driver': parameters a 1 -> 2, b 0.5 -> 0.25, c 3 -> 4",
+        "node 'arm/driver': parameter on true -> false",
+    ]

@@ -111,3 +111,13 @@ def test_a_launch_file_that_only_the_new_version_can_read_is_shown(repository, c
     (sentence,) = sentences(subject(compare(repository), PATH))
     assert sentence.startswith("can be read now; in the old version: line ")
     assert sentence.endswith("; contents: argument 'dock' (default false, unused)")
+
+
+def test_a_package_that_an_added_include_lacks_is_told_once(repository, compare):
+    old, new = (
+        LAUNCH.format("", INCLUDE.format(f"get_package_share_directory('{name}')")) for name in ("rails", "docking")
+    )
+    repository.commit({"arm/package.xml": PACKAGE_XML, PATH: old})
+    repository.write({PATH: new.replace("/dock.launch", "/other.launch")})
+    reasons = [str(change.reason) for change in subject(compare(repository), PATH).changes if change.reason is not None]
+    assert len([reason for reason in reasons if "'docking'" in reason]) == 1

@@ -502,3 +502,40 @@ def test_sensors_and_plugins_of_an_added_macro_are_shown(package, compare):
         "gazebo laser (sensor 'laser' (type=ray, update_rate 5, visualize ${visual}), "
         "plugin 'scanner' (filename=libgazebo_ros_ray_sensor.so, topicName scan)), gazebo base"
     )
+
+
+def test_added_and_removed_materials_of_an_included_file_are_told(package, compare):
+    path = "arm_description/urdf/segment.xacro"
+    material = '<material name="card"><color rgba="0.5 0.25 0 1"/></material>'
+    link = (
+        '<link name="tray"><visual><geometry><sphere radius="0.1"/></geometry><material name="card"/></visual></link>'
+    )
+    joint = '<joint name="tray_joint" type="fixed"><parent link="base_link"/><child link="tray"/></joint>'
+    included = MACRO.replace("</robot>", f"  {material}\n</robot>")
+    package.write({path: included, ROBOT: ARM.replace("</robot>", f"{link}{joint}</robot>")})
+    result = compare(package)
+    assert sentences(subject(result, path)) == ["material card added: color rgba=0.5 0.25 0 1"]
+    assert sentences(subject(result, ROBOT)) == [
+        (
+            "link 'tray' added: fixed joint 'tray_joint' at 'base_link', xyz 0 0 0 m, "
+            "visual sphere 0.1 material card 0.5 0.25 0 1"
+        )
+    ]
+    package.commit({path: included, ROBOT: ARM})
+    package.write({path: MACRO})
+    assert sentences(subject(compare(package), path)) == ["material card removed: color rgba=0.5 0.25 0 1"]
+
+
+def test_names_that_get_the_same_prefix_are_one_line(package, compare):
+    path = "arm_description/urdf/tool.xacro"
+    joints = "".join(
+        f'<joint name="j{number}" type="fixed"><parent link="{{0}}a{number}"/><child link="{{0}}b{number}"/></joint>'
+        for number in range(2)
+    )
+    start = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="tool" params="prefix">'
+    file = f"{start}{{}}</xacro:macro></robot>"
+    package.commit({path: file.format(joints.format(""))})
+    package.write({path: file.format(joints.format("${prefix}"))})
+    (change,) = subject(compare(package), path).changes
+    assert str(change.sentence) == "macro 'tool': joint j0 parent link: '${prefix}' added before the value"
+    assert change.other_names == ("joint j0 child link", "joint j1 parent link", "joint j1 child link")

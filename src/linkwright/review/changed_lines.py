@@ -80,13 +80,15 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
         before, after = differing_excerpts(removed[0], added[0])
         return phrase("{old} -> {new}", old=before, new=after)
     changed = list(_take_changed_commands(removed, added))
-    if len(removed) + len(added) <= _MAX_LINES:
-        texts: list[Phrase | str] = [
-            joined([f"`{shorten(line, _MAX_LINE_LENGTH)}`" for line in lines]) for lines in (added, removed)
-        ]
-    else:
-        texts = [_format_first(lines) if lines else "" for lines in (added, removed)]
-    return _format_lines(texts[0], texts[1], changed)
+    is_short = len(removed) + len(added) <= _MAX_LINES
+    return _format_lines(_list_lines(added, is_short=is_short), _list_lines(removed, is_short=is_short), changed)
+
+
+def _list_lines(lines: list[str], *, is_short: bool) -> Phrase | str:
+    """Return lines in quotes: all of a short list, or the first ones of a long list; empty if there are none."""
+    if is_short:
+        return joined([f"`{shorten(line, _MAX_LINE_LENGTH)}`" for line in lines])
+    return _format_first(lines) if lines else ""
 
 
 def _take_changed_commands(removed: list[str], added: list[str]) -> Iterator[Phrase]:
@@ -104,10 +106,13 @@ def _take_changed_commands(removed: list[str], added: list[str]) -> Iterator[Phr
             if is_long and (gained or lost) and share >= _MIN_SHARE_OF_WORDS:
                 removed.remove(old)
                 added.remove(new)
-                gained_text, lost_text = (joined_first(list(items.elements()), MAX_NAMES) for items in (gained, lost))
-                change = _format_lines(gained_text if gained else "", lost_text if lost else "")
+                change = _format_lines(_join_words(gained), _join_words(lost))
                 yield phrase("{entry}: {change}", entry=f"`{_find_start(old, new)}`", change=change)
                 break
+
+
+def _join_words(words: Counter[str]) -> Phrase | str:
+    return joined_first(list(words.elements()), MAX_NAMES) if words else ""
 
 
 def _find_start(old: str, new: str) -> str:

@@ -28,7 +28,7 @@ from linkwright.xmltree.reader import read_bytes
 _TESTED_KINDS = (SubjectKind.PARAMETERS, SubjectKind.LAUNCH_FILE)
 """The kinds of files whose changes are not breaking if only tests use the files."""
 
-_COPIED_KINDS = (SubjectKind.PARAMETERS, SubjectKind.LAUNCH_FILE, SubjectKind.RVIZ)
+_COPIED_KINDS = (SubjectKind.PARAMETERS, SubjectKind.RVIZ)
 """The kinds of added files that, as copies of other files, are shown without contents."""
 _MIN_COPIED_CHARACTERS = 100
 

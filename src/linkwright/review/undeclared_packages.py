@@ -14,6 +14,7 @@ from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.changes import Change, Effect, Subject, SubjectKind
 from linkwright.review.sources.names import CPP_SUFFIXES
 from linkwright.review.sources.used_packages import is_python_source
+from linkwright.review.users.package_lookups import drop_told_lookups
 from linkwright.review.versions import Version, Versions
 from linkwright.xacro.cache import read_document
 
@@ -65,7 +66,7 @@ def mark_undeclared(
             continue
         own = [finding for finding in findings if _is_about(finding, subject.new_path)]
         marker = _Marker(versions.new, subject, own)
-        changes = [marker.mark(change) for change in subject.changes]
+        changes = [marker.mark(change) for change in drop_told_lookups(subject.changes)]
         told += marker.told
         result.append(replace(subject, changes=changes))
     return result, [finding for finding in findings if not any(finding is other for other in told)]

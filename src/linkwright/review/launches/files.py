@@ -298,6 +298,10 @@ def _report_unpaired_entries(
             titles = {"old": format_title(written), "new": format_title(starting_node)}
             pair.add(phrase("{old} replaced by {new}, whose script names the file", **titles), location)
             continue
+        replacing = None if file is not None else new_included.find_replacing_node(entry, old_included)
+        if replacing is not None:
+            other, path = format_title(replacing[0]), replacing[1]
+            text = phrase("{old} replaced by {new} in {path}", old=format_title(written), new=other, path=path)
         stops_nodes = entry.kind == "include" and bool(old_included.count_started_programs(entry) & stopped)
         outlines = old_included.outline, new_included.outline
         reason = find_removal_reason(entry, *outlines, stops_nodes=stops_nodes) or explain_lost_value(entry, *outlines)

@@ -112,6 +112,22 @@ class IncludedActions:
                     return path
         return None
 
+    def find_replacing_node(self, entry: Entry, old: IncludedActions) -> tuple[Entry, str] | None:
+        """Return the node of a newly included file that has the name of a removed node, with the path of the file.
+
+        Args:
+            entry: the removed node.
+            old: the actions of the old version.
+        """
+        name = entry.settings.get("name")
+        if entry.kind != "node" or not name:
+            return None
+        for path, outline in self._included.items():
+            named = [other for other in outline.entries if other.kind == "node" and other.settings.get("name") == name]
+            if named and path not in old._included:
+                return (named[0], path) if len(named) == 1 and named[0].name != entry.name else None
+        return None
+
     @cached_property
     def _included(self) -> dict[str, LaunchOutline]:
         """The outlines of the included files, by path."""

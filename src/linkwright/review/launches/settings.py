@@ -50,6 +50,9 @@ _NAMES = (NAMESPACE, "name")
 """The settings that are parts of the full name of a node."""
 _PASSED_ARGUMENTS = "passed"
 """The group of arguments that an action passes to an included file."""
+_LIFECYCLE = "lifecycle"
+"""The setting that only lifecycle nodes have."""
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 
 @dataclass(frozen=True)
@@ -92,6 +95,12 @@ class _Setting:
         text = self._change_text
         return phrase("{change}; their full names stay the same", change=text) if self.keeps_names else text
 
+    @property
+    def is_changed_number(self) -> bool:
+        """Whether a parameter of a node has another number, which breaks nothing."""
+        is_parameter = self.name.startswith(PARAMETER) and self.reason is None
+        return is_parameter and all(_NUMBER.fullmatch(value or "") for value in (self.old, self.new))
+
     def describe_opposite_change(self) -> tuple[Phrase, Phrase]:
         """Return the line and the reason for a setting that an including file changes the other way round."""
         assert self.includer is not None
@@ -102,6 +111,8 @@ class _Setting:
     @property
     def _change_text(self) -> Phrase:
         old, new = (None if value is None else value or "''" for value in (self.old, self.new))
+        if self.name == _LIFECYCLE:
+            return phrase("is no longer a lifecycle node") if new is None else phrase("is a lifecycle node now")
         if old is None:
             return phrase("{parameter} {value} added", parameter=self.name, value=new or "")
         if new is None:
@@ -348,7 +359,8 @@ def _group_settings(
 ) -> Iterator[tuple[Phrase, Phrase | None, str]]:
     """Yield the changes of the settings of an action with their reasons and names.
 
-    Several added or removed parameters, remappings or arguments of an included file are one change.
+    Several added or removed parameters, remappings or arguments of an included file are one change, and so are several
+    numbers.
     """
     groups: dict[object, list[_Setting]] = {}
     for setting in settings:
@@ -357,7 +369,7 @@ def _group_settings(
             prefix = _PASSED_ARGUMENTS
         has_both = setting.old is not None and setting.new is not None
         has_lost_frames = setting.reason is not None and setting.reason.template == make_frames_reason("").template
-        is_single = not prefix or (has_both and not has_lost_frames)
+        is_single = not prefix or (has_both and not has_lost_frames and not setting.is_changed_number)
         is_lost_name = setting.name in _NAMES and setting.new is None and setting.reason is not None
         key: object = _NAMES if is_lost_name else setting.name
         key = key if is_single else (prefix, has_both, setting.new is None, setting.reason is None)
@@ -376,7 +388,8 @@ def _format_group(group: Sequence[_Setting], *, is_include: bool) -> Phrase:
     is_remapping, is_added = group[0].name.startswith(REMAPPING), group[0].new is not None
     if group[0].old is not None and group[0].new is not None:
         changes = [str(setting.text).removeprefix("parameter ") for setting in group]
-        return phrase("parameters {items}", items=joined_first(changes, MAX_NAMES))
+        limit = len(changes) if group[0].is_changed_number else MAX_NAMES
+        return phrase("parameters {items}", items=joined_first(changes, limit))
     items = joined_first([_format_setting(setting) for setting in group], MAX_NAMES)
     if is_include:
         added, removed = (

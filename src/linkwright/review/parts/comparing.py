@@ -12,7 +12,7 @@ from linkwright.diagnostics.phrase import as_phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.review.changes import MAX_NAMES, Change, Effect, ExpandedElement, Subject, SubjectKind
 from linkwright.review.failures import make_problem
-from linkwright.review.parts.contents import compare_contents, make_comparison
+from linkwright.review.parts.contents import compare_contents
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
 from linkwright.review.parts.interface import (
     compare_arguments,
@@ -21,6 +21,7 @@ from linkwright.review.parts.interface import (
     format_parameter,
     make_macro_removal_reason,
 )
+from linkwright.review.parts.item_comparisons import make_comparison
 from linkwright.review.parts.left_uses import find_left_uses
 from linkwright.review.parts.malformed_includes import includes_malformed_file
 from linkwright.review.parts.mesh_addresses import compare_mesh_addresses

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -32,10 +32,10 @@ from linkwright.review.parts.default_conditions import find_missing_part_reason,
 from linkwright.review.parts.default_values import is_same_by_default, names_same_topic_by_default
 from linkwright.review.parts.elements import BLOCK, CONDITION_SEPARATOR, ItemComparison, PartDifference
 from linkwright.review.parts.include_arguments import find_lost_choices
+from linkwright.review.parts.item_comparisons import make_comparison
 from linkwright.review.parts.made_names import makes_same_names
 from linkwright.review.parts.missing_includes import has_missing_include, names_absent_package
-from linkwright.review.parts.name_substitution import NameSubstitution, iterate_properties, read_literals
-from linkwright.review.parts.outline import PROPERTY, STATEMENTS, MacroOutline, uses_name
+from linkwright.review.parts.outline import PROPERTY, STATEMENTS, uses_name
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.repeated_calls import find_repeated_call
 from linkwright.review.plugins import find_sensor_reason
@@ -48,6 +48,8 @@ _MAX_VALUES = 8
 """The maximum number of values of an added or removed element in a line."""
 _MAX_WITH_CONTENTS = 8
 """The maximum number of added or removed elements whose values are all shown in one line."""
+_MIN_PREFIXED = 3
+"""The minimum number of values with the same new prefix that are one line."""
 _MAX_LINES = 15
 """The maximum number of changes without a reason that are listed for a file."""
 _NAMESPACE = "namespace"
@@ -55,22 +57,8 @@ _NAMESPACE = "namespace"
 _CONDITION = re.compile(r" ?\[(?:if|unless) .*\]$")
 """The conditions at the end of the summary of an element."""
 _XACRO = "xacro:"
+_MATERIAL = "material"
 _INCLUDE, _INSERT = "xacro:include", "xacro:insert_block"
-
-
-def make_comparison(pair: PartPair, old: MacroOutline | None = None, new: MacroOutline | None = None) -> ItemComparison:
-    """Return the comparison of the elements of two files, or of two macros in them."""
-    renamed = dict(_find_renamed_properties(pair))
-    passed: dict[str, str] = {}
-    literals = [read_literals(outline.root) for outline in (pair.old, pair.new)]
-    if old is not None and new is not None:
-        renamed |= dict(_find_renamed_parameters(old, new))
-        for values, macro in zip(literals, (old, new), strict=True):
-            for name in macro.parameters:
-                values.pop(name.lstrip("*"), None)
-        passed = dict(_find_passed_values(pair, old, new, renamed))
-    old_names = NameSubstitution(literals[0], renamed, pair.renamed_macros, passed)
-    return ItemComparison(old_names, NameSubstitution(literals[1]))
 
 
 def compare_contents(pair: PartPair, renamed: Mapping[str, str]) -> None:
@@ -121,6 +109,8 @@ def _is_shown(pair: PartPair, difference: PartDifference, old: Element, new: Ele
         return True  # the lost parameter is reported
     if None in (difference.old, difference.new) and f"${{{difference.value}}}" in (difference.old, difference.new):
         return True  # a call that passes a parameter on; the parameter itself is reported
+    if element.tag == _MATERIAL and difference.is_whole and len(difference.path) == 1:
+        return False  # robots only show the materials of their links
     if element.tag == PROPERTY:
         return difference.is_whole or _is_property_shown(pair, element.attributes.get("name", ""), old, new)
     if element.tag == _INCLUDE and any(_is_of_absent_package(pair, elements)):
@@ -172,46 +162,6 @@ def _is_property_shown(pair: PartPair, name: str, old: Element, new: Element) ->
                 if pair.is_expanded(element, is_old=is_old):
                     return True
     return not is_used and any(pair.is_read(is_old=is_old) for is_old in (True, False))
-
-
-def _find_renamed_properties(pair: PartPair) -> Iterator[tuple[str, str]]:
-    """Yield the old and new names of renamed properties, which keep their values."""
-    old, new = (
-        {name: element.attributes.get("value") for name, element in iterate_properties(outline.root)}
-        for outline in (pair.old, pair.new)
-    )
-    added = {name: value for name, value in new.items() if name not in old}
-    for name, value in old.items():
-        match = next((other for other, other_value in added.items() if other_value == value), None)
-        if name not in new and match is not None:
-            del added[match]
-            yield name, match
-
-
-def _find_renamed_parameters(old: MacroOutline, new: MacroOutline) -> Iterator[tuple[str, str]]:
-    """Yield the old and new names of renamed parameters.
-
-    The removed and added parameters must have the same defaults in the same order.
-    """
-    removed = [parameter for name, parameter in old.parameters.items() if name not in new.parameters]
-    added = [parameter for name, parameter in new.parameters.items() if name not in old.parameters]
-    if [parameter.default for parameter in removed] == [parameter.default for parameter in added]:
-        for before, after in zip(removed, added, strict=True):
-            yield before.name.lstrip("*"), after.name.lstrip("*")
-
-
-def _find_passed_values(
-    pair: PartPair, old: MacroOutline, new: MacroOutline, renamed: Container[str]
-) -> Iterator[tuple[str, str]]:
-    """Yield the removed parameters of a macro for which all its old calls pass the same value, with the value."""
-    calls = pair.find_old_calls(old.name)
-    for parameter in old.parameters.values():
-        if parameter.name in new.parameters or parameter.name in renamed:
-            continue
-        values = {call.attributes.get(parameter.name) for call in calls}
-        value = values.pop() if len(values) == 1 else None
-        if value is not None:
-            yield parameter.name, " ".join(value.split())
 
 
 # --- sentences -------------------------------------------------------------------------------------------------------
@@ -273,6 +223,15 @@ class _ReportedDifference:
         if not is_value or None not in (difference.old, difference.new) or self.reason is not None:
             return None
         return id(element), difference.old is None, tag
+
+    @property
+    def added_prefix(self) -> str:
+        """The expression that a name newly has at its start; empty for other differences."""
+        old, new = self.difference.old, self.difference.new
+        if self.difference.value == "conditions" or not old or not new or old == new or not new.endswith(old):
+            return ""
+        prefix = new.removesuffix(old)
+        return prefix if prefix.startswith("${") and prefix.endswith("}") else ""
 
     @property
     def key(self) -> Hashable:
@@ -499,7 +458,12 @@ def _merge_differences(differences: list[_ReportedDifference]) -> Iterator[Chang
     for difference in differences:
         calls.setdefault(difference.call_key, []).append(difference)
     changes = list(_join_call_values([group for key, group in calls.items() if key is not None and len(group) > 1]))
+    prefixed = _group_by_prefix(differences)
+    changes += map(_join_prefixed, prefixed)
+    joined_items = {id(difference) for group in prefixed for difference in group}
     for difference in differences:
+        if id(difference) in joined_items:
+            continue
         if difference.call_key is None or len(calls[difference.call_key]) == 1:
             groups.setdefault(difference.key, []).append(difference)
     for first, *others in groups.values():
@@ -517,6 +481,27 @@ def _merge_differences(differences: list[_ReportedDifference]) -> Iterator[Chang
     if len(not_breaking) > shown:
         text = counted("{count} more change", "{count} more changes", len(not_breaking) - shown)
         yield replace(not_breaking[shown], sentence=text, other_names=())
+
+
+def _group_by_prefix(differences: Sequence[_ReportedDifference]) -> list[list[_ReportedDifference]]:
+    """Return groups of values of a macro or file that get the same text at their start, such as ``${prefix}``."""
+    groups: dict[Hashable, list[_ReportedDifference]] = {}
+    for difference in differences:
+        prefix = difference.added_prefix
+        if prefix and difference.reason is None:
+            groups.setdefault((difference.macro, prefix), []).append(difference)
+    return [
+        group
+        for group in groups.values()
+        if len(group) >= _MIN_PREFIXED and len({difference.difference.old for difference in group}) > 1
+    ]
+
+
+def _join_prefixed(group: Sequence[_ReportedDifference]) -> Change:
+    """Return the line about values that get the same text at their start."""
+    first, *others = group
+    text = phrase("{element}: '{prefix}' added before the value", element=first.element, prefix=first.added_prefix)
+    return replace(first.change, sentence=first.add_macro(text), other_names=tuple(other.element for other in others))
 
 
 def _join_call_values(calls: Sequence[Sequence[_ReportedDifference]]) -> Iterator[Change]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from linkwright.descriptions.comparison import Difference
 from linkwright.diagnostics import Phrase, joined, phrase, term
-from linkwright.urdf import Box, Geometry, Joint, Link, Mesh, Robot, Sphere
+from linkwright.urdf import Box, Geometry, Joint, Link, Mesh, Robot, Sphere, Visual
 
 _MAX_LINKS = 4
 """The maximum number of added links that each have a line of their own."""
@@ -92,7 +92,7 @@ def _format_rotation(joint: Joint) -> Iterator[Phrase]:
 
 def _format_link(link: Link) -> Iterator[Phrase]:
     """Yield the shapes and the mass of a link."""
-    for shape, count in Counter(_format_shape(visual.geometry) for visual in link.visuals).items():
+    for shape, count in Counter(map(_format_visual, link.visuals)).items():
         yield _add_count(phrase("visual {shape}", shape=shape), count)
     for shape, count in Counter(_format_shape(collision.geometry) for collision in link.collisions).items():
         yield _add_count(phrase("collision {shape}", shape=shape), count)
@@ -109,6 +109,14 @@ def _to_degrees(angle: float) -> float:
 
 def _add_count(part: Phrase, count: int) -> Phrase:
     return part if count == 1 else phrase("{part} ({count} times)", part=part, count=count)
+
+
+def _format_visual(visual: Visual) -> str:
+    """Return the shape of a visual, with its material and the color of it."""
+    material = visual.material
+    color = "" if material is None or material.rgba is None else " ".join(f"{value:g}" for value in material.rgba)
+    words = [_format_shape(visual.geometry), "material" if visual.material_name else "", visual.material_name, color]
+    return " ".join(filter(None, words))
 
 
 def _format_shape(geometry: Geometry) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import PurePosixPath
 
-from linkwright.diagnostics import LinkwrightError, SourceText, Span, phrase, quoted_names
+from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, Span, phrase, quoted_names
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.dependencies import depends_indirectly_on, is_in_every_workspace
 from linkwright.packages.manifest import MANIFEST
@@ -53,8 +53,23 @@ def _make_change(path: str, name: str, lost: Sequence[str], span: Span) -> Chang
         name=name,
         names=quoted_names(lost),
     )
-    reason = phrase("it fails where '{name}' is not installed", name=name)
-    return Change(text, Effect.BREAKING, reason, Location(path, span.line, span.column))
+    return Change(text, Effect.BREAKING, _make_reason(name), Location(path, span.line, span.column))
+
+
+def _make_reason(name: str) -> Phrase:
+    return phrase("it fails where '{name}' is not installed", name=name)
+
+
+def drop_told_lookups(changes: Sequence[Change]) -> list[Change]:
+    """Return the changes of a file without lookups of packages that another breaking change of it names."""
+    lookup = _make_reason("").template
+    reasons = [change.reason for change in changes if change.reason is not None]
+    told = {reason.arguments.get("name") for reason in reasons if reason.template != lookup}
+    return [
+        change
+        for change in changes
+        if change.reason is None or change.reason.template != lookup or change.reason.arguments.get("name") not in told
+    ]
 
 
 def _is_available(version: Version, path: str, name: str) -> bool:
