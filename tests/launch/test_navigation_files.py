@@ -236,16 +236,16 @@ def test_default_parameters_cover_started_nodes() -> None:
 
 
 async def test_lifecycle_manager_skips_missing_nodes_of_user_launch_file(launch: Launch, started: StartedNodes) -> None:
-    names = ["planner_server", "docking_server", "red/route_server"]
+    names = ["planner_server", "coverage_server", "red/route_server"]
     launched = await launch(
-        Node(package="opennav_docking", executable="opennav_docking", name="docking_server"),
+        Node(package="opennav_coverage", executable="opennav_coverage", name="coverage_server"),
         Node(package="nav2_route", executable="route_server"),
         Node(package="nav2_planner", executable="planner_server"),
         Node(package="nav2_lifecycle_manager", executable="lifecycle_manager", parameters=[{"node_names": names}]),
     )
     assert launched.succeeded
     assert started.node("lifecycle_manager")[1]["node_names"] == ["planner_server"]
-    assert "'docking_server' is skipped, so no lifecycle manager waits for it" in launched.err
+    assert "'coverage_server' is skipped, so no lifecycle manager waits for it" in launched.err
 
 
 def test_composed_lifecycle_manager_skips_missing_nodes() -> None:

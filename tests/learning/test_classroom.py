@@ -350,5 +350,7 @@ def test_unwritable_workspace_is_one_error(tmp_path, monkeypatch):
 
 
 def test_modules_imported_by_check_server_exist():
-    names = [name.removesuffix(".*") for name in check_process._PRELOADED_MODULES]
-    assert [name for name in names if importlib.util.find_spec(name) is None] == []
+    names = [name.removesuffix(".*").partition(":") for name in check_process._PRELOADED_MODULES]
+    assert [name for name, _, _ in names if importlib.util.find_spec(name) is None] == []
+    functions = [(name, function) for name, _, function in names if function]
+    assert [name for name, function in functions if not hasattr(importlib.import_module(name), function)] == []

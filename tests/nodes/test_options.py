@@ -4,12 +4,15 @@ import os
 import sys
 from unittest.mock import MagicMock
 
+import numpy as np
 import pytest
 
+from linkwright.geometry.octrees import encode_octree
 from linkwright.graph import LogLevel
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import create_node, find_default_name
 from linkwright.vision.cameras.video import VideoSource
+from tests.navigation.nodes.test_cartographer import CONFIGURATION
 from tests.nodes.harness import joint, robot
 from tests.speech.nodes import fake_sounddevice
 
@@ -85,13 +88,31 @@ def camera(monkeypatch):
     monkeypatch.setattr(VideoSource, "_open", lambda *_: MagicMock(**{"read.return_value": (False, None)}))
 
 
+@pytest.fixture
+def files(tmp_path):
+    """Return the folder with the files that nodes need: a configuration of Cartographer, and an octomap."""
+    (tmp_path / "robot.lua").write_text(f"{CONFIGURATION}\nreturn options\n")
+    data, size = encode_octree((0, 0, 0), np.full((1, 1, 1), 2))
+    header = f"# Octomap OcTree binary file\nid OcTree\nsize {size}\nres 0.1\ndata\n"
+    (tmp_path / "map.bt").write_bytes(header.encode() + data)
+    return tmp_path
+
+
+def make_options(executable, files, **fields):
+    arguments = ARGUMENTS.get(executable[1], [])
+    if executable[1] == "cartographer_node":
+        arguments = ["-configuration_directory", str(files), "-configuration_basename", "robot.lua"]
+    parameters = {**PARAMETERS, "octomap_path": str(files / "map.bt")}
+    return NodeOptions(parameters=parameters, arguments=arguments, **fields)
+
+
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
-async def test_executables_start_and_close(harness, executable, terminal):
-    options = NodeOptions(
+async def test_executables_start_and_close(harness, executable, files, terminal):
+    options = make_options(
+        executable,
+        files,
         name="mine",
         namespace="/robot",
-        parameters=dict(PARAMETERS),
-        arguments=ARGUMENTS.get(executable[1], []),
         library=harness.library,
         terminal=terminal,
     )
@@ -106,10 +127,10 @@ async def test_executables_start_and_close(harness, executable, terminal):
 
 
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
-async def test_default_name_matches_started_node(harness, executable, terminal):
-    options = NodeOptions(
-        parameters=dict(PARAMETERS),
-        arguments=ARGUMENTS.get(executable[1], []),
+async def test_default_name_matches_started_node(harness, executable, files, terminal):
+    options = make_options(
+        executable,
+        files,
         library=harness.library,
         terminal=terminal,
     )

@@ -29,10 +29,11 @@ from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handl
 from linkwright.nodes.settings import check_positive, log_unknown_parameters
 from linkwright.perception.nodes.pointcloud_to_laserscan import read_points
 from linkwright.perception.octomaps.occupancy import OccupancyOctree, SensorModel
+from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _CLOUD_QOS = QoSProfile(1, ReliabilityPolicy.BEST_EFFORT)
 """Only the latest cloud waits: an update takes longer than the period of some cameras."""
-_IDLE_PERIOD_NS = 1_000_000_000
+_IDLE_PERIOD_NS = NANOSECONDS_PER_SECOND
 _FLOAT32 = 7
 _FREE, _OCCUPIED, _UNKNOWN = 0, 100, -1
 _MAX_FILE_BYTES = 1 << 30
