@@ -11,75 +11,52 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import phrase
-from linkwright.graph import SENSOR_DATA_QOS, Graph, Subscription
-from linkwright.images.decoding import BadImageError, RangeFinder, decode_image, demosaic
-from linkwright.images.transports import ImageSource, Unpacker
+from linkwright.graph import Node
+from linkwright.images.decoding import RangeFinder, decode_image, demosaic
 from linkwright.messages import get_message
-from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import log_unknown_parameters
 from linkwright.perception.nodes.image_arrays import to_array, to_image
-from linkwright.perception.nodes.lazy_subscriptions import LazySubscriptions
+from linkwright.perception.nodes.image_node import ImageNode
 
 _IMAGE_TYPE = "sensor_msgs/msg/Image"
 _DEFAULT_ALGORITHM = 3
-_PUBLISHER_DEPTH = 10
 _WARNING_PERIOD_S = 5.0
 _LUMA = np.array((0.299, 0.587, 0.114))
 """The shares of red, green and blue in gray, as in OpenCV."""
 
 
-class DebayerNode(SingleNode):
-    """The running node, which works while one of its outputs has a subscription.
+class DebayerNode(ImageNode):
+    """The running node.
 
     Raises:
         LinkwrightError: a parameter has an invalid type (GRAPH201).
     """
 
-    DEFAULT_NAME = "DebayerNode"
+    DEFAULT_NAME, OUTPUTS = "DebayerNode", ("image_mono", "image_color")
 
-    def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        node = self._node
-        with handle_start_errors(node):
-            transport: str = node.declare_parameter("image_transport", "raw").value
-            node.declare_parameter("debayer", _DEFAULT_ALGORITHM)
-            log_unknown_parameters(node)
-        self._source = ImageSource.of(node.resolve_topic_name("image_raw"), transport)
-        self._unpacker = Unpacker()
-        self._mono, self._color = (
-            node.create_publisher(get_message(_IMAGE_TYPE), topic, _PUBLISHER_DEPTH)
-            for topic in ("image_mono", "image_color")
+    def declare_parameters(self, node: Node) -> None:
+        """Declare the algorithm."""
+        node.declare_parameter("debayer", _DEFAULT_ALGORITHM)
+
+    def convert(self, image: Any) -> None:
+        """Publish the gray and the color image, those with a subscription."""
+        mono, color = self._publishers
+        if mono.get_subscription_count():
+            mono.publish(image if _is_gray(image) else _make_image(_to_gray(_read_colors(image)), image))
+        if color.get_subscription_count():
+            color.publish(image if _has_colors(image) else _make_image(_read_colors(image)[..., ::-1], image))
+            if _is_gray(image):
+                self._node.get_logger().warning(
+                    f"Color topic '{color.topic_name}' requested, but raw image data from topic "
+                    f"'{self._source.topic}' is grayscale",
+                    throttle_duration_sec=_WARNING_PERIOD_S,
+                )
+
+    def log_failure(self, error: Exception) -> None:
+        """Log that an image is left out."""
+        self._node.get_logger().warning(
+            phrase("the image on '{topic}' is left out: {reason}", topic=self._source.topic, reason=str(error)),
+            throttle_duration_sec=_WARNING_PERIOD_S,
         )
-        self._subscriptions = LazySubscriptions(graph, node, [self._mono, self._color], self._subscribe)
-
-    def close(self) -> None:
-        """Close the node."""
-        self._subscriptions.close()
-        super().close()
-
-    def _subscribe(self) -> list[Subscription[Any]]:
-        message_class = get_message(self._source.message_type)
-        return [self._node.create_subscription(message_class, self._source.topic, self._receive, SENSOR_DATA_QOS)]
-
-    def _receive(self, message: Any) -> None:
-        try:
-            image = self._unpacker.image(message, self._source.transport_of(message))
-            if self._mono.get_subscription_count():
-                self._mono.publish(image if _is_gray(image) else _make_image(_to_gray(_read_colors(image)), image))
-            if self._color.get_subscription_count():
-                self._color.publish(image if _has_colors(image) else _make_image(_read_colors(image)[..., ::-1], image))
-        except (ValueError, BadImageError) as error:
-            self._node.get_logger().warning(
-                phrase("the image on '{topic}' is left out: {reason}", topic=self._source.topic, reason=str(error)),
-                throttle_duration_sec=_WARNING_PERIOD_S,
-            )
-            return
-        if _is_gray(image) and self._color.get_subscription_count():
-            self._node.get_logger().warning(
-                f"Color topic '{self._node.resolve_topic_name('image_color')}' requested, but raw image data from topic"
-                f" '{self._source.topic}' is grayscale",
-                throttle_duration_sec=_WARNING_PERIOD_S,
-            )
 
 
 def _is_gray(image: Any) -> bool:

@@ -23,6 +23,7 @@ from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import check_positive, log_unknown_parameters
 from linkwright.perception.nodes.image_arrays import to_array, to_image
+from linkwright.perception.nodes.image_node import ImageNode
 from linkwright.perception.nodes.image_proc import get_info_topic
 from linkwright.perception.nodes.lazy_subscriptions import LazySubscriptions
 
@@ -54,49 +55,29 @@ def read_depths(image: Any) -> NDArray[np.float32]:
     raise ValueError(f"Depth image has unsupported encoding [{image.encoding}]")
 
 
-class ConvertMetricNode(SingleNode):
+class ConvertMetricNode(ImageNode):
     """The node that converts depth images from millimeters to meters, or back.
 
     Raises:
         LinkwrightError: a parameter has an invalid type (GRAPH201).
     """
 
-    DEFAULT_NAME = "ConvertMetricNode"
+    DEFAULT_NAME, OUTPUTS = "ConvertMetricNode", ("image",)
 
-    def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        node = self._node
-        with handle_start_errors(node):
-            transport: str = node.declare_parameter("image_transport", "raw").value
-            log_unknown_parameters(node)
-        self._source = ImageSource.of(node.resolve_topic_name("image_raw"), transport)
-        self._unpacker = Unpacker()
-        self._publisher = node.create_publisher(get_message(_IMAGE_TYPE), "image", 10)
-        self._subscriptions = LazySubscriptions(graph, node, [self._publisher], self._subscribe)
-
-    def close(self) -> None:
-        """Close the node."""
-        self._subscriptions.close()
-        super().close()
-
-    def _subscribe(self) -> list[Subscription[Any]]:
-        message_class = get_message(self._source.message_type)
-        return [self._node.create_subscription(message_class, self._source.topic, self._receive, SENSOR_DATA_QOS)]
-
-    def _receive(self, message: Any) -> None:
-        try:
-            image = self._unpacker.image(message, self._source.transport_of(message))
-            depths = read_depths(image)
-        except (ValueError, BadImageError) as error:
-            self._node.get_logger().error(str(error), throttle_duration_sec=_ERROR_PERIOD_S)
-            return
+    def convert(self, image: Any) -> None:
+        """Publish the depths in the other unit."""
+        depths = read_depths(image)
         pixels: NDArray[Any] = depths
         encoding = _METERS
         if image.encoding == _METERS:
             pixels = np.nan_to_num(np.rint(depths * 1000)).clip(0, 65535).astype(np.uint16)
             encoding = "16UC1"
         source = get_message(_IMAGE_TYPE)(header=image.header, encoding=encoding)
-        self._publisher.publish(to_image(pixels[..., None], source))
+        self._publishers[0].publish(to_image(pixels[..., None], source))
+
+    def log_failure(self, error: Exception) -> None:
+        """Log that an image is left out."""
+        self._node.get_logger().error(str(error), throttle_duration_sec=_ERROR_PERIOD_S)
 
 
 class _CloudNode(SingleNode, ABC):
