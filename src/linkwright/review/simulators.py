@@ -23,7 +23,7 @@ _SIMULATORS = {
 """The simulators that load the hardware plugins of a package."""
 _PROPERTY = "hardware plugin"
 _MANAGER = re.compile(r"(?:gazebo_ros2?|gz_ros2|ign_ros2)_control(?!/)")
-"""The file of a plugin of a simulator that runs the controller manager. Names of hardware go on with a slash."""
+"""The file of a plugin of a simulator that runs the controller manager. A slash follows in names of hardware."""
 _LOADED = re.compile(r"\b(?:load_controller|spawner|controller_spawner)\b")
 """A command that loads controllers into a controller manager."""
 _SIMULATED = re.compile(r"gazebo|\bgz|ign_gazebo|[_-]sim\b|simulation", re.IGNORECASE)
