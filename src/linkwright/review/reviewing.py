@@ -87,6 +87,7 @@ from linkwright.review.renamed_packages import find_renamed_packages, match_move
 from linkwright.review.replaced_files import join_replaced_files
 from linkwright.review.required_packages import is_named
 from linkwright.review.robots.semantics import find_semantic_files
+from linkwright.review.secrets import hide_secrets
 from linkwright.review.sources.comparing import source_subjects
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.unfixed_findings import drop_unfixed_findings
@@ -155,7 +156,7 @@ def review(
     )
     for version in (versions.old, versions.new):
         result = review_without_folder(result, version.root, version.installed_shares)
-    return result
+    return hide_secrets(versions, result)
 
 
 class _Reviewer:
