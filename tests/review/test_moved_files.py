@@ -34,7 +34,11 @@ def test_files_that_are_installed_at_the_same_place_are_one_line(repository, com
     result = find_moved_files(repository, compare, "examples/launch", "launch")
     assert result.subjects == []
     assert [(path, str(state)) for path, state in list_other_files(result)] == [
-        ("arm/CMakeLists.txt", "None"),
+        (
+            "arm/CMakeLists.txt",
+            "install(DIRECTORY examples/launch DESTINATION share/arm)"
+            " -> install(DIRECTORY launch DESTINATION share/arm)",
+        ),
         ("arm/launch/", "4 files, moved from arm/examples/launch/, installed at the same place"),
     ]
 

@@ -352,3 +352,7 @@ def find_rule(path: str) -> KindRule | None:
 
 def _matches_suffix(name: str, suffix: str) -> bool:
     return name.endswith(suffix) if suffix.startswith((".", "_")) else name == suffix
+
+
+REPOSITORIES = next(rule for rule in _RULES if rule.suffixes == REPOSITORY_SUFFIXES)
+"""The rule for lists of repositories, also in YAML files with other names."""
