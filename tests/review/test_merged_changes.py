@@ -355,3 +355,31 @@ def test_interface_with_a_size_and_the_names_of_its_items_are_one_line(package, 
         "extension 'ros2_control arm': gpio io command_interface out size=4 -> out_0 to out_3"
     ]
     assert breaking(result) == []
+
+
+def test_equal_plugins_that_differ_in_the_joint_are_one_line(package, compare):
+    plugin = """<plugin filename="position.so" name="controller"><joint_name>{joint}</joint_name>
+      <topic>{joint}</topic><p_gain>{gain}</p_gain></plugin>"""
+    path = "arm_description/urdf/arm.urdf.xacro"
+    package.commit({path: ARM.replace("</robot>", "<gazebo><a>1</a></gazebo></robot>")})
+    plugins = "".join(plugin.format(joint=f"J{number}", gain=9 if number == 4 else 5) for number in range(1, 5))
+    package.write({path: ARM.replace("</robot>", f"<gazebo><a>1</a>{plugins}</gazebo></robot>")})
+    assert sentences(subject(compare(package), path)) == [
+        f"extension 'gazebo': plugin controller ({joint}) added: filename=position.so, "
+        f"joint_name {joint}, topic {joint}, p_gain {gain}"
+        for joint, gain in (("J1", 5), ("J4", 9))
+    ]
+    assert list(subject(compare(package), path).changes[0].other_names) == ["J2", "J3"]
+
+
+def test_parameters_of_one_interface_are_one_line(package, compare):
+    control = """<ros2_control name="arm" type="system"><joint name="upper_joint"><command_interface name="position">
+      <param name="min">{}</param><param name="max">{}</param></command_interface></joint></ros2_control></robot>"""
+    path = "arm_description/urdf/arm.urdf.xacro"
+    package.commit({path: ARM.replace("</robot>", control.format(-1, 1))})
+    package.write({path: ARM.replace("</robot>", control.format(-2, 3))})
+    (line,) = sentences(subject(compare(package), path))
+    assert line == (
+        "extension 'ros2_control arm': joint upper_joint command_interface position: "
+        "param min -1 -> -2, param max 1 -> 3"
+    )

@@ -200,7 +200,7 @@ def test_removed_and_renamed_parts_are_breaking(library, compare):
     assert sentences(subject(result, "arm_description/urdf/jaw.xacro")) == [
         "description file added",
         (
-            "macro 'gripper' added: parameters name, parent, side:=left, *origin, link ${name}, link ${name}_tip,"
+            "macro 'gripper' added: parameters name, parent, side:=left, *origin; makes link ${name}, link ${name}_tip,"
             " joint ${name}_joint, gazebo ${name} (sensor 'camera',"
             " plugin 'driver' (filename=driver.so, topicName image))"
         ),
@@ -498,7 +498,7 @@ def test_sensors_and_plugins_of_an_added_macro_are_shown(package, compare):
     path = "arm_description/urdf/laser.gazebo.xacro"
     package.write({path: f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{macro}</robot>'})
     assert sentences(subject(compare(package), path))[1] == (
-        "macro 'laser' added: parameters visual:=false, "
+        "macro 'laser' added: parameters visual:=false; makes "
         "gazebo laser (sensor 'laser' (type=ray, update_rate 5, visualize ${visual}), "
         "plugin 'scanner' (filename=libgazebo_ros_ray_sensor.so, topicName scan)), gazebo base"
     )
@@ -539,3 +539,56 @@ def test_names_that_get_the_same_prefix_are_one_line(package, compare):
     (change,) = subject(compare(package), path).changes
     assert str(change.sentence) == "macro 'tool': joint j0 parent link: '${prefix}' added before the value"
     assert change.other_names == ("joint j0 child link", "joint j1 parent link", "joint j1 child link")
+
+
+LASER = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"{}>
+  <xacro:arg name="side" default=""/>
+  <xacro:include filename="$(find absent_package)/urdf/base.xacro"/>
+  <link name="$(arg side)laser"/>
+  <joint name="laser_joint" type="fixed"><parent link="base"/><child link="laser"/></joint>
+  <gazebo reference="laser"><sensor type="ray" name="scanner"><update_rate>40</update_rate></sensor></gazebo>
+</robot>
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "attributes", "expected"),
+    [
+        ("laser.urdf.xacro", ' name="laser"', ["description added: {}"]),
+        ("laser.xacro", "", ["description file added", "contains {}"]),
+    ],
+)
+def test_added_description_that_cannot_be_expanded_shows_what_is_written_in_it(
+    package, compare, name, attributes, expected
+):
+    path = f"arm_description/urdf/{name}"
+    package.write({path: LASER.format(attributes)})
+    contents = (
+        "argument 'side' (default ''), includes $(find absent_package)/urdf/base.xacro, link $(arg side)laser, "
+        "joint laser_joint, gazebo laser (sensor 'scanner' (type=ray, update_rate 40))"
+    )
+    assert sentences(subject(compare(package), path)) == [line.format(contents) for line in expected]
+
+
+def test_added_file_that_a_compared_robot_reads_is_shown_by_the_robot(package, compare):
+    path = "arm_description/urdf/cap.xacro"
+    include = '<xacro:include filename="cap.xacro"/></robot>'
+    cap = """<robot><link name="cap"/><joint name="cap_joint" type="continuous">
+      <parent link="lower"/><child link="cap"/><axis xyz="0 0 -1"/></joint></robot>"""
+    package.write({path: cap, ROBOT: ARM.replace("</robot>", include)})
+    result = compare(package)
+    assert sentences(subject(result, path)) == ["included description file added"]
+    assert sentences(subject(result, ROBOT)) == [
+        "link 'cap' added: continuous joint 'cap_joint' at 'lower', xyz 0 0 0 m, axis 0 0 -1"
+    ]
+
+
+def test_empty_argument_in_the_names_of_an_added_robot_is_shown(package, compare):
+    path = "arm_description/urdf/turtle.urdf.xacro"
+    text = """<robot name="turtle" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="space" default=""/>
+      <link name="$(arg space)_link"/></robot>"""
+    package.write({path: text})
+    assert sentences(subject(compare(package), path)) == [
+        "description added: argument 'space' (default '')",
+        "robot 'turtle': 1 link (<space>_link)",
+    ]

@@ -52,3 +52,49 @@ def test_hardware_that_an_argument_still_chooses_is_not_lost(package, compare):
     package.commit({ROBOT: make_robot(CONTROL.format(plugin=CLASSIC))})
     package.write({ROBOT: make_robot(argument + choice)})
     assert breaking(compare(package)) == []
+
+
+MANAGER = '<gazebo><plugin filename="{}" name="control"><parameters>c.yaml</parameters></plugin></gazebo>'
+GZ_FILE = "gz_ros2_control-system"
+LAUNCH = """from launch import LaunchDescription
+from launch.actions import ExecuteProcess
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package="ros_gz_sim", executable="create", arguments=["-topic", "robot_description"]),
+        ExecuteProcess(cmd=["ros2", "control", "load_controller", "arm_controller"]),
+    ])
+"""
+LOST = "no controller manager runs in the simulation"
+
+
+@pytest.mark.parametrize("file", [GZ_FILE, "libgazebo_ros_control.so", "libgazebo_ros2_control.so"])
+def test_removed_plugin_of_the_controller_manager_is_breaking(package, compare, file):
+    package.commit({ROBOT: make_robot(MANAGER.format(file))})
+    package.write({ROBOT: make_robot(f"<!-- {MANAGER.format(file)} -->")})
+    assert [str(change.reason) for _, change in compare(package).breaking_changes] == [LOST]
+
+
+def test_reason_of_a_lost_controller_manager_names_the_launch_file_that_loads_controllers(package, compare):
+    path = "arm_description/launch/gazebo.launch.py"
+    package.commit({ROBOT: make_robot(MANAGER.format(GZ_FILE)), path: LAUNCH})
+    package.write({ROBOT: make_robot("")})
+    reasons = [str(change.reason) for _, change in compare(package).breaking_changes]
+    assert reasons == [f"{LOST}, where '{path}' loads controllers"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "part"),
+    [
+        (GZ_FILE, "libgazebo_ros2_control.so", ""),
+        ("libplotter.so", None, ""),
+        (GZ_FILE, None, GZ_FILE),
+    ],
+    ids=["another-simulator", "another-plugin", "moved-to-another-file"],
+)
+def test_controller_manager_that_still_runs_breaks_nothing(package, compare, old, new, part):
+    package.commit({ROBOT: make_robot(MANAGER.format(old)), PART: make_part("")})
+    content = "" if new is None else MANAGER.format(new)
+    package.write({ROBOT: make_robot(content), PART: make_part(MANAGER.format(part) if part else "")})
+    assert breaking(compare(package)) == []

@@ -19,7 +19,7 @@ from linkwright.review.versions import Version, Versions
 _SHELL_SUFFIXES = frozenset({".sh", ".bash", ".zsh"})
 UNIT_SUFFIX = ".service"
 """The end of the names of units of systemd that start programs."""
-_SETTINGS_SUFFIXES = frozenset({".ini", ".cfg", ".conf", ".properties", ".lua", ".toml", ".robot"})
+_SETTINGS_SUFFIXES = frozenset({".ini", ".cfg", ".conf", ".properties", ".lua", ".toml", ".robot", ".material"})
 """The ends of the names of files with settings of programs and devices."""
 _SETTINGS_OF_TOOLS = re.compile(r"\..*|(tox|pytest|mypy|ruff|pylint|flake8|setup|cspell|doxygen|poetry).*")
 """The names of files with settings of tools for developers, which no robot reads."""
@@ -27,7 +27,8 @@ _SETTINGS_COMMENT = re.compile(r"[#;]|//|--")
 _SUFFIXES = _SHELL_SUFFIXES | {".rules", UNIT_SUFFIX, ".dockerfile"}
 _HEAD_BYTES = 100
 _FILE_NAME = re.compile(
-    r"(.*\.)?(docker|container)file(\..*)?|(.*[.-])?compose([.-].*)?\.ya?ml|\w*(packages?|apt|requirements?|dependencies)\w*\.txt|\.env"
+    r"(.*\.)?(docker|container)file(\..*)?|(.*[.-])?compose([.-].*)?\.ya?ml|\w*(packages?|apt|requirements?|dependencies)\w*\.txt"
+    r"|\.env|cmakelists\.txt|.*\.cmake"
 )
 _PACKAGE = re.compile(r"[A-Za-z0-9][\w.+:~<>=!-]*")
 """A line of a list of packages."""
@@ -65,7 +66,7 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
     try:
         if any(text.stat().st_size > _MAX_BYTES for text in paths):
             return None
-        old, new = ([*_split_content_lines(text.read_text("utf-8"))] for text in paths)
+        old, new = ([*split_content_lines(text.read_text("utf-8"))] for text in paths)
         if _has_settings(file.path):
             old, new = ([line for line in lines if not _SETTINGS_COMMENT.match(line)] for lines in (old, new))
     except (OSError, ValueError):
@@ -126,7 +127,7 @@ def list_commands(version: Version, path: str) -> Phrase | None:
     is_unit = path.endswith(UNIT_SUFFIX)
     if not is_unit and not is_shell_script(version, path):
         return None
-    lines = list_started_programs(version, path) if is_unit else [*_split_content_lines(version.text(path))]
+    lines = list_started_programs(version, path) if is_unit else [*split_content_lines(version.text(path))]
     if len(lines) > _MAX_LINES:
         lines.sort(key=_find_rank)
     return joined_first([f"`{shorten(line, _MAX_COMMAND_LENGTH)}`" for line in lines], _MAX_LINES) if lines else None
@@ -134,7 +135,7 @@ def list_commands(version: Version, path: str) -> Phrase | None:
 
 def list_started_programs(version: Version, path: str) -> list[str]:
     """Return the commands of a unit of systemd, from the part that starts a program of ROS on."""
-    lines = _split_content_lines(version.text(path))
+    lines = split_content_lines(version.text(path))
     return [_find_started_program(line) for line in lines if _UNIT_COMMAND.match(line)]
 
 
@@ -192,7 +193,7 @@ def is_shell_script(version: Version, path: str) -> bool:
         return False
 
 
-def _split_content_lines(text: str) -> Iterable[str]:
+def split_content_lines(text: str) -> Iterable[str]:
     """Yield the lines of a text without comments, with continued lines as one."""
     for line in re.sub(r"\\\n\s*", "", text).splitlines():
         words = " ".join(line.split())

@@ -18,7 +18,7 @@ from linkwright.review.folders import without_folder
 from linkwright.review.installed_paths import keeps_installed_path, keeps_type
 from linkwright.review.kinds import KindRule, adapt_rule_to_contents
 from linkwright.review.launches.reading import read_outline
-from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot
+from linkwright.review.robots.unpaired_robots import format_robot, read_unpaired_robot, read_with_argument_names
 from linkwright.review.users.unused_test_files import is_test_file, is_unused_test_file
 from linkwright.review.versions import Version, Versions
 from linkwright.sdf.text import parse_as_gazebo
@@ -197,4 +197,4 @@ def _describe_contents(
         return [], []
     model, robot = model_and_robot
     images = render_unpaired_robot(model, robot, is_old=version.is_old) if drawings.images else []
-    return [Change(format_robot(robot))], images
+    return [Change(format_robot(read_with_argument_names(model, robot)))], images

@@ -147,7 +147,24 @@ def compare_findings(
     added_keys = [(finding.code, str(finding.message)) for finding in added]
     fixed_keys = [(finding.code, rename(str(finding.message))) for finding in fixed]
     added, fixed = _drop_moved(added, added_keys, fixed_keys), _drop_moved(fixed, fixed_keys, added_keys)
+    added = [finding for finding in added if not _is_at_old_line(finding, versions, old, old_paths)]
     return _drop_in_unparsed_files(added, fixed, new_paths), _drop_in_unparsed_files(fixed, added, old_paths)
+
+
+def _is_at_old_line(finding: Diagnostic, versions: Versions, old: Findings, old_paths: Mapping[str, str]) -> bool:
+    """Return whether the old version has the line of a finding in a description, and the same finding elsewhere.
+
+    Such a finding is not new: a robot used a copy of the line, which had the finding.
+    """
+    path = None if finding.span is None else str(finding.span.file)
+    if path is None or not path.endswith(DESCRIPTION_SUFFIXES):
+        return False
+    message = str(finding.message)
+    if not any((other.code, str(other.message)) == (finding.code, message) for other in old.diagnostics):
+        return False
+    assert finding.span is not None
+    lines = versions.new.text(path).splitlines()[finding.span.line - 1 : finding.span.line]
+    return bool(lines) and lines[0] in versions.old.text(old_paths.get(path, path)).splitlines()
 
 
 def _names_missing_file(finding: Diagnostic, version: Version) -> bool:

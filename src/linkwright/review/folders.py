@@ -25,7 +25,7 @@ def without_folder(value: _Value, folder: Path) -> _Value:
         text = text.replace(f"{folder}/", "").replace(str(folder), ".")
         return text.replace(f"{PLACEHOLDER_FOLDER}/", "package://")
 
-    return _change_texts(value, change)
+    return change_texts(value, change)
 
 
 def finding_without_folders(finding: Diagnostic, folder: Path, shares: Mapping[str, Path]) -> Diagnostic:
@@ -52,7 +52,7 @@ def _make_uri_writer(shares: Mapping[str, Path]) -> Callable[[str], str]:
     return change
 
 
-def _change_texts(value: _Value, change: Callable[[str], str]) -> _Value:
+def change_texts(value: _Value, change: Callable[[str], str]) -> _Value:
     """Return a text, or a tuple or mapping of texts, with each text changed.
 
     The arguments of phrases are also changed.
@@ -61,13 +61,13 @@ def _change_texts(value: _Value, change: Callable[[str], str]) -> _Value:
         if change(str(value)) == str(value):
             return value
         create, arguments = cast("tuple[Callable[..., _Value], tuple[object, ...]]", value.__reduce__())
-        return create(*(_change_texts(argument, change) for argument in arguments))
+        return create(*(change_texts(argument, change) for argument in arguments))
     if isinstance(value, str):
         return cast(_Value, change(value))
     if isinstance(value, tuple):
-        return cast(_Value, tuple(_change_texts(item, change) for item in value))
+        return cast(_Value, tuple(change_texts(item, change) for item in value))
     if isinstance(value, Mapping):
-        return cast(_Value, {name: _change_texts(item, change) for name, item in value.items()})
+        return cast(_Value, {name: change_texts(item, change) for name, item in value.items()})
     return value
 
 
@@ -84,12 +84,17 @@ def review_without_folder(result: Review, folder: Path, shares: Mapping[str, Pat
     def change(text: str) -> str:
         return without_folder(write_uris(text), folder)
 
+    return review_with_texts(result, change)
+
+
+def review_with_texts(result: Review, change: Callable[[str], str]) -> Review:
+    """Return a review with each text of its changes, findings and notes changed."""
     return replace(
         result,
         subjects=[_change_subject(subject, change) for subject in result.subjects],
         new_findings=[_change_finding(finding, change) for finding in result.new_findings],
         fixed_findings=[_change_finding(finding, change) for finding in result.fixed_findings],
-        notes=[_change_texts(note, change) for note in result.notes],
+        notes=[change_texts(note, change) for note in result.notes],
     )
 
 
@@ -99,24 +104,24 @@ def _change_subject(subject: Subject, change_text: Callable[[str], str]) -> Subj
         changes=[
             replace(
                 change,
-                sentence=_change_texts(change.sentence, change_text),
-                reason=_change_texts(change.reason, change_text),
-                cases=_change_texts(change.cases, change_text),
+                sentence=change_texts(change.sentence, change_text),
+                reason=change_texts(change.reason, change_text),
+                cases=change_texts(change.cases, change_text),
             )
             for change in subject.changes
         ],
         figures=[
-            replace(figure, old=_change_texts(figure.old, change_text), new=_change_texts(figure.new, change_text))
+            replace(figure, old=change_texts(figure.old, change_text), new=change_texts(figure.new, change_text))
             for figure in subject.figures
         ],
-        problems=[replace(problem, text=_change_texts(problem.text, change_text)) for problem in subject.problems],
-        cases=[_change_texts(case, change_text) for case in subject.cases],
-        images=[replace(view, notes=_change_texts(view.notes, change_text)) for view in subject.images],
+        problems=[replace(problem, text=change_texts(problem.text, change_text)) for problem in subject.problems],
+        cases=[change_texts(case, change_text) for case in subject.cases],
+        images=[replace(view, notes=change_texts(view.notes, change_text)) for view in subject.images],
     )
 
 
 def _change_finding(finding: Diagnostic, change: Callable[[str], str]) -> Diagnostic:
     """Return a finding with its message, hint and notes changed."""
-    notes = tuple(note._replace(message=_change_texts(as_phrase(note.message), change)) for note in finding.notes)
-    hint = None if finding.hint is None else _change_texts(as_phrase(finding.hint), change)
-    return finding.with_changes(message=_change_texts(as_phrase(finding.message), change), hint=hint, notes=notes)
+    notes = tuple(note._replace(message=change_texts(as_phrase(note.message), change)) for note in finding.notes)
+    hint = None if finding.hint is None else change_texts(as_phrase(finding.hint), change)
+    return finding.with_changes(message=change_texts(as_phrase(finding.message), change), hint=hint, notes=notes)

@@ -50,6 +50,7 @@ from linkwright.review.launches.files import compare_launch_files, compare_launc
 from linkwright.review.launches.helper_modules import compare_launch_helpers
 from linkwright.review.robots.descriptions import compare_descriptions
 from linkwright.review.robots.semantics import SUFFIX, compare_expanded_semantics
+from linkwright.review.robots.unpaired_robots import description_contents
 from linkwright.review.versions import TEST_FOLDERS, Version
 
 _YAML_SUFFIXES = (".yaml", ".yml")
@@ -115,6 +116,7 @@ _RULES = (
         phrase("description added"),
         phrase("description removed"),
         phrase("launch files and descriptions that name the file do not find it"),
+        contents=description_contents,
     ),
     KindRule(
         SubjectKind.WORLD,
@@ -350,3 +352,7 @@ def find_rule(path: str) -> KindRule | None:
 
 def _matches_suffix(name: str, suffix: str) -> bool:
     return name.endswith(suffix) if suffix.startswith((".", "_")) else name == suffix
+
+
+REPOSITORIES = next(rule for rule in _RULES if rule.suffixes == REPOSITORY_SUFFIXES)
+"""The rule for lists of repositories, also in YAML files with other names."""

@@ -14,6 +14,8 @@ from linkwright.review.merged_reasons import merge_reasons
 
 _PART = re.compile(r"(?P<part>(?:joint|gpio|sensor) \S+|plugin \S+ \((?P<joint>[^()]+)\)) (?P<property>.+)")
 """A property of hardware of ros2_control below one of its joints, GPIOs or sensors, or of a plugin for a joint."""
+_WHOLE_PLUGIN = re.compile(r"(?P<plugin>plugin \S+) \((?P<joint>[^()]+)\)")
+"""An added or removed plugin for a joint."""
 _PLUGIN = re.compile(r"(?:.* )?plugin (?P<name>\S+) (?P<property>[^()]+)")
 """A parameter of a plugin, perhaps in a sensor."""
 _PARAMETER = re.compile(r"(?P<parent>(?:.* )?)(?P<parameter>param \S+)")
@@ -115,6 +117,11 @@ def _make_part_key(change: Change) -> Hashable | None:
             return None
         tag, _, old_name = change.property_name.rpartition(" ")
         return change.effect, change.name, tag, name_edit(old_name, new_name)
+    plugin = _WHOLE_PLUGIN.fullmatch(change.property_name)
+    if plugin is not None:
+        template, *values = change.values
+        is_joint = re.compile(rf"(?<!\w){re.escape(plugin['joint'])}(?!\w)")
+        return change.effect, change.name, plugin["plugin"], template, is_joint.sub(_OWN_NAME, values[-1])
     part = _PART.fullmatch(change.property_name)
     return None if part is None else (change.effect, change.name, part["property"], change.values, change.other_names)
 
@@ -130,6 +137,9 @@ def _list_part_names(change: Change) -> tuple[str, ...]:
     new_name = _find_new_part_name(change)
     if new_name is not None:
         return (f"{change.property_name} -> {new_name}",)
+    plugin = _WHOLE_PLUGIN.fullmatch(change.property_name)
+    if plugin is not None:
+        return (plugin["joint"],)
     part = _PART.fullmatch(change.property_name)
     return (change.name,) if part is None else (part["joint"] or part["part"],)
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 
 from linkwright.diagnostics import Phrase, counted, phrase, quoted_names
 from linkwright.review.changes import Subject
@@ -10,6 +12,10 @@ from linkwright.review.versions import Version
 
 _MAX_NAMES = 5
 """The maximum number of missing packages and files that a note names."""
+_PLACE = re.compile(r"^\S+?:\d+(?::\d+)?: ")
+"""The file and the line at the beginning of a reason."""
+_MIN_UNEXPANDED = 3
+"""The minimum number of files with the same reason that a note replaces."""
 
 
 def is_unreadable_as_before(subject: Subject, changed: Collection[str | None]) -> bool:
@@ -61,6 +67,30 @@ def group_equal_problems(subjects: Sequence[Subject]) -> tuple[list[Subject], li
     ]
     grouped = {subject.path for group in groups.values() for subject in group}
     return [subject for subject in subjects if subject.path not in grouped], notes
+
+
+def group_unexpanded(subjects: Sequence[Subject]) -> tuple[list[Subject], list[Phrase]]:
+    """Return subjects without the reason why several cannot be expanded, and a note about each such reason.
+
+    Their changes are those in the text of the files.
+    """
+    groups: dict[str, list[Subject]] = {}
+    for subject in subjects:
+        if subject.changes and len(subject.problems) == 1 and subject.problems[0].is_of_both:
+            reason = _PLACE.sub("", str(subject.problems[0].text.arguments.get("reason", "")))
+            groups.setdefault(reason, []).append(subject)
+    groups = {reason: group for reason, group in groups.items() if reason and len(group) >= _MIN_UNEXPANDED}
+    notes = [
+        phrase(
+            "{count} changed files are only compared as they are written, such as '{path}': {reason}",
+            count=len(group),
+            path=group[0].path,
+            reason=reason,
+        )
+        for reason, group in groups.items()
+    ]
+    grouped = {subject.path for group in groups.values() for subject in group}
+    return [replace(subject, problems=[]) if subject.path in grouped else subject for subject in subjects], notes
 
 
 def make_checkout_notes(versions: Sequence[Version]) -> Iterator[Phrase]:

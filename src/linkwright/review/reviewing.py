@@ -33,6 +33,7 @@ from linkwright.review.file_comparison import compare_file
 from linkwright.review.file_pair import Drawings
 from linkwright.review.files.behavior_tree_files import is_tree_file
 from linkwright.review.files.cmake_files import CMAKE_FILE, CMAKE_SUFFIX
+from linkwright.review.files.dependency_lists import is_repository_list
 from linkwright.review.files.gui_files import is_gui_file
 from linkwright.review.files.maps import find_map_of_image, is_map
 from linkwright.review.files.mesh_groups import group_meshes
@@ -50,6 +51,7 @@ from linkwright.review.kinds import (
     LAUNCH_TEST,
     MAP,
     PARAMETERS,
+    REPOSITORIES,
     SEMANTIC_XACRO,
     KindRule,
     find_rule,
@@ -67,6 +69,7 @@ from linkwright.review.launches.missing_programs import drop_told_findings
 from linkwright.review.moved_topics import merge_moved_topics
 from linkwright.review.notes import (
     group_equal_problems,
+    group_unexpanded,
     is_unreadable_as_before,
     make_checkout_notes,
     make_missing_notes,
@@ -87,7 +90,9 @@ from linkwright.review.renamed_packages import find_renamed_packages, match_move
 from linkwright.review.replaced_files import join_replaced_files
 from linkwright.review.required_packages import is_named
 from linkwright.review.robots.semantics import find_semantic_files
+from linkwright.review.secrets import hide_secrets
 from linkwright.review.sources.comparing import source_subjects
+from linkwright.review.unchanged_contents import keeps_contents
 from linkwright.review.undeclared_packages import mark_undeclared
 from linkwright.review.unfixed_findings import drop_unfixed_findings
 from linkwright.review.users.ignored_packages import relieve_ignored_packages
@@ -155,7 +160,7 @@ def review(
     )
     for version in (versions.old, versions.new):
         result = review_without_folder(result, version.root, version.installed_shares)
-    return result
+    return hide_secrets(versions, result)
 
 
 class _Reviewer:
@@ -209,6 +214,7 @@ class _Reviewer:
         all_subjects = merge_renamed_folders(self._versions, all_subjects)
         unreadable = [subject for subject in all_subjects if is_unreadable_as_before(subject, changed)]
         readable, equal_notes = group_equal_problems([subject for subject in all_subjects if subject not in unreadable])
+        readable, unexpanded_notes = group_unexpanded(readable)
         compared = {path for rule, *paths in pairs if rule.kind not in _LISTED_KINDS for path in paths if path}
         reported |= {path for path in compared if not is_template(path)}
         reported |= self._maps.keys()
@@ -217,6 +223,7 @@ class _Reviewer:
             for file in self._changed_files
             if file.path in moved or not {file.old_path, file.new_path} & reported
             if not is_removed_with_package(self._versions, removed_packages, file)
+            if not keeps_contents(self._versions, file)
         ]
         added, fixed = compare_findings(self._versions, old_findings, new_findings, self._new_paths)
         added, fixed = drop_renamed_findings(all_subjects, added, fixed, self._new_paths)
@@ -235,6 +242,7 @@ class _Reviewer:
                 dict.fromkeys(
                     [
                         *(*notes, *self._make_notes(), *make_missing_notes(all_subjects), *equal_notes),
+                        *unexpanded_notes,
                         *(*make_unreadable_notes(unreadable), *self._failures.notes),
                     ]
                 )
@@ -378,6 +386,8 @@ class _Reviewer:
         if rule is not None and rule.kind is SubjectKind.LAUNCH_FILE and path.endswith((".yaml", ".yml")):
             rule = rule if any(is_launch_yaml(version.file(name)) for version, name in sides if name) else PARAMETERS
         if rule is not None and rule.kind is SubjectKind.PARAMETERS:
+            if all(is_repository_list(version.text(name)) for version, name in sides if name):
+                return REPOSITORIES
             return MAP if any(is_map(version.file(path)) for version, path in sides if path) else rule
         if rule is not None and all(is_other_world(version.file(name)) for version, name in sides if name):
             return None

@@ -297,8 +297,48 @@ def open_versions(folder: Path, range_text: str) -> Versions:
             stack.callback(new_files.close)
             new = Version(new_name, new_files.root, new_files, repository, is_old=False)
         stack.pop_all()
-        files = [file for file in _drop_files_of_submodules(changed_files) if not _is_blank(old, new, file)]
+        paired_files = _pair_empty_files(old, new, _drop_files_of_submodules(changed_files))
+        files = [file for file in paired_files if not _is_blank(old, new, file)]
         return Versions(old, new, [_without_empty_version(old, file) for file in files])
+
+
+def _pair_empty_files(old: Version, new: Version, files: list[ChangedFile]) -> list[ChangedFile]:
+    """Return the files with another pairing of moved empty ones, which git pairs at random.
+
+    Files are paired that have the same name, and the most folders in common at the end of their paths.
+    """
+    moved = [
+        file
+        for file in files
+        if None not in (file.old_path, file.new_path) and file.old_path != file.new_path and not file.is_submodule
+        if _is_empty(old, file.old_path) and _is_empty(new, file.new_path)
+    ]
+    sides = ((old, "old_path"), (new, "new_path"))
+    single = [file for file in files if None in (file.old_path, file.new_path) and not file.is_submodule]
+    single = [file for file in single if any(_is_empty(side, getattr(file, name)) for side, name in sides)]
+    if not moved:
+        return files
+    old_paths = [file.old_path for file in (*moved, *single) if file.old_path is not None]
+    new_paths = [file.new_path for file in (*moved, *single) if file.new_path is not None]
+    pairs = sorted(
+        ((path, other) for path in old_paths for other in new_paths if _count_equal_ends(path, other)),
+        key=lambda pair: -_count_equal_ends(*pair),
+    )
+    result = [file for file in files if file not in moved and file not in single]
+    for path, other in pairs:
+        if path in old_paths and other in new_paths:
+            old_paths.remove(path)
+            new_paths.remove(other)
+            result.append(ChangedFile(path, other))
+    result += [ChangedFile(path, None) for path in old_paths]
+    result += [ChangedFile(None, path) for path in new_paths]
+    return sorted(result, key=lambda file: file.path)
+
+
+def _count_equal_ends(path: str, other: str) -> int:
+    """Return how many names at the end of two paths are equal."""
+    pairs = zip(reversed(PurePosixPath(path).parts), reversed(PurePosixPath(other).parts), strict=False)
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
 
 def _without_empty_version(old: Version, file: ChangedFile) -> ChangedFile:

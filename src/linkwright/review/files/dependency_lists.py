@@ -20,6 +20,8 @@ REPOSITORY_SUFFIXES = (".repos", ".rosinstall")
 REQUIREMENTS = re.compile(r"requirements([-_.]\w+)*\.txt")
 """The names of files with Python packages for pip."""
 _REPOSITORIES = "repositories"
+_REPOSITORY_LIST = re.compile(r"(?m)^repositories[ \t]*:[ \t]*(?:#.*)?$")
+_ADDRESS = re.compile(r"(?m)^[ \t]+url[ \t]*:[ \t]*\S+(?:\.git|://|@)")
 _LOCAL_NAME, _URL, _REVISION = "local-name", "uri", "version"
 """The keys of an entry of rosinstall."""
 _REQUIREMENT = re.compile(r"(?P<name>[A-Za-z0-9][\w.-]*)\s*(?P<rest>.*)")
@@ -45,6 +47,11 @@ class Entry:
 
 
 _Entries = Mapping[str, Entry]
+
+
+def is_repository_list(text: str) -> bool:
+    """Return whether a YAML text is a list of repositories for vcstool, whatever the name of its file is."""
+    return _REPOSITORY_LIST.search(text) is not None and _ADDRESS.search(text) is not None
 
 
 def compare_repositories(pair: FilePair) -> None:

@@ -7,10 +7,9 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import replace
 from functools import cached_property
 
-from linkwright.diagnostics import LinkwrightError, Phrase, joined, joined_first, phrase
-from linkwright.diagnostics.phrase import as_phrase
+from linkwright.diagnostics import LinkwrightError, Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
-from linkwright.review.changes import MAX_NAMES, Change, Effect, ExpandedElement, Subject, SubjectKind
+from linkwright.review.changes import FILE, Change, Effect, ExpandedElement, Subject, SubjectKind
 from linkwright.review.failures import make_problem
 from linkwright.review.parts.contents import compare_contents
 from linkwright.review.parts.include_graph import IncludeGraph, IncludeGraphs
@@ -18,7 +17,6 @@ from linkwright.review.parts.interface import (
     compare_arguments,
     compare_macros,
     find_renamed_macros,
-    format_parameter,
     make_macro_removal_reason,
 )
 from linkwright.review.parts.item_comparisons import make_comparison
@@ -27,11 +25,11 @@ from linkwright.review.parts.malformed_includes import includes_malformed_file
 from linkwright.review.parts.mesh_addresses import compare_mesh_addresses
 from linkwright.review.parts.moved_to_callers import compare_moved_to_callers
 from linkwright.review.parts.name_substitution import CALL, ComparedContent
-from linkwright.review.parts.outline import INCLUDE, PROPERTY, Item, MacroOutline, Outline, iterate_items, read_outline
+from linkwright.review.parts.outline import MacroOutline, Outline, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.properties import compare_properties
 from linkwright.review.parts.readings import compare_readings
-from linkwright.review.plugins import format_plugins
+from linkwright.review.parts.written_contents import format_written_contents, summarize_macro
 from linkwright.review.unprefixed_calls import compare_prefixes
 from linkwright.review.versions import Version, Versions
 
@@ -43,10 +41,6 @@ _UNREADABLE = "can no longer be read: {reason}"
 """The change to a robot whose new version fails to expand."""
 _MAX_MACROS = 4
 """The maximum number of added macros of a file that are shown with their contents."""
-_MAX_CONTENTS = 20
-"""The maximum number of items in the contents of an added macro."""
-_MAX_PLUGIN_VALUES = 6
-"""The maximum number of values of each sensor and plugin in the contents of an added macro."""
 _MIN_SIMILARITY = 0.5
 """The minimum share of equal elements of a renamed macro."""
 
@@ -70,7 +64,8 @@ def compare_parts(
     expanded = {element for subject in subjects for element in subject.expanded}
     result = list(subjects)
     indexes = {subject.path: number for number, subject in enumerate(subjects)}
-    comparer = _Comparer(versions, files, expanded, is_complete)
+    shown = [subject.path for subject in subjects if subject.old_path is None and len(subject.changes) > 1]
+    comparer = _Comparer(versions, files, expanded, shown, is_complete)
     for file in files:
         if not file.path.endswith(_SUFFIXES) or file.is_submodule:
             continue
@@ -118,9 +113,11 @@ class _Comparer:
         versions: Versions,
         files: Sequence[ChangedFile],
         expanded: Collection[ExpandedElement],
+        shown_robots: Collection[str],
         is_complete: Callable[[str], bool],
     ) -> None:
         self._versions = versions
+        self._shown_robots = frozenset(shown_robots)
         self._files = files
         self._expanded = expanded
         self._is_complete = is_complete
@@ -139,6 +136,8 @@ class _Comparer:
         if not is_compared:
             graph = self._graphs.old if file.new_path is None else self._graphs.new
             changes += _compare_whole_file(file, old, new, is_included=graph.is_included(file.path))
+            if isinstance(new, Outline) and file.old_path is None:
+                changes += self._report_added_file(file, new)
         if isinstance(old, Outline) and file.new_path is None and not is_compared:
             changes += _report_lost_macros(
                 [name for name in old.macros if not self._graphs.new.find_files_with_macro(name)]
@@ -161,6 +160,16 @@ class _Comparer:
             texts = versions.old.text(file.old_path), versions.new.text(file.new_path)
             changes += compare_prefixes(*texts, lambda: versions.old.macros, lambda: versions.new.macros)
         return Subject(SubjectKind.PART, file.path, file.old_path, file.new_path, changes)
+
+    def _report_added_file(self, file: ChangedFile, outline: Outline) -> Iterator[Change]:
+        """Yield the changes about the contents of an added file, unless a robot of the report shows them."""
+        robots = self._graphs.new.find_robots_with(file.path)
+        is_shown = ExpandedElement(file.path, FILE, is_old=False) in self._expanded
+        if not is_shown and self._shown_robots.isdisjoint(robots) and not file.path.endswith(_SEMANTIC):
+            contents = format_written_contents(outline)
+            if contents is not None:
+                yield Change(phrase("contains {contents}", contents=contents))
+        yield from _report_added_macros(outline)
 
     def _make_pair(self, file: ChangedFile) -> PartPair | None:
         """Return both versions of a file, or None if one of them is missing or cannot be read."""
@@ -255,28 +264,8 @@ def _report_added_macros(outline: Outline) -> Iterator[Change]:
         return
     for macro in macros:
         text = phrase("macro '{name}' added", name=macro.name)
-        contents = _summarize_macro(macro)
-        yield Change(phrase("{change}: {contents}", change=text, contents=joined(contents)) if contents else text)
-
-
-def _summarize_macro(macro: MacroOutline) -> list[Phrase]:
-    """Return the parameters of a macro, and the included files and the elements in it."""
-    items: list[Phrase] = []
-    if macro.parameters:
-        names = joined_first([format_parameter(parameter) for parameter in macro.parameters.values()], MAX_NAMES)
-        items.append(phrase("parameters {names}", names=names))
-    for child in iterate_items(macro.element):
-        if child.element.tag == INCLUDE:
-            items.append(phrase("includes {name}", name=child.element.attributes.get("filename", "")))
-        elif child.element.tag != PROPERTY:
-            items.append(_summarize_item(child))
-    return list({str(item): item for item in items}.values())[:_MAX_CONTENTS]
-
-
-def _summarize_item(item: Item) -> Phrase:
-    """Return an element of a macro; one for Gazebo with its sensors and plugins."""
-    contents = format_plugins(item.element, _MAX_PLUGIN_VALUES) if item.element.tag == "gazebo" else []
-    return phrase("{entry} ({items})", entry=item.key, items=joined(contents)) if contents else as_phrase(item.key)
+        contents = summarize_macro(macro)
+        yield Change(phrase("{change}: {contents}", change=text, contents=contents) if contents else text)
 
 
 def _compare_whole_file(
@@ -300,7 +289,6 @@ def _compare_whole_file(
     if isinstance(new, Outline) and file.old_path is None:
         text = phrase("included description file added") if is_included else phrase("description file added")
         yield Change(phrase("semantic description added") if is_semantic else text)
-        yield from _report_added_macros(new)
     if isinstance(old, Outline) and new is not None and not isinstance(new, Outline):
         text = phrase("the file can no longer be read: {reason}", reason=new)
         yield Change(text, Effect.BREAKING, phrase("descriptions that include the file cannot be expanded"))

@@ -13,6 +13,9 @@ from linkwright.urdf import Box, Geometry, Joint, Link, Mesh, Robot, Sphere, Vis
 _MAX_LINKS = 4
 """The maximum number of added links that each have a line of their own."""
 
+_TYPES_WITHOUT_AXIS = ("fixed", "floating")
+_DEFAULT_AXIS = (1.0, 0.0, 0.0)
+
 
 class AddedLinks:
     """The added links and joints of a robot.
@@ -64,7 +67,7 @@ class AddedLinks:
                 parent=joint.parent,
                 xyz=_format_position(joint),
             )
-            yield from _format_rotation(joint)
+            yield from _format_directions(joint)
 
 
 def _format_joint_of_old_link(joint: Joint) -> Phrase:
@@ -77,17 +80,20 @@ def _format_joint_of_old_link(joint: Joint) -> Phrase:
         parent=joint.parent,
         xyz=_format_position(joint),
     )
-    return phrase("{change}: {contents}", change=text, contents=joined([contents, *_format_rotation(joint)]))
+    return phrase("{change}: {contents}", change=text, contents=joined([contents, *_format_directions(joint)]))
 
 
 def _format_position(joint: Joint) -> str:
     return " ".join(f"{number:.6g}" for number in joint.origin.xyz)
 
 
-def _format_rotation(joint: Joint) -> Iterator[Phrase]:
+def _format_directions(joint: Joint) -> Iterator[Phrase]:
+    """Yield the rotation of a joint, and its axis if it is not the default one."""
     if any(joint.origin.rpy):
         angles = " ".join(f"{_to_degrees(angle):g}" for angle in joint.origin.rpy)
         yield phrase("rpy {angles}°", angles=angles)
+    if joint.type not in _TYPES_WITHOUT_AXIS and joint.axis != _DEFAULT_AXIS:
+        yield phrase("axis {axis}", axis=" ".join(f"{number:.6g}" for number in joint.axis))
 
 
 def _format_link(link: Link) -> Iterator[Phrase]:

@@ -50,7 +50,7 @@ from linkwright.review.robots.parent_changes import ParentChanges
 from linkwright.review.robots.reversed_axes import find_reversal_reason
 from linkwright.review.robots.switched_parts import SwitchedParts
 from linkwright.review.robots.unused_references import UnusedReferences
-from linkwright.review.simulators import find_simulator_reason
+from linkwright.review.simulators import find_lost_manager_reason, find_simulator_reason
 from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 from linkwright.xmltree.reader import read_bytes
@@ -221,6 +221,7 @@ def _compare_robots(pair: FilePair, comparison: Comparison, frames: SharedFrames
             reason = (
                 (None if is_still_offered(difference, added_names) else find_breaking_reason(difference, old, new))
                 or find_missing_topics_reason(difference, added_names)
+                or find_lost_manager_reason(difference, new.extensions, pair.versions)
                 or _find_frame_reason(difference)
                 or find_default_topic_reason(difference, new.extensions)
                 or find_lost_call_reason(difference, comparison.differences)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
-from linkwright.descriptions.comparison import GAZEBO, Difference
+from linkwright.descriptions.comparison import GAZEBO, ROS2_CONTROL, Difference
 from linkwright.diagnostics import Phrase, joined, phrase, term
 
 _BLOCK_TAGS = ("inertial", "limit")
@@ -17,6 +17,8 @@ _PART_OF_GAZEBO = re.compile(r"(?P<part>(?:(?:plugin|sensor) \S+ )?)(?P<name>[^@
 
 Plugins with the joint in parentheses are merged with those of other joints instead.
 """
+_PARAMETER_OF_HARDWARE = re.compile(r"(?P<part>.+) param \S+")
+"""The part of the hardware of ros2_control that has a parameter, such as an interface of a joint."""
 _NUMBERS = re.compile(r"[-+.\deE ]*\d[-+.\deE ]*|true|false", re.IGNORECASE)
 """The values that are joined. Names, such as topics, can be breaking."""
 
@@ -35,9 +37,11 @@ class JoinedDifferences(Difference):
 
     def sentence(self) -> Phrase:
         """Return the differences in one line."""
-        if self.subject == "extension":
+        if self.subject == "extension" and not self.name.startswith(ROS2_CONTROL):
             changes = joined([_format_value_of_gazebo(value) for value in self.values])
-            changes = phrase("{property}: {changes}", property=self.property, changes=changes) if self.property else changes
+            changes = (
+                phrase("{property}: {changes}", property=self.property, changes=changes) if self.property else changes
+            )
             return phrase("{subject} '{name}': {new}", subject=term(self.subject), name=self.name, new=changes)
         return phrase(
             "{subject} '{name}': {property}: {new}",
@@ -73,19 +77,23 @@ def _find_block(difference: Difference) -> tuple[str, str] | None:
     The result is None if the value cannot be joined with others.
     """
     if difference.subject == "extension":
-        return _find_part_of_gazebo(difference)
+        return _find_part_of_extension(difference)
     block = difference.property.partition(" ")[0]
     is_value = difference.kind == "changed" and block in _BLOCK_TAGS and block != difference.property
     return (difference.name, block) if is_value and difference.old and difference.new else None
 
 
-def _find_part_of_gazebo(difference: Difference) -> tuple[str, str] | None:
-    """Return the ``<gazebo>`` element and the plugin or sensor in it whose number differs, or None for other values."""
-    match = _PART_OF_GAZEBO.fullmatch(difference.property)
-    is_of_gazebo = difference.name.partition(" ")[0] == GAZEBO and difference.kind == "changed"
+def _find_part_of_extension(difference: Difference) -> tuple[str, str] | None:
+    """Return the extension and the part of it whose number differs, such as a plugin, or None for other values."""
+    tag = difference.name.partition(" ")[0]
+    pattern = {GAZEBO: _PART_OF_GAZEBO, ROS2_CONTROL: _PARAMETER_OF_HARDWARE}.get(tag)
+    match = None if pattern is None else pattern.fullmatch(difference.property)
     values = [value for value in (difference.old, difference.new) if value is not None]
-    is_number = all(map(_NUMBERS.fullmatch, values))
-    return (difference.name, match["part"].strip()) if match is not None and is_of_gazebo and is_number else None
+    if match is None or difference.kind != "changed" or not all(map(_NUMBERS.fullmatch, values)):
+        return None
+    if tag == ROS2_CONTROL and len(values) < 2:
+        return None  # several added or removed parameters are one line already
+    return difference.name, match["part"].strip()
 
 
 def _format_value_of_gazebo(difference: Difference) -> Phrase:
@@ -100,6 +108,7 @@ def _format_value_of_gazebo(difference: Difference) -> Phrase:
 
 def _format_value(difference: Difference) -> str:
     """Return the change in a value with its unit, such as ``mass 2 -> 3 kg``."""
-    name = difference.property.rpartition(" ")[2]
+    _, space, parameter = difference.property.rpartition(" param ")
+    name = f"param {parameter}" if space else difference.property.rpartition(" ")[2]
     words = "center" if name == "xyz" else name, difference.old, "->", difference.new, difference.unit
     return " ".join(filter(None, words))
