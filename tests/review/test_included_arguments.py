@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
+from linkwright.cli import main
+from linkwright.packages.share_layout import iterate_substitutes
+from linkwright.review.launches.common_files import find_known_arguments
 from tests.repositories import PACKAGE_XML
 from tests.review.conftest import breaking, sentences, subject
 
@@ -107,3 +112,57 @@ def test_argument_that_was_missing_before_is_no_change(repository, compare):
     repository.commit({PATH: FILE.format(declared="", action=include), **more})
     repository.write({PATH: FILE.format(declared="", action=include).replace('"first"', '"second"', 1)})
     assert not [text for each in compare(repository).subjects for text in sentences(each) if "not declared" in text]
+
+
+SIMULATION = """IncludeLaunchDescription(PythonLaunchDescriptionSource(
+            PathJoinSubstitution([FindPackageShare("PACKAGE"), "launch", "gz_sim.launch.py"])))"""
+UNDECLARED = "node 'arm/tool' uses argument 'tool', which is not declared"
+MAYBE_DECLARED = "node 'arm/tool' uses argument 'tool', which no launch file of the repository declares"
+TOOL = 'Node(package="arm", executable="tool", condition=IfCondition(LaunchConfiguration("{name}")))'
+
+
+@pytest.mark.parametrize(
+    ("include", "name", "expected"),
+    [
+        (SIMULATION.replace("PACKAGE", "ros_gz_sim"), "tool", UNDECLARED),
+        (SIMULATION.replace("PACKAGE", "ros_gz_sim"), "gz_args", MAYBE_DECLARED.replace("'tool',", "'gz_args',")),
+        (SIMULATION.replace("PACKAGE", "other"), "tool", MAYBE_DECLARED),
+        (f"GroupAction([{SIMULATION}])".replace("PACKAGE", "other"), "tool", UNDECLARED),
+        (f"GroupAction([{SIMULATION}], scoped=False)".replace("PACKAGE", "other"), "tool", MAYBE_DECLARED),
+    ],
+)
+def test_argument_that_an_included_file_of_another_package_may_declare(repository, compare, include, name, expected):
+    old = FILE.format(declared="", action=include).replace("import Declare", "import GroupAction, Declare")
+    repository.commit({PATH: old, "arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")})
+    repository.write({PATH: old.replace(f"{include},", f"{include},\n        {TOOL.replace('{name}', name)},")})
+    result = compare(repository)
+    assert expected in sentences(subject(result, PATH))
+    assert (expected in breaking(result)) == (expected == UNDECLARED)
+
+
+GROUPS = """<launch>
+  <group{scoped}>
+    <include file="$(find-pkg-share other)/launch/other.launch.xml" />
+  </group>
+{node}</launch>
+"""
+
+
+@pytest.mark.parametrize(("scoped", "expected"), [("", UNDECLARED), (' scoped="false"', MAYBE_DECLARED)])
+def test_include_in_a_group_of_xml_declares_nothing_outside(repository, compare, scoped, expected):
+    path = "arm/launch/arm.launch.xml"
+    repository.commit({path: GROUPS.format(scoped=scoped, node="")})
+    node = '  <node pkg="arm" exec="tool" if="$(var tool)" />\n'
+    repository.write({path: GROUPS.format(scoped=scoped, node=node)})
+    assert expected in sentences(subject(compare(repository), path))
+
+
+@pytest.mark.parametrize("package", ["nav2_bringup", "ros_gz_sim", "ros_gz_bridge", "gazebo_ros", "slam_toolbox"])
+def test_known_arguments_contain_those_of_the_substitutes(package, capsys):
+    share = next(share for name, share in iterate_substitutes() if name == package)
+    for file in sorted((share / "launch").glob("*.py")):
+        assert main(["launch", str(file), "--show-args"]) == 0
+        declared = re.findall(r"^ *'(\w+)'", capsys.readouterr().out, re.MULTILINE)
+        known = find_known_arguments(f"$(find-pkg-share {package})/launch/{file.name}")
+        assert known is not None
+        assert known >= set(declared)

@@ -87,3 +87,26 @@ def test_a_client_of_a_node_with_another_name_in_the_source(repository, compare)
     repository.write({"lamp/lamp/lamp.py": SOURCE.format("light")})
     found = [line for line in breaking(compare(repository)) if line.startswith("calls ")]
     assert found == ["calls '/lamp/get_parameters' of the node 'lamp', which 'lamp/lamp/lamp.py' now calls 'light'"]
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "more", "is_found"),
+    [
+        ("desk_lamb", SETTINGS.format("desk_lamp"), "", True),
+        ("desk_lamp_node", SETTINGS.format("desk_lamp"), "", True),
+        ("desk_lamb", SETTINGS.format("desk_lamp") + SETTINGS.format("desk_lamb"), "", False),
+        ("desk_lamb", SETTINGS.format("desk_lamp"), OTHER.replace("lamp", "desk_lamp"), False),
+        ("desk_lamb", SETTINGS.format("desk_lamp") + SETTINGS.format("/**"), "", False),
+        ("desk2", SETTINGS.format("desk1"), "", False),
+        ("map_server", SETTINGS.format("map_saver"), "", False),
+        ("$(var name)", SETTINGS.format("desk_lamp"), "", False),
+    ],
+)
+def test_a_node_whose_file_spells_its_name_in_another_way(repository, compare, name, settings, more, is_found):
+    path = "lamp/launch/a.launch.xml"
+    files = {"lamp/package.xml": MANIFEST, "lamp/config/lamp.yaml": settings}
+    repository.commit({**files, path: LAUNCH.format(name="desk", more=more)})
+    repository.write({path: LAUNCH.format(name=name, more=more)})
+    found = [line for line in breaking(compare(repository)) if "gets no parameters" in line]
+    text = f"node '{name}' gets no parameters from 'lamp/config/lamp.yaml', which has those of 'desk_lamp'"
+    assert found == ([text] if is_found else [])

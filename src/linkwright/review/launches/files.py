@@ -11,7 +11,6 @@ from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Phrase, counted, joined_first, phrase
 from linkwright.diagnostics.phrase import count_shown
-from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.readers.launch_files import LAUNCH_FUNCTION
 from linkwright.packages.readers.python_values import parse_python
 from linkwright.review.breaking import name_reason
@@ -37,7 +36,6 @@ from linkwright.review.launches.include_trees import (
 )
 from linkwright.review.launches.included import (
     IncludedActions,
-    find_callers,
     find_file_with_moved_action,
     find_moved_settings,
 )
@@ -80,6 +78,7 @@ from linkwright.review.launches.titles import (
     join_titles,
 )
 from linkwright.review.launches.transforms import find_other_publisher, has_robot_with_frame
+from linkwright.review.launches.undeclared_arguments import find_new_undeclared_arguments, report_undeclared_arguments
 from linkwright.review.launches.undefined import report_undefined_names
 from linkwright.review.launches.unused_arguments import report_unused_arguments
 from linkwright.review.sources.names import PYTHON_SUFFIX
@@ -100,7 +99,7 @@ def compare_launch_files(pair: FilePair) -> None:
     if outlines is None:
         return
     old, new = outlines
-    undeclared = _find_new_undeclared_arguments(pair, old, new)
+    undeclared = find_new_undeclared_arguments(pair, old, new)
     renamed = find_renamed_names(old, new)
     old, new = separate_builders(rename_in_outline(old, renamed), new)
     old_names = {new_name: old_name for old_name, new_name in renamed.items()}
@@ -134,12 +133,13 @@ def compare_launch_files(pair: FilePair) -> None:
     added = [entry for entry in added if all(entry is not other for _, other in replaced)]
     if pair.new_file.suffix == PYTHON_SUFFIX:  # callers of either version must pass a required argument
         required = {entry.name for entry in removed if entry.kind == "argument" and "default" not in entry.settings}
-        undeclared = {name: entry for name, entry in undeclared.items() if name not in required}
-    _report_undeclared(pair, undeclared, removed, is_ros1=new.is_ros1)
+        undeclared = {name: argument for name, argument in undeclared.items() if name not in required}
+    report_undeclared_arguments(pair, undeclared, removed, is_ros1=new.is_ros1)
+    reported = {name for name, argument in undeclared.items() if argument.is_certain}
     removed = [
         entry
         for entry in removed
-        if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in undeclared)
+        if entry.kind != "argument" or not (new.has_unknown_actions or entry.name in reported)
     ]
     report_repeated_arguments(pair, new)
     report_repeated_nodes(pair, old, new)
@@ -181,34 +181,6 @@ def _mark_unbreaking(pair: FilePair, *, keeps_renaming: bool = False) -> None:
         else replace(change, effect=Effect.CHANGED, reason=None)
         for change in pair.changes
     ]
-
-
-def _report_undeclared(
-    pair: FilePair, undeclared: Mapping[str, Entry], removed: Sequence[Entry], *, is_ros1: bool
-) -> None:
-    """Report the arguments that only the new version uses without a declaration.
-
-    In ROS 2, a file that starts this one may declare them.
-
-    Args:
-        pair: both versions of the launch file.
-        undeclared: an action that uses each argument, by the name of the argument.
-        removed: the actions that only the old version has, such as the declarations of these arguments.
-        is_ros1: whether it is a launch file of ROS 1.
-    """
-    declared_before = {entry.name for entry in removed if entry.kind == "argument"} & undeclared.keys()
-    for name in declared_before:
-        text = phrase("argument '{name}' removed", name=name)
-        reason = phrase("the launch file still uses '{name}', and fails if no other file declares it", name=name)
-        if is_ros1:
-            reason = phrase("the launch file still uses '{name}', and fails", name=name)
-        pair.add(text, pair.location(undeclared[name].span), reason)
-    for name, entry in undeclared.items():
-        if name not in declared_before:
-            text = phrase("{entry} uses argument '{name}', which is not declared", entry=format_title(entry), name=name)
-            reason = phrase("the launch file fails if no other file declares '{name}'", name=name)
-            reason = phrase("the launch file fails") if is_ros1 else reason
-            pair.add(text, pair.location(entry.span), reason)
 
 
 def _report_replaced(pair: FilePair, old_entry: Entry, new_entry: Entry, outlines: tuple[LaunchOutline, ...]) -> None:
@@ -410,27 +382,6 @@ def _report_moved(pair: FilePair, moved: Mapping[tuple[str, bool], Sequence[Entr
         if is_old:
             text = phrase("{entry} moved to {file}", entry=titles, file=file)
         pair.add(text, pair.location(entries[0].span, is_old=is_old))
-
-
-def _find_new_undeclared_arguments(pair: FilePair, old: LaunchOutline, new: LaunchOutline) -> dict[str, Entry]:
-    """Return the arguments that are undeclared only in the new version.
-
-    Each comes with an action that uses it. In ROS 1, every file must declare the arguments that it uses.
-    """
-    if not (is_launch_file_name(pair.new_path) or new.is_ros1):
-        return {}
-    old_names = IncludedActions(pair.versions.old, pair.old_path, old).find_undeclared_arguments()
-    new_names = IncludedActions(pair.versions.new, pair.new_path, new).find_undeclared_arguments()
-    names = {name: entry for name, entry in new_names.items() if name not in old_names}
-    return {name: entry for name, entry in names.items() if not _is_declared_by_caller(pair, name)}
-
-
-def _is_declared_by_caller(pair: FilePair, name: str) -> bool:
-    """Return whether a launch file that includes this one passes or declares the argument."""
-    return any(
-        name in include.settings or (not outline.is_ros1 and name in outline.values)
-        for outline, include in find_callers(pair.versions.new, pair.new_path, name)
-    )
 
 
 def _remaps_to_itself(entry: Entry) -> bool:

@@ -16,6 +16,7 @@ from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.argument_uses import USED_ARGUMENT, find_defaulted_arguments, uses_argument
 from linkwright.review.launches.bridged_topics import find_bridged_topics
+from linkwright.review.launches.common_files import find_known_arguments
 from linkwright.review.launches.conditions import evaluate_condition
 from linkwright.review.launches.effects import offers_nothing
 from linkwright.review.launches.matching import get_launch_file_stem
@@ -55,6 +56,18 @@ class IncludedFile(NamedTuple):
 
     file: Path
     outline: LaunchOutline
+
+
+class UndeclaredArgument(NamedTuple):
+    """An argument that a launch file uses and that neither it nor a file of the repository declares.
+
+    Attributes:
+        entry: the first action that uses it, or that includes a file which does.
+        is_certain: whether no included file of another package may declare it.
+    """
+
+    entry: Entry
+    is_certain: bool
 
 
 class IncludedActions:
@@ -226,13 +239,12 @@ class IncludedActions:
             self._outlines[file] = _try_read_outline(file, self._version.root)
         return self._outlines[file]
 
-    def find_undeclared_arguments(self, depth: int = 0) -> dict[str, Entry]:
+    def find_undeclared_arguments(self, depth: int = 0) -> dict[str, UndeclaredArgument]:
         """Return the undeclared arguments without a default, also those of included files of ROS 2.
 
-        Each comes with the first action that uses it, or that includes a file which does.
-
-        Arguments that a file of another package may declare, and actions that cannot be read, are left out. Such a
-        file does not declare an argument for which the launch file has a default of its own elsewhere.
+        Each comes with the first action that uses it, or that includes a file which does. Actions that cannot be read
+        are left out. An argument for which the launch file has a default of its own elsewhere is not declared by
+        files of other packages.
         """
         entries = self.outline.entries
         if self.outline.has_unknown_actions or any(
@@ -241,22 +253,23 @@ class IncludedActions:
             return {}
         outlines = [self.outline, *(() if self.outline.is_ros1 else self._included.values())]
         declared = {entry.name for outline in outlines for entry in outline.entries if entry.has_value}
-        file = self.file
-        unknown_include_lines = [
-            entry.span.line
+        unknown_includes = [
+            entry
             for entry in entries
-            if entry.kind == "include" and not self.outline.is_ros1 and self.find_included_file(entry, file) is None
+            if entry.kind == "include"
+            and not self.outline.is_ros1
+            and self.find_included_file(entry, self.file) is None
         ]
-        defaulted = find_defaulted_arguments(file) if unknown_include_lines else frozenset()
-        undeclared: dict[str, Entry] = {}
+        defaulted = find_defaulted_arguments(self.file) if unknown_includes else frozenset()
+        undeclared: dict[str, UndeclaredArgument] = {}
         for entry in entries:
-            may_be_declared = bool(unknown_include_lines) and entry.span.line > min(unknown_include_lines)
-            for text in (entry.name, *entry.settings.values()):
-                for match in _USED_ARGUMENT.finditer(text):
-                    if match["name"] not in declared and not (may_be_declared and match["name"] not in defaulted):
-                        undeclared.setdefault(match["name"], entry)
-            for name in () if may_be_declared else sorted(self._find_missing_arguments(entry, depth) - declared):
-                undeclared.setdefault(name, entry)
+            used = [name for text in (entry.name, *entry.settings.values()) for name in _USED_ARGUMENT.findall(text)]
+            missing = sorted(self._find_missing_arguments(entry, depth))
+            for name in (*used, *missing):
+                may_be_declared = any(_may_declare(include, name, entry) for include in unknown_includes)
+                is_certain = not may_be_declared or (name in defaulted and name in used)
+                if name not in declared and (name not in undeclared or is_certain > undeclared[name].is_certain):
+                    undeclared[name] = UndeclaredArgument(entry, is_certain)
         return undeclared
 
     def _find_missing_arguments(self, include: Entry, depth: int) -> set[str]:
@@ -270,7 +283,8 @@ class IncludedActions:
         if outline is None or path is None or outline.is_ros1 or holds is False:
             return set()
         passed = {without_condition(setting) for setting in include.settings}
-        return IncludedActions(self._version, path, outline).find_undeclared_arguments(depth + 1).keys() - passed
+        undeclared = IncludedActions(self._version, path, outline).find_undeclared_arguments(depth + 1)
+        return {name for name, argument in undeclared.items() if argument.is_certain} - passed
 
     def find_node(self, program: re.Pattern[str]) -> Entry | None:
         """Return a node of the launch file or of its included files whose program matches a pattern, or None."""
@@ -313,6 +327,16 @@ class IncludedActions:
     def _is_unknown(self, include: Entry) -> bool:
         resolved = replace(include, name=self.outline.resolve(include.name))
         return self.find_included_file(resolved, self.file) is None
+
+
+def _may_declare(include: Entry, name: str, user: Entry) -> bool:
+    """Return whether a file outside of the repository may declare an argument that a later action uses.
+
+    A file that a group includes declares arguments only for the actions of the group.
+    """
+    known = find_known_arguments(include.name)
+    is_around = user.groups[: len(include.groups)] == include.groups
+    return include.span.line < user.span.line and is_around and (known is None or name in known)
 
 
 def _name_callers_variables(value: str, passed: Collection[str]) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import phrase
+from linkwright.diagnostics.suggest import is_misspelled
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.review.changes import Change, Effect, Location
@@ -25,6 +26,8 @@ _SOURCE_SUFFIXES = (*CPP_SUFFIXES, PYTHON_SUFFIX)
 _SHARE_PATH = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w-]+)\)/(?P<path>[\w./-]+\.ya?ml)(?![\w.])")
 _WILDCARDS = ("*", "**")
 _PLAIN_NAME = re.compile(r"\w+")
+_MIN_LETTERS = 3
+"""The minimum length of a word that can be a misspelling of another word."""
 _NODE_SERVICES = frozenset(
     {
         *("set_parameters", "set_parameters_atomically", "get_parameters", "get_parameter_types", "list_parameters"),
@@ -38,16 +41,18 @@ _NODE_SERVICES = frozenset(
 def find_left_nodes(versions: Versions, changed_files: Sequence[ChangedFile]) -> Iterator[tuple[str, Change]]:
     """Yield the parameter files and sources that still name a renamed node, each with a change.
 
-    Only the last part of a name counts, without namespaces.
+    So are launch files that give a node another name than its parameter file. Only the last part of a name counts,
+    without namespaces.
     """
     for file in changed_files:
-        if not (file.old_path and file.new_path) or file.is_submodule:
-            continue
-        if not TEST_FOLDERS.isdisjoint(PurePosixPath(file.path).parts):
+        if not file.new_path or file.is_submodule or not TEST_FOLDERS.isdisjoint(PurePosixPath(file.path).parts):
             continue
         if is_launch_file(file.path):
-            yield from _find_in_launch_file(versions, file.old_path, file.new_path)
-        elif file.path.endswith(_SOURCE_SUFFIXES):
+            found = list(_find_in_launch_file(versions, file.old_path, file.new_path)) if file.old_path else []
+            yield from found
+            if not found:
+                yield from _find_unmatched_names(versions, file.old_path, file.new_path)
+        elif file.old_path and file.path.endswith(_SOURCE_SUFFIXES):
             yield from _find_in_source(versions, file.old_path, file.new_path)
 
 
@@ -74,6 +79,62 @@ def _find_in_launch_file(versions: Versions, old_path: str, new_path: str) -> It
                 continue
             for old_name in sorted(old_names & nodes.keys()):
                 yield path, _make_change(path, old_name, name, new_path, nodes[old_name])
+
+
+def _find_unmatched_names(versions: Versions, old_path: str | None, new_path: str) -> Iterator[tuple[str, Change]]:
+    """Yield a change for each node whose parameter file newly spells its name in another way."""
+    old = _read_unmatched_names(versions.old, old_path) if old_path else {}
+    for (name, path), (section, entry) in _read_unmatched_names(versions.new, new_path).items():
+        if (name, path) not in old:
+            text = phrase(
+                "node '{name}' gets no parameters from '{file}', which has those of '{section}'",
+                name=name,
+                file=path,
+                section=section,
+            )
+            reason = phrase("the node '{name}' starts without these parameters", name=name)
+            yield (
+                new_path,
+                Change(text, Effect.BREAKING, reason, Location(new_path, entry.span.line, entry.span.column)),
+            )
+
+
+def _read_unmatched_names(version: Version, path: str) -> dict[tuple[str, str], tuple[str, Entry]]:
+    """Return the nodes that get no parameters from their file, because it spells their name in another way.
+
+    The result maps the name of each node and the path of the file to the name in the file, which no other node of the
+    launch file has, and to the node.
+    """
+    outline = try_read_outline(version, path)
+    if outline is None:
+        return {}
+    names = {_get_name(outline, entry) for entry in list_nodes(outline)}
+    found: dict[tuple[str, str], tuple[str, Entry]] = {}
+    for entry in list_nodes(outline) if all(map(_PLAIN_NAME.fullmatch, names)) else ():
+        name = _get_name(outline, entry)
+        files = {file: _read_nodes(version, file) for file in _find_files(version, path, outline, entry)}
+        sections = {section for file_nodes in files.values() for section in file_nodes}
+        if name in sections or not all(map(_PLAIN_NAME.fullmatch, sections)):
+            continue
+        for file, file_nodes in files.items():
+            similar = [section for section in file_nodes if section not in names and _is_same_node(name, section)]
+            if len(similar) == 1:
+                found[name, file] = similar[0], entry
+    return found
+
+
+def _is_same_node(first: str, second: str) -> bool:
+    """Return whether two names differ only by a typing error in a word, or by the word ``node`` at the end."""
+    shorter, longer = sorted((first, second), key=len)
+    if longer == f"{shorter}_node":
+        return True
+    words = list(zip(first.split("_"), second.split("_"), strict=False))
+    different = [pair for pair in words if pair[0] != pair[1]]
+    if first.count("_") != second.count("_") or len(different) != 1:
+        return False
+    word, other = different[0]
+    is_long = min(len(word), len(other)) >= _MIN_LETTERS and f"{word}{other}".isalpha()
+    return is_long and is_misspelled(word, [other]) and is_misspelled(other, [word])
 
 
 def _find_in_source(versions: Versions, old_path: str, new_path: str) -> Iterator[tuple[str, Change]]:

@@ -201,13 +201,14 @@ def _read_entries(parent: LaunchTag, scope: Scope, other_code: list[CodePart]) -
             scope = scope.with_namespace(f"{namespace} ({condition})" if condition else namespace)
         elif tag.name == "group":
             inner = scope.with_condition(_format_condition(tag)).with_namespace(attributes.get("ns", ""))
+            inner = inner if attributes.get("scoped", "true").lower() != "true" else inner.with_group(tag.span.line)
             yield from _read_entries(tag, inner, other_code)
         else:
             entries = list(_read_action(tag))
             for entry in entries:
                 settings = scope.add_to_settings(entry.kind, entry.settings)
                 namespaces = scope.namespaces if entry.kind == "parameter" else ()
-                yield Entry(entry.kind, entry.name, settings, entry.span, namespaces, scope.remappings)
+                yield Entry(entry.kind, entry.name, settings, entry.span, namespaces, scope.remappings, scope.groups)
                 scope = scope.with_remapping(entry) if entry.kind == "remapping" else scope
             if entries:
                 if entries[0].kind == "node":

@@ -84,6 +84,7 @@ class Entry:
         span: the location of the action.
         namespaces: the namespaces of the groups around a parameter, the outermost first; not among its settings.
         remappings: the names that the groups around an action of XML or YAML remap before it, with their new names.
+        groups: the lines of the groups around it in ROS 2 that restore arguments at their end, the outermost first.
     """
 
     kind: str
@@ -92,6 +93,7 @@ class Entry:
     span: Span
     namespaces: tuple[str, ...] = ()
     remappings: tuple[tuple[str, str], ...] = ()
+    groups: tuple[int, ...] = field(default=(), compare=False)
 
     @property
     def has_value(self) -> bool:
@@ -296,16 +298,18 @@ class Scope:
         conditions: the conditions of the groups, the outermost first.
         namespaces: the namespaces that they push.
         remappings: the remappings that they set, each with the old and the new name.
+        groups: the lines of the groups that restore arguments at their end.
     """
 
     conditions: tuple[str, ...] = ()
     namespaces: tuple[str, ...] = ()
     remappings: tuple[tuple[str, str], ...] = ()
+    groups: tuple[int, ...] = ()
 
     @property
     def depth(self) -> int:
-        """The number of settings."""
-        return len(self.conditions) + len(self.namespaces)
+        """The number of settings and groups."""
+        return len(self.conditions) + len(self.namespaces) + len(self.groups)
 
     def with_condition(self, condition: str) -> Scope:
         """Return the scope of the actions inside an action with a condition, which may be empty."""
@@ -314,6 +318,10 @@ class Scope:
     def with_namespace(self, namespace: str) -> Scope:
         """Return the scope after a namespace is pushed."""
         return replace(self, namespaces=(*self.namespaces, namespace)) if namespace else self
+
+    def with_group(self, line: int) -> Scope:
+        """Return the scope of the actions in a group that restores arguments at its end."""
+        return replace(self, groups=(*self.groups, line))
 
     def with_remapping(self, entry: Entry) -> Scope:
         """Return the scope after an action that remaps a name."""

@@ -9,6 +9,8 @@ from linkwright.packages.readers.python_values import PythonFile, called_name
 
 ADD_METHODS = ("add_action", "add_entity")
 """The methods that add an action to a launch description."""
+LIST_METHODS = ("append", "extend", "insert")
+"""The methods that add items to a list."""
 _VALUE_KEYWORDS = {"SetRemap": ("src", "dst")}
 _DEFAULT_VALUE_KEYWORDS = ("name", "value")
 """The names of the arguments of the classes that set a value; the first item of each is what is set."""
@@ -25,17 +27,50 @@ _LAUNCH_PACKAGES = ("launch", "launch_ros")
 
 
 def find_unused_values(tree: ast.AST) -> frozenset[int]:
-    """Return the identities of the values of unused names, and of values that a later assignment replaces unused."""
+    """Return the identities of values that nothing uses.
+
+    These are the values of unused names with the items of their lists, items that are added to such a list, and values
+    that a later assignment replaces before they are used.
+    """
     nodes = list(ast.walk(tree))
     names = [node for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)]
-    used = {node.id for node in names}
-    assignments = (node for node in nodes if isinstance(node, ast.Assign))
-    unused = {
-        id(node.value)
+    additions = [call for node in nodes for call in _find_additions(node)]
+    lists = {id(call.func.value) for call in additions if isinstance(call.func, ast.Attribute)}
+    used = {node.id for node in names if id(node) not in lists}
+    assignments = (node for node in nodes if isinstance(node, (ast.Assign, ast.AnnAssign, ast.AugAssign)))
+    unused = [
+        node.value
         for node in assignments
-        if all(isinstance(target, ast.Name) and target.id not in used for target in node.targets)
-    }
-    return frozenset(unused | {id(value) for value in _find_replaced_values(nodes, names)})
+        if node.value is not None
+        and all(
+            isinstance(target, ast.Name) and target.id not in used
+            for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
+        )
+    ]
+    unused += (
+        argument
+        for call in additions
+        if isinstance(call.func, ast.Attribute)
+        and isinstance(call.func.value, ast.Name)
+        and call.func.value.id not in used
+        for argument in call.args
+    )
+    unused += _find_replaced_values(nodes, names)
+    return frozenset(id(value) for item in unused for value in _flatten_lists(item))
+
+
+def _find_additions(node: ast.AST) -> Iterator[ast.Call]:
+    """Yield the call if a node is a statement that adds items to a list of a name."""
+    call = node.value if isinstance(node, ast.Expr) else None
+    if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute) and call.func.attr in LIST_METHODS:
+        yield call
+
+
+def _flatten_lists(node: ast.expr) -> Iterator[ast.expr]:
+    """Yield an expression and, if it is a list, its items."""
+    yield node
+    for item in node.elts if isinstance(node, (ast.List, ast.Tuple)) else ():
+        yield from _flatten_lists(item)
 
 
 def _find_replaced_values(nodes: Sequence[ast.AST], names: Sequence[ast.Name]) -> Iterator[ast.expr]:

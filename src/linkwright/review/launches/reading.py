@@ -15,7 +15,8 @@ from linkwright.review.launches.imported_values import assign_imported_values, u
 from linkwright.review.launches.markup import read_markup_outline, read_yaml_tags, tag_from_xml
 from linkwright.review.launches.names import LaunchPythonFile
 from linkwright.review.launches.outlines import LaunchOutline, join_namespaces
-from linkwright.review.launches.python import ACTIONS, read_python_outline
+from linkwright.review.launches.python import read_python_outline
+from linkwright.review.launches.python_actions import ACTIONS
 from linkwright.xacro.cache import read_document
 
 _MAX_OUTLINES = 512

@@ -1,0 +1,57 @@
+"""Tell which arguments launch files of common packages declare."""
+
+from __future__ import annotations
+
+import re
+
+_PACKAGE_FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?:.*/)?(?P<file>[^/$]+)")
+_ARGUMENTS = {
+    "foxglove_bridge": """
+        address asset_uri_allowlist best_effort_qos_topic_whitelist capabilities certfile client_topic_whitelist debug
+        disable_load_message ignore_unresponsive_param_nodes include_hidden keyfile max_qos_depth min_qos_depth
+        num_threads param_whitelist port publish_client_count send_buffer_limit service_whitelist tls topic_whitelist
+        use_compression use_sim_time""",
+    "gazebo_ros": """
+        extra_gazebo_args factory force_system gdb gui gui_required help init initial_sim_time iters lockstep
+        minimal_comms params_file pause physics play profile record record_encoding record_filter record_path
+        record_period seed server server_required use_sim_time valgrind verbose version world""",
+    "nav2_bringup": """
+        autostart bt_xml_file cmd_vel_remap container_name default_bt_xml_filename default_nav_through_poses_bt_xml
+        default_nav_to_pose_bt_xml graph keepout_mask lifecycle_nodes log_level map map_subscribe_transient_local
+        namespace param_rewrites params params_file rviz_config rviz_config_file slam slam_params_file speed_mask
+        stdout_linebuffered use_composition use_intra_process_comms use_keepout_zones use_lifecycle_mgr
+        use_lifecycle_manager use_localization use_namespace use_remappings use_respawn use_rviz use_sim_time
+        use_speed_zones""",
+    "ros_gz_bridge": """
+        bridge_name bridge_log_level bridge_params config_file container_name create_own_container
+        expand_gz_topic_names extra_bridge_params log_level namespace override_timestamps_with_wall_time
+        use_composition use_respawn""",
+    "ros_gz_sim": """
+        P R Y allow_renaming bridge_log_level bridge_name bridge_params config_file container_name create_own_container
+        debug_env debugger entity_name expand_gz_topic_names extra_bridge_params file gz_args gz_version ign_args
+        ign_version initial_sim_time log_level model_string name namespace on_exit_shutdown
+        override_timestamps_with_wall_time pitch roll string topic use_composition use_respawn verbosity_level world
+        world_sdf_file world_sdf_string x y yaw z""",
+    "slam_toolbox": """
+        autostart executable log_level namespace params_file slam_params_file use_lifecycle_manager use_namespace
+        use_sim_time""",
+    "teleop_twist_joy": "config_filepath joy_config joy_dev joy_vel publish_stamped_twist",
+}
+"""The arguments that the launch files of a package declare in any distribution, also by the files that they include."""
+_SAME = {"ros_ign_gazebo": "ros_gz_sim", "ros_ign_bridge": "ros_gz_bridge"}
+"""The former names of packages."""
+_OTHER_FILES = re.compile(r"simulation|tb[34]|example|demo|cloned|unique")
+"""The files of these packages that declare further arguments, such as those of a robot."""
+
+
+def find_known_arguments(path: str) -> frozenset[str] | None:
+    """Return the arguments that an included launch file may declare, or None if the file is unknown.
+
+    Args:
+        path: the file, such as ``$(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py``.
+    """
+    match = _PACKAGE_FILE.fullmatch(path)
+    package = "" if match is None else _SAME.get(match["package"], match["package"])
+    if match is None or package not in _ARGUMENTS or _OTHER_FILES.search(match["file"]):
+        return None
+    return frozenset(_ARGUMENTS[package].split())
