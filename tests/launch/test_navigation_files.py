@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -226,6 +227,22 @@ def test_server_node_name_follows_executable() -> None:
 def test_default_view_loads_without_warnings() -> None:
     config = RvizConfig.load(share_folder("nav2_bringup") / "rviz" / "nav2_default_view.rviz")
     assert not config.warnings
+
+
+def test_namespaced_view_is_default_view_with_topics_in_namespace() -> None:
+    folder = share_folder("nav2_bringup") / "rviz"
+    text = (folder / "nav2_namespaced_view.rviz").read_text()
+    assert text.replace("<robot_namespace>/", "") == (folder / "nav2_default_view.rviz").read_text()
+    topics = [line.split()[-1] for line in text.splitlines() if "<robot_namespace>/" in line]
+    assert {"map", "scan", "robot_description", "initialpose", "goal_pose"} <= {
+        topic.removeprefix("<robot_namespace>/") for topic in topics
+    }
+    topics_without_namespace = [
+        line
+        for line in re.findall(r"Topic:\n(?: +\w.*\n)*? +Value: (\S+)", text)
+        if not line.startswith("<robot_namespace>/")
+    ]
+    assert not topics_without_namespace
 
 
 def test_default_parameters_cover_started_nodes() -> None:

@@ -15,7 +15,7 @@ from linkwright.graph import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from linkwright.messages import Header, String
+from linkwright.messages import Header, String, get_message
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -253,8 +253,27 @@ async def test_node_subscribing_to_both_types_causes_no_warning(graph, log):
     await graph.settle()
     assert [type(message) for message in received] == [String, Header]
     assert log == []
-    other.create_subscription(Header, "topic", print, 1)
-    assert ["'/other' subscribes to std_msgs/msg/Header" in record.text for record in log] == [True]
+    other.create_subscription(get_message("std_msgs/msg/Bool"), "topic", print, 1)
+    assert ["'/other' subscribes to std_msgs/msg/Bool" in record.text for record in log] == [True, True]
+
+
+async def test_subscription_with_publisher_of_its_type_causes_no_warning(graph, log):
+    simulator, bridge, user = (graph.create_node(name) for name in ("gazebo", "bridge", "user"))
+    received = []
+    simulator.create_publisher(String, "topic", 1)
+    bridge.create_publisher(Header, "topic", 1).publish(Header(frame_id="map"))
+    user.create_subscription(Header, "topic", received.append, 1)
+    bridge.create_publisher(Header, "topic", 1).publish(Header(frame_id="map"))
+    await graph.settle()
+    assert [message.frame_id for message in received] == ["map"]
+    assert log == []
+
+
+async def test_hidden_node_with_another_type_causes_no_warning(graph, log):
+    hidden, user = graph.create_node("_bridge_gz"), graph.create_node("user")
+    user.create_publisher(Header, "topic", 1)
+    hidden.create_subscription(String, "topic", print, 1)
+    assert log == []
 
 
 async def test_publishing_another_message_type_is_rejected(graph):

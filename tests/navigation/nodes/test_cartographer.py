@@ -363,6 +363,22 @@ def test_unknown_submap_is_not_found(test, start):
     assert (unknown.status.code, unknown.textures) == (5, [])
 
 
+def test_submap_without_cells_is_not_listed(test, start):
+    start()
+    lists = []
+    test.create_node("listener").create_subscription(
+        "cartographer_ros_msgs/msg/SubmapList", "submap_list", lists.append, 10
+    )
+    robot = Robot(test)
+    outdoors = np.array((1000.0, 1000.0, 0.0))  # No wall is within the range of the laser.
+    for _ in range(3):
+        robot.publish_scan(outdoors)
+        test.advance(0.5)
+    assert lists
+    assert not any(message.submap for message in lists)
+    assert not logged(test, "ERROR")
+
+
 # --- configurations ---------------------------------------------------------------------------------------------------
 
 

@@ -269,11 +269,41 @@ async def test_poses_are_converted_to_requested_type(harness, logged):
     assert results["Pose"][0].position.x == results["PoseStamped"][0].pose.position.x == 2.0
     assert results["Transform"][0].translation.x == results["PoseArray"][0].poses[0].position.x == 2.0
     assert results["PoseStamped"][0].header.frame_id == results["PoseArray"][0].header.frame_id == "robot"
-    argument = "/one@geometry_msgs/msg/Pose]gz.msgs.Pose"
+    argument = "/one@geometry_msgs/msg/Twist]gz.msgs.Pose"
     ParameterBridge(harness.graph, NodeOptions(name="back", arguments=[argument]))
     assert logged("WARN") == [
-        "/one is not bridged: geometry_msgs/msg/Pose cannot be converted to geometry_msgs/msg/TransformStamped"
+        "/one is not bridged: geometry_msgs/msg/Twist cannot be converted to geometry_msgs/msg/TransformStamped"
     ]
+
+
+@pytest.mark.parametrize(
+    ("ros_type", "gz_type", "simulated_type"),
+    [
+        ("geometry_msgs/msg/Pose", "gz.msgs.Pose", "geometry_msgs/msg/TransformStamped"),
+        ("geometry_msgs/msg/PoseStamped", "gz.msgs.Pose", "geometry_msgs/msg/TransformStamped"),
+        ("geometry_msgs/msg/PoseArray", "gz.msgs.Pose_V", "tf2_msgs/msg/TFMessage"),
+    ],
+)
+async def test_poses_of_same_name_are_converted_in_both_directions(harness, logged, ros_type, gz_type, simulated_type):
+    point = get_message("geometry_msgs/msg/Point")(x=1.0, y=2.0, z=3.0)
+    turn = get_message("geometry_msgs/msg/Quaternion")(x=1.0, w=0.0)
+    pose = get_message("geometry_msgs/msg/Pose")(position=point, orientation=turn)
+    header = get_message("std_msgs/msg/Header")(frame_id="world")
+    message = {
+        "geometry_msgs/msg/Pose": lambda: pose,
+        "geometry_msgs/msg/PoseStamped": lambda: get_message(ros_type)(header=header, pose=pose),
+        "geometry_msgs/msg/PoseArray": lambda: get_message(ros_type)(header=header, poses=[pose]),
+    }[ros_type]()
+    ParameterBridge(harness.graph, NodeOptions(arguments=[f"/pose@{ros_type}@{gz_type}"]))
+    simulated = record_messages(harness, simulated_type, hidden_gz_topic("/pose"))
+    create_publisher(harness, ros_type, "/pose").publish(message)
+    await harness.graph.settle()
+    received = record_messages(harness, ros_type, "/pose")
+    create_publisher(harness, simulated_type, "/pose").publish(simulated[0])
+    await harness.graph.settle()
+    assert received == [message]
+    assert len(simulated) == 1
+    assert not logged("WARN")
 
 
 async def test_gz_topic_names_can_be_expanded_with_namespace(harness):

@@ -18,7 +18,7 @@ from linkwright.graph.endpoints.base import Endpoint, EndpointInfo, Presence
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
-from linkwright.graph.names.rules import NodeIdentity
+from linkwright.graph.names.rules import NodeIdentity, is_hidden
 from linkwright.graph.qos.compatibility import find_incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind, QoSProfile
 
@@ -178,17 +178,27 @@ class Bus:
                 self._update_servers(endpoint.name)
 
     def _connect(self, publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
-        """Connect a publisher and a subscription, or warn of incompatible QoS.
-
-        Nothing happens if their types differ and another subscription of the same node has the publisher's type.
-        """
-        type_name = publisher.type_name
-        other_subscriptions = () if subscription.type_name == type_name else self._subscriptions.find(subscription.name)
-        if not any(
-            other_subscription.node is subscription.node and other_subscription.type_name == type_name
-            for other_subscription in other_subscriptions
-        ):
+        """Connect a publisher and a subscription, or warn of different types or incompatible QoS."""
+        if publisher.type_name == subscription.type_name or not self._is_mixed_on_purpose(publisher, subscription):
             connect_if_compatible(publisher, subscription)
+
+    def _is_mixed_on_purpose(self, publisher: Publisher[Any], subscription: Subscription[Any]) -> bool:
+        """Return whether a topic has two types because a node reads both, or because a bridge converts them.
+
+        The gz side of a bridge is a hidden node. The bridge publishes the messages with the other type.
+        """
+        return (
+            any(
+                other_subscription.node is subscription.node and other_subscription.type_name == publisher.type_name
+                for other_subscription in self._subscriptions.find(subscription.name)
+            )
+            or any(
+                other_publisher.type_name == subscription.type_name
+                for other_publisher in self._publishers.find(publisher.name)
+            )
+            or is_hidden(publisher.node_name)
+            or is_hidden(subscription.node_name)
+        )
 
     def remove(self, endpoint: Endpoint) -> None:
         """Remove an endpoint.

@@ -285,6 +285,9 @@ def _missing_executable_error(
         message = phrase(
             "package '{package}' has no executable '{name}' that runs without ROS", package=package, name=name
         )
+        alternative = find_alternative(package)
+        if alternative is not None:
+            message = joined((message, alternative), "; ")
     elif share is not None:
         if not is_installed(share):
             return _missing_in_sources_error(package, name, share)

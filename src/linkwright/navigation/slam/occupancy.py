@@ -77,6 +77,11 @@ class OccupancyMap:
         trace = self._traces.get(scan_index)
         return None if trace is None else trace.pose
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether no cell was reached by a ray, so that there is no grid."""
+        return not self._passes.any()
+
     def grid(self) -> Grid | None:
         """Return the smallest grid that contains all cells reached by rays.
 

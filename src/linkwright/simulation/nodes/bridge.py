@@ -119,13 +119,13 @@ class _Bridge(SingleNode):
         if has_same_name and topic.ros_type == gz_type:
             self._create_endpoints(topic, to_ros=to_ros, to_gz=to_gz)
             return
-        if has_same_name and to_gz:  # The ROS topic owns the shared name, so the gz side uses its hidden name.
-            gz_topic = hidden_gz_topic(gz_topic)
         ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
-        if to_ros and not (has_same_name and to_gz):
+        # Velocities of the type of gz on a shared name would be commands for the wrong side of the bridge.
+        if to_ros and not (has_same_name and to_gz and gz_type in VELOCITIES):
             self._forward_messages(topic, gz, ros)
-        if to_gz:
-            self._forward_messages(topic, ros, gz)
+        if to_gz:  # The ROS topic owns a shared name, so commands for gz use its hidden name.
+            name = hidden_gz_topic(gz_topic) if has_same_name else gz_topic
+            self._forward_messages(topic, ros, (self._gz_node, name, gz_type))
 
     def _create_endpoints(self, topic: BridgedTopic, *, to_ros: bool, to_gz: bool) -> None:
         """Create the endpoints of a topic before the simulation does, without forwarding messages."""

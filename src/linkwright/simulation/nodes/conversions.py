@@ -61,8 +61,31 @@ def _transforms_to_poses(message: Any) -> Any:
     return poses
 
 
+def _pose_to_transform(pose: Any) -> Any:
+    position = pose.position
+    translation = get_message("geometry_msgs/msg/Vector3")(x=position.x, y=position.y, z=position.z)
+    transform = get_message("geometry_msgs/msg/Transform")(translation=translation, rotation=pose.orientation)
+    return get_message("geometry_msgs/msg/TransformStamped")(transform=transform)
+
+
+def _pose_stamped_to_transform(message: Any) -> Any:
+    transform = _pose_to_transform(message.pose)
+    transform.header = message.header
+    return transform
+
+
+def _poses_to_transforms(message: Any) -> Any:
+    transforms = [_pose_to_transform(pose) for pose in message.poses]
+    for transform in transforms:
+        transform.header = message.header
+    return get_message("tf2_msgs/msg/TFMessage")(transforms=transforms)
+
+
 _POSE_CONVERSIONS: dict[tuple[str, str], Conversion] = {
     ("geometry_msgs/msg/TransformStamped", "geometry_msgs/msg/Pose"): _transform_to_pose,
+    ("geometry_msgs/msg/Pose", "geometry_msgs/msg/TransformStamped"): _pose_to_transform,
     ("geometry_msgs/msg/TransformStamped", "geometry_msgs/msg/PoseStamped"): _transform_to_pose_stamped,
+    ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/TransformStamped"): _pose_stamped_to_transform,
     ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/PoseArray"): _transforms_to_poses,
+    ("geometry_msgs/msg/PoseArray", "tf2_msgs/msg/TFMessage"): _poses_to_transforms,
 }

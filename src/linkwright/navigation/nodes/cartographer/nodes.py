@@ -245,7 +245,7 @@ class CartographerNode(SingleNode):
         message = get_message("cartographer_ros_msgs/msg/SubmapList")()
         message.header.frame_id = self._options.map_frame
         message.header.stamp = self._node.get_clock().now().to_msg()
-        if self._mapping.mapper.scans:
+        if not self._mapping.mapper.occupancy.is_empty:
             entry = get_message("cartographer_ros_msgs/msg/SubmapEntry")(submap_version=self._mapping.version)
             entry.pose.orientation.w = 1.0
             message.submap = [entry]
