@@ -142,6 +142,13 @@ async def test_step_service_advances_paused_simulation(tmp_path):
         assert session.simulator.server.simulation.time == 0
 
 
+async def test_reliable_and_best_effort_subscriptions_receive_clock(tmp_path):
+    async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), publish_rate=100.0) as session:
+        clocks = [session.record("rosgraph_msgs/msg/Clock", "/clock", qos) for qos in (CLOCK_QOS, QoSProfile(10))]
+        await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=25)
+        await eventually(lambda: all(clocks))
+
+
 @pytest.mark.parametrize("pause", [True, False])
 async def test_paused_start_logs_how_to_unpause(tmp_path, pause):
     async with simulator(tmp_path, pause=pause) as session:

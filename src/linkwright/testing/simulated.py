@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 from linkwright.descriptions import DescriptionLibrary, examine
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.single import Transform, quaternion_from_rpy
-from linkwright.graph import CLOCK_QOS
+from linkwright.graph import SIMULATION_CLOCK_QOS
 from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import Time, get_message
 from linkwright.nodes.options import NodeOptions
@@ -117,7 +117,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
     def _begin(self) -> None:
         simulation = Simulation(self._loaded_world.world, ResourceFinder(PackageFinder(start=self._folders)))
         node = self.graph.create_node(_NODE_NAME)
-        self._clock_topic = node.create_publisher(get_message(_CLOCK_TYPE), "/clock", CLOCK_QOS)
+        self._clock_topic = node.create_publisher(get_message(_CLOCK_TYPE), "/clock", SIMULATION_CLOCK_QOS)
         self._server = SimulationServer(simulation, node, self._options)
         self._server.on_failure.append(self.errors.append)
         self._run_control = _RunControl(simulation)

@@ -162,6 +162,9 @@ class TestSources:
             ("ur_robot_driver", "dashboard_client", "`mock_components/GenericSystem`"),
             ("micro_ros_agent", "micro_ros_agent", "it drives hardware"),
             ("moveit_setup_assistant", "moveit_setup_assistant", "`linkwright arm init` writes"),
+            ("rtabmap_slam", "rtabmap", "use `slam_toolbox` or `cartographer_ros`"),
+            ("mavros", "mavros_node", "`gz-sim-multicopter-control-system`"),
+            ("nav2_route", "route_server", "use `planner_server`"),
         ],
     )
     def test_missing_program_names_alternative(

@@ -246,8 +246,12 @@ class Executor:
         return next(self._wait_for_ready_callbacks(timeout_sec, nodes, condition))
 
     def ready(self, entity: Entity) -> None:
-        """Queue an entity that has work. See ``Dispatcher.ready``."""
-        self._work.add(entity)
+        """Queue an entity that has work. See ``Dispatcher.ready``.
+
+        When a node was removed and is added again, as each call of ``rclpy.spin_once`` does, its entities with work
+        keep their places in the queue.
+        """
+        self._work.add_once(entity)
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> ScheduledCall:
         """Schedule a callback for a value of ``time.monotonic_ns``. See ``Dispatcher.call_at``."""
@@ -347,7 +351,7 @@ class Executor:
             client.postponed = 0
             return False
         client.postponed += 1
-        self._work.add(client)
+        self._work.add_once(client)
         return True
 
     def _execute(self, item: Any) -> None:

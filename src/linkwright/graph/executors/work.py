@@ -52,6 +52,7 @@ class WorkQueue:
 
     def __init__(self) -> None:
         self._ready: deque[Any] = deque()
+        self._ready_once: set[Any] = set()
         self._alarms: list[ScheduledCall] = []
         self._last_number = 0
         self._cancelled = 0
@@ -65,8 +66,15 @@ class WorkQueue:
         if self._wait_locks:
             self._wake_sleepers()
 
+    def add_once(self, item: Any) -> None:
+        """Add an item at the end, unless it is in the queue."""
+        if item not in self._ready_once:
+            self._ready_once.add(item)
+            self.add(item)
+
     def add_first(self, items: list[Any]) -> None:
         """Put items back at the beginning, in their order."""
+        self._ready_once.update(items)
         self._ready.extendleft(reversed(items))
         self._wake_sleepers()
 
@@ -82,9 +90,11 @@ class WorkQueue:
         if self._alarms and self._alarms[0].steady_ns <= time.monotonic_ns():
             self._run_due_alarms()
         try:
-            return self._ready.popleft()
+            item = self._ready.popleft()
         except IndexError:
             return None
+        self._ready_once.discard(item)
+        return item
 
     def wait(self, deadline_ns: int | None) -> None:
         """Wait for an item, a due alarm, a call of `wake`, or `deadline_ns`.
@@ -139,6 +149,7 @@ class WorkQueue:
         """Remove all items and alarms."""
         with self._alarms_lock:
             self._ready.clear()
+            self._ready_once.clear()
             self._alarms.clear()
             self._cancelled = 0
 

@@ -365,6 +365,9 @@ PARAMETER_EVENTS_QOS = QoSProfile(depth=1000)
 CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 """For subscriptions to ``/clock`` (rclcpp ``ClockQoS``)."""
 
+SIMULATION_CLOCK_QOS = QoSProfile(depth=10)
+"""For publishers of ``/clock`` in simulations (gazebo_ros, ros_gz_bridge): reliable subscriptions also receive it."""
+
 ROSOUT_QOS = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=10))
 """For ``/rosout`` (rcl ``rcl_qos_profile_rosout_default``)."""
 

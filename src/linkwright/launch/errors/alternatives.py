@@ -48,8 +48,23 @@ _DRIVERS = {
     _HARDWARE: ("micro_ros_agent", "motion_capture_tracking", "serial_driver", "spacenav"),
 }
 """The packages of drivers that public launch files start most often, by the hardware that they drive."""
+_RTABMAP = phrase(
+    "Linkwright maps with laser scans: use `slam_toolbox` or `cartographer_ros`; `depthimage_to_laserscan` makes a scan"
+    " from a depth image"
+)
+_AUTOPILOT = phrase(
+    "it needs the autopilot, so install that; without it, the plugin `gz-sim-multicopter-control-system` flies a"
+    " simulated multicopter with velocities on `cmd_vel`"
+)
+_ROUTE = phrase("Linkwright plans over the map instead of a graph: use `planner_server` of `nav2_planner`")
+_SUBSTITUTES = {
+    _RTABMAP: ("rtabmap_odom", "rtabmap_ros", "rtabmap_slam", "rtabmap_sync", "rtabmap_util", "rtabmap_viz"),
+    _AUTOPILOT: ("ardupilot_sitl", "mavros"),
+    _ROUTE: ("nav2_route",),
+}
+"""Packages whose programs Linkwright does not have, by the text that names their substitutes."""
 _ALTERNATIVES = {
-    **{package: text for text, packages in _DRIVERS.items() for package in packages},
+    **{package: text for texts in (_DRIVERS, _SUBSTITUTES) for text, packages in texts.items() for package in packages},
     "moveit_setup_assistant": phrase("`linkwright arm init` writes the MoveIt configuration of an arm"),
 }
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from linkwright.descriptions.conversion import with_changed_uris
 from linkwright.geometry.single import Transform
-from linkwright.graph import CLOCK_QOS, LATCHED_QOS
+from linkwright.graph import LATCHED_QOS, SIMULATION_CLOCK_QOS
 from linkwright.graph.stepped.node import Output, SteppedNode
 from linkwright.messages import Header, String, Time, get_message
 from linkwright.messages.tf_message import TFMessage, TransformBatch
@@ -46,7 +46,7 @@ class Reports:
 
     def __init__(self, server: SimulationServer, node: SteppedNode, clock_rate: float) -> None:
         self._server = server
-        self._clock = node.publisher(_CLOCK_TYPE, "/clock", CLOCK_QOS)
+        self._clock = node.publisher(_CLOCK_TYPE, "/clock", SIMULATION_CLOCK_QOS)
         self._state = node.publisher(_STATE_TYPE, "/simulation_state", LATCHED_QOS)
         self._description = node.publisher("std_msgs/msg/String", "/world_description", LATCHED_QOS)
         self._poses = node.publisher("tf2_msgs/msg/TFMessage", "/world_poses", 10)
