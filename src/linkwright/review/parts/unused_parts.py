@@ -1,4 +1,4 @@
-"""Find included files that nothing used: the package does not install them, and no file of the repository names them."""
+"""Find included files that nothing used: they are not installed, and no file of the repository names them."""
 
 from __future__ import annotations
 
