@@ -174,7 +174,7 @@ class RobotFiles:
         return False
 
     def may_make(self, name: str) -> bool:
-        """Return whether a macro of another repository gets a value with which a name begins, so that it may make it."""
+        """Return whether a macro of another repository gets a value with which a name begins; it may make the name."""
         return any(name.startswith(value) for value in self._names_of_unknown_macros)
 
     def is_in_robot(self, name: str) -> bool:
