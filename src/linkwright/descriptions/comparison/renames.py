@@ -1,9 +1,9 @@
 """Links and joints that were renamed and have other changes, too.
 
 Several facts about an old and a new link indicate a rename: the same shapes, the same parent, the same children, the
-same joint, the same inertial, names with the same words, or the prefix that all other renamed links newly have. Each fact has a weight. A pair is accepted if its sum is
-high enough, and higher than that of any other pair with one of the two links. A missed rename costs two lines in a
-report, but a false rename hides that a part was removed.
+same joint, the same inertial, names with the same words, or the prefix that all other renamed links newly have. Each
+fact has a weight. A pair is accepted if its sum is high enough, and higher than that of any other pair with one of the
+two links. A missed rename costs two lines in a report, but a false rename hides that a part was removed.
 """
 
 from __future__ import annotations
