@@ -1,4 +1,4 @@
-"""Find nodes in C++ that at most send requests, beside the node of the source, so that nobody uses their names."""
+"""Find nodes in C++ that at most send requests, beside the node of the source. No other node uses their names."""
 
 from __future__ import annotations
 
