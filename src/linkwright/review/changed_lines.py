@@ -25,7 +25,7 @@ _SETTINGS_OF_TOOLS = re.compile(r"\..*|(tox|pytest|mypy|ruff|pylint|flake8|setup
 """The names of files with settings of tools for developers, which no robot reads."""
 _SETTINGS_COMMENT = re.compile(r"[#;]|//|--")
 _CMAKE_END = re.compile(r"end(?:if|macro|function|foreach|while) ?\(.*\)", re.IGNORECASE)
-"""The end of a block of CMake, which says nothing without its beginning."""
+"""The end of a block of CMake, which means something only with its beginning."""
 _SUFFIXES = _SHELL_SUFFIXES | {".rules", UNIT_SUFFIX, ".dockerfile"}
 _HEAD_BYTES = 100
 _FILE_NAME = re.compile(
