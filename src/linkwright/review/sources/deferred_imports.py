@@ -12,7 +12,7 @@ from linkwright.review.sources.python import parse_source
 from linkwright.review.sources.reading import try_read_source
 
 _IMPORT_FUNCTIONS = ("import_module", "importlib.import_module", "__import__")
-_Imports = dict[str, ast.AST]
+_Imports = dict[str, "ast.expr | ast.stmt"]
 
 
 def find_deferred_imports(old_path: Path, new_path: Path) -> Iterator[tuple[Phrase, Span]]:
@@ -47,8 +47,8 @@ def _read_imports(python: PythonFile) -> tuple[_Imports, _Imports]:
 
     def read(node: ast.AST, found: _Imports) -> None:
         for child in ast.iter_child_nodes(node):
-            for name in _list_modules(child):
-                found.setdefault(name, child)
+            if isinstance(child, (ast.expr, ast.stmt)):
+                found.update({name: child for name in _list_modules(child) if name not in found})
             is_function = isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda))
             read(child, later if is_function else found)
 
