@@ -313,6 +313,19 @@ def test_renamed_joint_that_attaches_the_same_link_to_another_parent_is_recogniz
     ]
 
 
+@pytest.mark.parametrize(("new_name", "is_renamed"), [("car/back_left_wheel", True), ("wagon/back_left_wheel", False)])
+def test_moved_link_with_the_new_prefix_of_all_others_is_renamed(new_name, is_renamed):
+    def make_robot(prefix: str, wheel: str, mount: str, xyz: str) -> str:
+        names = ("laser", "front_left_wheel", "back_right_wheel")
+        links = [link(prefix + name) for name in names]
+        joints = [joint("base", prefix + name, name=f"base_to_{name}") for name in names]
+        return robot_text(*links, *joints, link(wheel), joint("base", wheel, name=mount, xyz=xyz))
+
+    old = make_robot("", "back_left_wheel", "mount", "1 0 0")
+    new = make_robot("car/", new_name, "$holder", "2 0 0")
+    assert ("back_left_wheel" in renamed_elements(old, new)) is is_renamed
+
+
 def test_many_equal_parts_are_not_renamed():
     def many(prefix: str) -> str:
         return robot_text(

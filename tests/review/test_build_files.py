@@ -145,7 +145,9 @@ def test_contents_of_added_and_removed_build_files_are_listed(repository, compar
 
 def test_build_file_without_a_compared_difference_is_listed(repository, compare):
     repository.commit(FILES)
-    repository.write({"a/CMakeLists.txt": CMAKE.replace("find_package(rclcpp", "# a comment\nfind_package(rclcpp")})
+    repository.write(
+        {"a/CMakeLists.txt": CMAKE.replace("find_package(rclcpp", "message(STATUS a)\nfind_package(rclcpp")}
+    )
     result = compare(repository)
     assert (result.subjects, result.other_files) == ([], ["a/CMakeLists.txt"])
 

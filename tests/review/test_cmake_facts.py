@@ -460,3 +460,18 @@ def test_a_call_whose_macro_is_defined_now_is_not_removed(repository, compare):
         "built targets removed: 'driver'",
         "'arm_component', which the file still calls, is no longer defined",
     ]
+
+
+def test_library_with_the_new_name_of_its_package_is_still_linked(repository, compare):
+    build = """project(THIS)
+add_library(${PROJECT_NAME} SHARED core.cpp)
+add_executable(driver driver.cpp)
+target_link_libraries(driver ${PROJECT_NAME})
+ament_package()
+"""
+    manifest = PACKAGE_XML.replace("arm_description", "THIS")
+    files = {"a/CMakeLists.txt": build, "a/package.xml": manifest, "a/core.cpp": "", "a/driver.cpp": ""}
+    for name in ("arm-core", "arm_core"):
+        repository.commit({path: text.replace("THIS", name) for path, text in files.items()})
+    result = compare(repository, "HEAD~1..HEAD")
+    assert not any("linked" in sentence for found in result.subjects for sentence in sentences(found))

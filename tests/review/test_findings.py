@@ -211,11 +211,17 @@ def test_finding_about_a_mesh_that_is_missing_now_is_not_fixed(package, other, i
     assert bool(find_fixed(package, "LW435", PATH, "the mesh has 21 482 triangles", [missing])) == is_fixed
 
 
+TESTED = PACKAGE_XML.replace("<exec_depend>", "<test_depend>drivers</test_depend><exec_depend>")
+TEST, TEST_TEXT = "arm_description/test/all.launch.py", launch_text("drivers")
+
+
 @pytest.mark.parametrize(
     ("files", "is_fixed"),
     [
         ({"drivers/package.xml": PACKAGE_XML}, False),
         ({"arm_description/package.xml": PACKAGE_XML.replace("xacro", "drivers")}, True),
+        ({"arm_description/package.xml": TESTED}, False),
+        ({"arm_description/package.xml": TESTED, "arm_description/launch/all.launch.py": "", TEST: TEST_TEXT}, True),
         ({"arm_description/launch/all.launch.py": launch_text("arm_description")}, True),
     ],
 )

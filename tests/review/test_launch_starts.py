@@ -335,3 +335,31 @@ def test_parameter_that_switches_between_hardware_and_simulation_is_breaking(
     repository.commit({"arm/launch/arm.launch": f"<launch>{old}</launch>"})
     repository.write({"arm/launch/arm.launch": f"<launch>{new}</launch>"})
     assert bool(breaking(compare(repository))) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("name", "file", "old", "new", "is_breaking"),
+    [
+        ("arm.launch", "$(find gazebo_ros)/launch/empty_world.launch", "true", "false", True),
+        ("arm.launch", "$(find gazebo_ros)/launch/empty_world.launch", "false", "true", False),
+        ("arm.launch.xml", "$(find-pkg-share gazebo_ros)/launch/gazebo.launch.py", "true", "false", True),
+        ("arm.launch", "$(find elsewhere)/launch/robot.launch", "true", "false", False),
+    ],
+)
+def test_default_that_closes_the_window_of_gazebo_is_breaking(review_changes, name, file, old, new, is_breaking):
+    use = "$(arg window)" if name.endswith(".launch") else "$(var window)"
+    text = f"""<launch><arg name="window" default="{old}"/>
+      <include file="{file}"><arg name="gui" value="{use}"/></include></launch>"""
+    _, lost = review_changes(name, text, f'default="{old}"', f'default="{new}"')
+    assert bool(lost) is is_breaking
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "is_breaking"),
+    [("-r a.sdf", "-r -s a.sdf", True), ("-r a.sdf", "-rs a.sdf", True), ("-r -s a.sdf", "-r a.sdf", False)],
+)
+def test_option_that_closes_the_window_of_gazebo_is_breaking(review_changes, old, new, is_breaking):
+    text = f"""<launch><include file="$(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py">
+      <arg name="gz_args" value="{old}"/></include></launch>"""
+    _, lost = review_changes("arm.launch.xml", text, old, new)
+    assert bool(lost) is is_breaking

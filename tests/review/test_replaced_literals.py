@@ -37,6 +37,21 @@ def test_literal_that_a_parameter_replaces(repository, compare, old, new, expect
     assert not any(line.startswith("values in") for line in found) or expected is None
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "end"),
+    [
+        ("rospy.sleep(30.)", "rospy.sleep(rospy.get_param('/delay'))", "30.0 in 'Arm.__init__()'"),
+        ("rospy.sleep(30.)", "rospy.sleep(rospy.get_param('/delay', 9))", "30.0 in 'Arm.__init__()': 9 by default"),
+        ("rospy.sleep(30.)", "rospy.sleep(rospy.get_param('/delay', 30))", None),
+        ("rospy.sleep(delay)", "rospy.sleep(rospy.get_param('/delay'))", None),
+        ("rospy.sleep(3)\nrospy.sleep(4)", "rospy.sleep(rospy.get_param('/delay'))\nrospy.sleep(4)", None),
+    ],
+)
+def test_literal_argument_that_a_parameter_replaces(repository, compare, old, new, end):
+    found = [line for line in find_replaced(repository, compare, old, new) if "replaces" in line]
+    assert found == ([] if end is None else [f"parameter '/delay' replaces {end}"])
+
+
 CPP = """void Arm::configure() {{
   {}
   start();

@@ -24,6 +24,8 @@ _SETTINGS_SUFFIXES = frozenset({".ini", ".cfg", ".conf", ".properties", ".lua", 
 _SETTINGS_OF_TOOLS = re.compile(r"\..*|(tox|pytest|mypy|ruff|pylint|flake8|setup|cspell|doxygen|poetry).*")
 """The names of files with settings of tools for developers, which no robot reads."""
 _SETTINGS_COMMENT = re.compile(r"[#;]|//|--")
+_CMAKE_END = re.compile(r"end(?:if|macro|function|foreach|while) ?\(.*\)", re.IGNORECASE)
+"""The end of a block of CMake, which means something only with its beginning."""
 _SUFFIXES = _SHELL_SUFFIXES | {".rules", UNIT_SUFFIX, ".dockerfile"}
 _HEAD_BYTES = 100
 _FILE_NAME = re.compile(
@@ -69,6 +71,7 @@ def compare_lines(versions: Versions, file: ChangedFile) -> Phrase | None:
         old, new = ([*split_content_lines(text.read_text("utf-8"))] for text in paths)
         if _has_settings(file.path):
             old, new = ([line for line in lines if not _SETTINGS_COMMENT.match(line)] for lines in (old, new))
+        old, new = ([line for line in lines if not _CMAKE_END.fullmatch(line)] for lines in (old, new))
     except (OSError, ValueError):
         return None
     removed, added = (list((Counter(a) - Counter(b)).elements()) for a, b in ((old, new), (new, old)))

@@ -8,16 +8,19 @@ from contextlib import suppress
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError
+from linkwright.packages.readers.package_xml import Manifest
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.launch_paths import is_launch_file
 from linkwright.review.launches.reading import read_outline
-from linkwright.review.versions import Version, Versions
+from linkwright.review.versions import TEST_FOLDERS, Version, Versions
+from linkwright.xacro.cache import read_document
 
 _MESH_RULES = ("LW42", "LW43")
 """The beginnings of the codes of findings about meshes, which need the files."""
 _MISSING_MESH_CODE = "LW424"
 _UNDECLARED_CODE = "LW848"
 """The finding about a package that launch files use and package.xml does not name."""
+_TEST_DEPENDENCY = "test_depend"
 _LAUNCH_FILES = "*launch*"
 _QUOTED_NAME = re.compile(r"'([\w-]+)'")
 _JOINED_LITERALS = re.compile(r"(['\"])\s*\+\s*\1")
@@ -30,7 +33,8 @@ def drop_unfixed_findings(
     """Return the fixed findings without those that only cannot be found any more.
 
     A mesh that is missing now has no size. A package whose manifest has not changed, and whose launch files still use
-    another package, still does not name it, also if a third package brings it now.
+    another package, still does not name it, also if a third package brings it now. So does a package that names it
+    only for its tests.
 
     Args:
         versions: both versions.
@@ -45,9 +49,25 @@ def drop_unfixed_findings(
         path = _get_path(finding)
         if finding.code.startswith(_MESH_RULES) and finding.code != _MISSING_MESH_CODE:
             return new_paths.get(path, path) not in without_meshes
-        return finding.code != _UNDECLARED_CODE or path in changed or not _uses_packages(versions.new, finding)
+        if finding.code != _UNDECLARED_CODE:
+            return True
+        is_left = path not in changed or _depends_only_for_tests(versions.new, new_paths.get(path, path), finding)
+        return not is_left or not _uses_packages(versions.new, finding)
 
     return [finding for finding in fixed if is_fixed(finding)]
+
+
+def _depends_only_for_tests(version: Version, path: str, finding: Diagnostic) -> bool:
+    """Return whether a ``package.xml`` names packages that a finding quotes only as dependencies of tests."""
+    try:
+        dependencies = Manifest(read_document(str(version.file(path)))).dependencies
+    except LinkwrightError:
+        return False
+    names = _QUOTED_NAME.findall(str(finding.message))
+    return any(
+        {dependency.tag for dependency in dependencies if dependency.name == name} == {_TEST_DEPENDENCY}
+        for name in names
+    )
 
 
 def _uses_packages(version: Version, finding: Diagnostic) -> bool:
@@ -57,6 +77,7 @@ def _uses_packages(version: Version, finding: Diagnostic) -> bool:
     """
     folder = version.file(_get_path(finding)).parent
     files = [file for file in sorted(folder.rglob(_LAUNCH_FILES)) if file.is_file()]
+    files = [file for file in files if TEST_FOLDERS.isdisjoint(file.relative_to(folder).parts)]
     names = _QUOTED_NAME.findall(str(finding.message))
     texts = [file.read_bytes() for file in files]
     if any(name.encode() in text for name in names for text in texts):

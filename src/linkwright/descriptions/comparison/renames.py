@@ -1,9 +1,9 @@
 """Links and joints that were renamed and have other changes, too.
 
 Several facts about an old and a new link indicate a rename: the same shapes, the same parent, the same children, the
-same joint, the same inertial, or names with the same words. Each fact has a weight. A pair is accepted if its sum is
-high enough, and higher than that of any other pair with one of the two links. A missed rename costs two lines in a
-report, but a false rename hides that a part was removed.
+same joint, the same inertial, names with the same words, or the prefix that all other renamed links newly have. Each
+fact has a weight. A pair is accepted if its sum is high enough, and higher than that of any other pair with one of the
+two links. A missed rename costs two lines in a report, but a false rename hides that a part was removed.
 """
 
 from __future__ import annotations
@@ -22,10 +22,12 @@ SameInertial = Callable[[Link, Link], bool]
 Key = tuple[str, Hashable]
 """A kind of fact, and its value."""
 
-_WEIGHTS = {"mesh": 2, "words": 3, "joint": 3, "children": 3}
+_WEIGHTS = {"mesh": 2, "words": 3, "joint": 3, "children": 3, "prefix": 3}
 _SHAPES, _INERTIAL, _PARENT = 1, 1, 1
 _MIN_WEIGHT = 4
 """The minimum sum of weights for a rename. No single fact is sufficient."""
+_MIN_PREFIXED = 3
+"""The minimum number of renamed links that have the same new prefix, if all renamed ones have it."""
 _MAX_CANDIDATES = 40
 """The maximum number of links that share a fact, such as a mesh. A fact of more links is ignored."""
 _MAX_PASSES = 20
@@ -99,10 +101,12 @@ class RenameSearch:
         self._old = _Side.of(old, links, normalize_old)
         self._new = _Side.of(new, dict.fromkeys(links.values(), ""), normalize_new)
         self._same_inertial = same_inertial
+        self._prefix = ""
 
     def run(self) -> None:
         """Match links until no more matches are found, and then the joints between matched links."""
         for _ in range(_MAX_PASSES):
+            self._prefix = self._find_prefix()
             pairs = list(self._find_unambiguous_pairs()) if self._old.names and self._new.names else []
             for old_name, new_name in pairs:
                 self._links[old_name] = new_name
@@ -147,8 +151,16 @@ class RenameSearch:
             for new_name in new_names.get(key, ())
         }
 
+    def _find_prefix(self) -> str:
+        """The prefix that all renamed links newly have; empty if there is none."""
+        renamed = [(name, new_name) for name, new_name in self._links.items() if name != new_name]
+        prefixes = {new_name[: -len(name)] if new_name.endswith(name) else "" for name, new_name in renamed}
+        return prefixes.pop() if len(renamed) >= _MIN_PREFIXED and len(prefixes) == 1 else ""
+
     def _old_keys(self, name: str) -> Iterator[Key]:
         yield from self._old.own_keys(name)
+        if self._prefix:
+            yield "prefix", self._prefix + name
         joint = self._old.parents.get(name)
         if joint is not None and joint.name in self._joints:
             yield "joint", self._joints[joint.name]
@@ -160,6 +172,7 @@ class RenameSearch:
 
     def _new_keys(self, name: str) -> Iterator[Key]:
         yield from self._new.own_keys(name)
+        yield "prefix", name
         joint = self._new.parents.get(name)
         if joint is not None:
             yield "joint", joint.name
@@ -173,9 +186,9 @@ class RenameSearch:
         kinds = {kind for kind, _ in common}
         old_joint, new_joint = self._old.parents.get(old_name), self._new.parents.get(new_name)
         has_same_shapes = self._old.shapes[old_name] == self._new.shapes[new_name]
-        if (old_joint is None) != (new_joint is None) or not (has_same_shapes or "words" in kinds):
+        if (old_joint is None) != (new_joint is None) or not (has_same_shapes or kinds & {"words", "prefix"}):
             return 0
-        if "joint" not in kinds and _are_different_sides(old_name, new_name):
+        if not kinds & {"joint", "prefix"} and _are_different_sides(old_name, new_name):
             return 0
         is_below_same = True
         if old_joint is not None and new_joint is not None:

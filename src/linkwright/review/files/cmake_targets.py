@@ -11,7 +11,13 @@ from linkwright.diagnostics import Phrase, Span, phrase
 from linkwright.packages.readers.cmake_language import Argument, Command, to_package_path
 from linkwright.packages.readers.cmake_syntax import is_open
 from linkwright.review.file_pair import FilePair
-from linkwright.review.files.build_facts import BuildFacts, TargetParts, find_new_source, list_names
+from linkwright.review.files.build_facts import (
+    BuildFacts,
+    TargetParts,
+    find_new_source,
+    find_renamed_targets,
+    list_names,
+)
 
 _SOURCE_COMMANDS = frozenset(
     {
@@ -128,18 +134,20 @@ def _get_span(argument: Argument) -> Span:
 def compare_targets(pair: FilePair, old: BuildFacts, new: BuildFacts) -> None:
     """Report the changed libraries and sources of targets.
 
-    Equal changes to several targets share a line.
+    Equal changes to several targets share a line. A library with a new name, such as that of the package, is the same.
     """
     changes: dict[_TargetChange, list[tuple[str, Span]]] = {}
+    renamed = {**find_renamed_targets(pair.versions, old, new), old.project: new.project}
     for name, parts in new.targets.items():
         before = old.targets.get(name)
         if before is None:
             continue
+        libraries = {renamed.get(item, item): span for item, span in before.libraries.items()}
         sources = {find_new_source(pair.versions, old, new, item): span for item, span in before.sources.items()}
         if parts.is_test:
             _report_moved_sources(pair, name, dict(zip(before.sources, sources, strict=False)), parts.sources)
         for kind, old_items, new_items in (
-            ("libraries", before.libraries, parts.libraries),
+            ("libraries", libraries, parts.libraries),
             ("sources", sources, parts.sources if sources else {}),
         ):
             if kind == "sources" and not new_items:

@@ -92,6 +92,10 @@ _TOPIC = re.compile(r"[~/\w]+")
 _GAZEBO_ARGUMENTS = ("gz_args", "ign_args")
 """The arguments of the launch files of Gazebo with the options of its command."""
 _RUN_OPTION = re.compile(r"(?:^|\s)-\w*r\w*(?=\s|$)")
+_SERVER_OPTION = re.compile(r"(?:^|\s)(?:-[a-z]*s[a-z]*|--headless-rendering)(?=\s|$)")
+"""The option of Gazebo without which its window opens."""
+_CLASSIC_PACKAGE, _WINDOW_ARGUMENT = "gazebo_ros)", "gui"
+"""A part of the names of the launch files of Gazebo Classic, and their argument for the window."""
 _FRAME_PREFIXES = (f"{PARAMETER}frame_prefix", f"{PARAMETER}tf_prefix")
 _VARIABLE = re.compile(r"\$\((?:var|arg) [^()]*\)")
 _STANDARD_VARIABLES = frozenset({"HOME", "PATH", "PWD", "SHELL", "USER"})
@@ -300,7 +304,13 @@ def find_setting_reason(
     if entry.kind == "include" and setting == NAMESPACE_OF_INCLUDED:
         return find_renaming_reason(old, new, old_outline, new_outline)
     if entry.kind == "include" and setting in _GAZEBO_ARGUMENTS:
-        return _find_pause_reason(old, new, old_outline, new_outline)
+        return _find_option_reason(old, new, old_outline, new_outline)
+    if entry.kind == "include" and setting == _WINDOW_ARGUMENT and _CLASSIC_PACKAGE in entry.name:
+        opens = [
+            outline.resolve(text or "true").lower() not in ("false", "0")
+            for outline, text in ((old_outline, old), (new_outline, new))
+        ]
+        return _make_window_reason() if opens == [True, False] else None
     if entry.kind == SERVER_PARAMETER and setting == "value":
         name = PARAMETER + entry.name.replace("/", ".")
         return _find_parameter_reason(entry, name, old, new, old_outline, new_outline)
@@ -336,14 +346,21 @@ def find_setting_reason(
     return _find_parameter_reason(entry, setting, old, new, old_outline, new_outline)
 
 
-def _find_pause_reason(
+def _make_window_reason() -> Phrase:
+    return phrase("the window of Gazebo no longer opens")
+
+
+def _find_option_reason(
     old: str | None, new: str | None, old_outline: LaunchOutline, new_outline: LaunchOutline
 ) -> Phrase | None:
     """Return the reason why other options of Gazebo are breaking, or None if they are not."""
     before, after = old_outline.resolve(old or ""), new_outline.resolve(new or "")
-    if not _RUN_OPTION.search(before) or _RUN_OPTION.search(after) or _VARIABLE.search(after):
+    if _VARIABLE.search(after):
         return None
-    return phrase("the simulation starts paused")
+    if _RUN_OPTION.search(before) and not _RUN_OPTION.search(after):
+        return phrase("the simulation starts paused")
+    is_hidden = _SERVER_OPTION.search(after) and not _SERVER_OPTION.search(before)
+    return _make_window_reason() if is_hidden and not _VARIABLE.search(before) and old is not None else None
 
 
 def _find_parameter_reason(

@@ -29,6 +29,7 @@ from linkwright.review.parts.outline import MacroOutline, Outline, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.properties import compare_properties
 from linkwright.review.parts.readings import compare_readings
+from linkwright.review.parts.unused_parts import is_unused_part
 from linkwright.review.parts.written_contents import format_written_contents, summarize_macro
 from linkwright.review.unprefixed_calls import compare_prefixes
 from linkwright.review.versions import Version, Versions
@@ -135,7 +136,11 @@ class _Comparer:
         new = self._read_outline(self._versions.new, file.new_path)
         if not is_compared:
             graph = self._graphs.old if file.new_path is None else self._graphs.new
-            changes += _compare_whole_file(file, old, new, is_included=graph.is_included(file.path))
+            is_unused = file.new_path is None and is_unused_part(self._versions.old, file.path)
+            is_included = not is_unused and graph.is_included(file.path)
+            changes += _compare_whole_file(file, old, new, is_included=is_included)
+            if is_unused:
+                return Subject(SubjectKind.PART, file.path, file.old_path, None, list(map(_make_harmless, changes)))
             if isinstance(new, Outline) and file.old_path is None:
                 changes += self._report_added_file(file, new)
         if isinstance(old, Outline) and file.new_path is None and not is_compared:
@@ -154,7 +159,7 @@ class _Comparer:
             pair.defaults = self._graphs.new.find_defaults(file.new_path)
             self._compare(pair)
             if includes_malformed_file(self._versions.old, file.old_path, pair.old):
-                pair.changes = [replace(change, effect=Effect.CHANGED, reason=None) for change in pair.changes]
+                pair.changes = list(map(_make_harmless, pair.changes))
             changes += pair.changes
             versions = self._versions
             texts = versions.old.text(file.old_path), versions.new.text(file.new_path)
@@ -247,6 +252,10 @@ def _mark_calls(content: ComparedContent, macros: Collection[str]) -> ComparedCo
     """Return the contents of an element with the same tag for calls of all macros with the given names."""
     tag = CALL if content.tag.removeprefix(CALL) in macros else content.tag
     return content._replace(tag=tag, children=tuple(_mark_calls(child, macros) for child in content.children))
+
+
+def _make_harmless(change: Change) -> Change:
+    return replace(change, effect=Effect.CHANGED, reason=None)
 
 
 def _report_lost_macros(names: Sequence[str]) -> Iterator[Change]:

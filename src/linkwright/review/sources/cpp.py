@@ -55,6 +55,7 @@ from linkwright.review.sources.declared_groups import find_declared_groups
 from linkwright.review.sources.details import read_service_qos
 from linkwright.review.sources.enumerators import read_enumerations
 from linkwright.review.sources.hardware_interfaces import find_hardware_interfaces
+from linkwright.review.sources.helper_nodes import is_helper_node
 from linkwright.review.sources.interface_types import find_cpp_type
 from linkwright.review.sources.name_patterns import extract_pattern, find_format
 from linkwright.review.sources.names import HEADER_SUFFIXES, YES, Detail, NameKind, SourceName, SourceNames, Timer
@@ -141,7 +142,10 @@ class _Reader:
         for pattern, kind, index in ((_NODE, NameKind.NODE, 0), (_INIT, NameKind.NODE, 2)):
             for match in pattern.finditer(text):
                 self._names.makes_node = True
+                known = len(self._names.names)
                 self._add_argument(kind, match.end() - 1, index)
+                if is_helper_node(text, match.start()):
+                    self._names.helper_nodes.update(item.name for item in self._names.names[known:])
         for match in _BASE_CALL.finditer(text):
             if match["base"] in self._node_bases:
                 self._names.makes_node = True

@@ -225,6 +225,7 @@ class SourceNames:
         bases: the names of the base classes of each public class of a C++ source.
         is_program: whether the source is a program and not a library.
         makes_node: whether the source makes a node, even if the name of the node is computed.
+        helper_nodes: the names of the nodes of a C++ source that offer nothing; see `is_helper_node`.
         error_line: the line of the syntax error in a source that cannot be parsed; 0 for other sources.
         is_error_certain: whether it is a syntax error in all versions of Python.
         absolute_imports: the modules that an ``__init__.py`` imports by their full names, each with its location.
@@ -271,6 +272,7 @@ class SourceNames:
     bases: dict[str, list[str]] = field(default_factory=dict)
     is_program: bool = False
     makes_node: bool = False
+    helper_nodes: set[str] = field(default_factory=set)
     error_line: int = 0
     is_error_certain: bool = True
     absolute_imports: list[tuple[str, Span]] = field(default_factory=list)

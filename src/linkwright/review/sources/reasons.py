@@ -53,6 +53,8 @@ def find_removal_reason(
     kind = items[0].kind
     if kind is NameKind.PARAMETER:
         items = [item for item in items if not _belongs_to_other_node(item, names)]
+    if kind is NameKind.NODE:
+        items = [item for item in items if item.name not in names.helper_nodes]
     if not items or kind in _HARMLESS_KINDS or (kind is NameKind.NODE and _only_sends_requests(names)):
         return None
     item_names = [item.name for item in items]

@@ -1,4 +1,4 @@
-"""Find the variables of Python sources that get a parameter with another default instead of a literal."""
+"""Find the variables and calls of Python sources that get a parameter with another default instead of a literal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MAX_DEPTH = 6
 
 
 def find_replaced_literals(old_path: Path, new_path: Path) -> Iterator[tuple[Phrase, Span]]:
-    """Yield the variables that had a literal and get a parameter now, whose default has another value.
+    """Yield the variables and calls that had a literal and get a parameter now, whose default has another value.
 
     Args:
         old_path: the old source.
@@ -47,6 +47,56 @@ def find_replaced_literals(old_path: Path, new_path: Path) -> Iterator[tuple[Phr
                 ),
                 new.span(values[0]),
             )
+    yield from _find_replaced_arguments(old, new)
+
+
+def _find_replaced_arguments(old: PythonFile, new: PythonFile) -> Iterator[tuple[Phrase, Span]]:
+    """Yield the literal arguments of calls that a parameter replaces, such as ``sleep(get_param("/delay"))``.
+
+    The function must have one call of that name in each version, whose other arguments are equal.
+    """
+    old_calls, new_calls = _read_calls(old), _read_calls(new)
+    for key, calls in new_calls.items():
+        others = old_calls.get(key, [])
+        if len(calls) != 1 or len(others) != 1 or len(calls[0].args) != len(others[0].args):
+            continue
+        pairs = [
+            (before, after)
+            for before, after in zip(others[0].args, calls[0].args, strict=True)
+            if ast.dump(before) != ast.dump(after)
+        ]
+        read = _find_read(pairs[0][1]) if len(pairs) == 1 else None
+        name = None if read is None else new.text(get_name_argument(read))
+        if read is None or name is None or not _is_literal(pairs[0][0]):
+            continue
+        default = _find_default(new, read)
+        if default is None or ast.literal_eval(default) != ast.literal_eval(pairs[0][0]):
+            values = {"parameter": name, "old": ast.unparse(pairs[0][0]), "name": key[0].lstrip(".")}
+            text = phrase("parameter '{parameter}' replaces {old} in '{name}()'", **values)
+            if default is not None:
+                text = phrase(
+                    "parameter '{parameter}' replaces {old} in '{name}()': {default} by default",
+                    **values,
+                    default=ast.unparse(default),
+                )
+            yield text, new.span(pairs[0][1])
+
+
+def _read_calls(python: PythonFile) -> dict[tuple[str, str], list[ast.Call]]:
+    """Return the calls in each function, by its name and that of the called function."""
+    calls: dict[tuple[str, str], list[ast.Call]] = {}
+
+    def read(body: list[ast.stmt], scope: str) -> None:
+        for node in body:
+            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+                read(node.body, f"{scope}.{node.name}")
+                continue
+            for part in ast.walk(node):
+                if isinstance(part, ast.Call) and scope:
+                    calls.setdefault((scope, called_name(part)), []).append(part)
+
+    read(python.tree.body, "")
+    return calls
 
 
 def _read_assignments(python: PythonFile) -> dict[tuple[str, str], list[ast.expr]]:

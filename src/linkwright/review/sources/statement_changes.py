@@ -15,6 +15,7 @@ from linkwright.review.sources.changed_texts import find_text_changes
 from linkwright.review.sources.changed_values import find_value_changes
 from linkwright.review.sources.code import Code
 from linkwright.review.sources.code_changes import CodeChange, ReportedLines, find_added_code, find_code_change
+from linkwright.review.sources.deferred_imports import find_deferred_imports
 from linkwright.review.sources.deprecations import find_deprecations
 from linkwright.review.sources.frame_changes import find_frame_changes
 from linkwright.review.sources.lost_message_frames import find_lost_message_frames
@@ -76,7 +77,7 @@ def _compare_values(
         lines = [str(change.sentence) for change in reported]
         replaced = [*find_replaced_cpp_literals(*paths, new.get_names(file.new_path), lines)]
     else:
-        replaced = [*find_replaced_literals(*paths)]
+        replaced = [*find_replaced_literals(*paths), *find_deferred_imports(*paths)]
     sentences = [*(str(change.sentence) for change in reported), *(str(text) for text, _ in replaced)]
     for text, span in (*replaced, *find_value_changes(*paths, sentences)):
         reason = find_opposite_reason(text, new.get_names(file.new_path))

@@ -67,8 +67,8 @@ _PLAIN_NAME = re.compile(r"[\w/.-]{2,}")
 
 
 @dataclass(frozen=True)
-class _LostName:
-    """A frame or joint that the new version of a file no longer has.
+class RobotName:
+    """A frame or joint of a robot, such as one that the new version of a file no longer has.
 
     Args:
         name: the name.
@@ -100,7 +100,7 @@ def find_left_robot_names(versions: Versions, subjects: Sequence[Subject]) -> It
         subjects: the compared files, whose breaking changes tell what is lost.
     """
     lost = list(dict.fromkeys(_list_lost_names(subjects)))
-    files = _Files(versions.new)
+    files = RobotFiles(versions.new)
     lost = [item for item in lost if not files.may_define(item)] if lost else []
     for item in lost:
         found = {item.path}
@@ -110,7 +110,7 @@ def find_left_robot_names(versions: Versions, subjects: Sequence[Subject]) -> It
                 yield path, change
 
 
-def _list_lost_names(subjects: Sequence[Subject]) -> Iterator[_LostName]:
+def _list_lost_names(subjects: Sequence[Subject]) -> Iterator[RobotName]:
     """Yield the frames and moving joints that files lost with all argument sets."""
     templates = {
         frame_reason("").template: True,
@@ -127,7 +127,7 @@ def _list_lost_names(subjects: Sequence[Subject]) -> Iterator[_LostName]:
             for word in (*names, *_list_other_names(change)):
                 is_lost = _PLAIN_NAME.fullmatch(word) and word.strip("/") not in _COMMON_FRAMES
                 if is_lost and subject.kind is not SubjectKind.PART:
-                    yield _LostName(word.strip("/"), subject.path, templates[change.reason.template])
+                    yield RobotName(word.strip("/"), subject.path, templates[change.reason.template])
 
 
 def _list_other_names(change: Change) -> list[str]:
@@ -135,7 +135,7 @@ def _list_other_names(change: Change) -> list[str]:
     return [name.partition(" -> ")[0].strip("'") for name in change.other_names]
 
 
-class _Files:
+class RobotFiles:
     """The files of a version that may define or name frames and joints, without tests.
 
     Args:
@@ -151,7 +151,7 @@ class _Files:
         paths = self._version.paths((*suffixes, *LAUNCH_SUFFIXES))
         return {path: self._version.text(path) for path in paths if _is_searched(path)}
 
-    def may_define(self, lost: _LostName) -> bool:
+    def may_define(self, lost: RobotName) -> bool:
         """Return whether another file may define a lost frame or joint."""
         for path, text in self._texts.items():
             is_robot = path.endswith(_ROBOT_SUFFIXES)
@@ -173,12 +173,20 @@ class _Files:
                 return True
         return False
 
+    def may_make(self, name: str) -> bool:
+        """Return whether a macro of another repository gets a value with which a name begins; it may make the name."""
+        return any(name.startswith(value) for value in self._names_of_unknown_macros)
+
+    def is_in_robot(self, name: str) -> bool:
+        """Return whether a robot or world contains a name in any place."""
+        return any(name in text for path, text in self._texts.items() if path.endswith(_ROBOT_SUFFIXES))
+
     def _may_pass(self, values: Sequence[str]) -> bool:
         """Return whether the files contain all values of substitutions, of which some may be empty."""
         texts = [text for path, text in self._texts.items() if not path.endswith(_SETTINGS_SUFFIXES)]
         return all(any(f'"{value}"' in text or f"'{value}'" in text for text in texts) for value in values if value)
 
-    def find_users(self, lost: _LostName) -> Iterator[tuple[str, Change]]:
+    def find_users(self, lost: RobotName) -> Iterator[tuple[str, Change]]:
         """Yield the files that name a lost frame or joint, each with a change."""
         for path, text in self._texts.items():
             if lost.name not in text:
@@ -199,12 +207,12 @@ class _Files:
             elif path.endswith(_DESCRIPTION_SUFFIXES) and lost.is_frame:
                 yield from self._find_in_description(path, _XML_COMMENT.sub(_blank, text), lost)
 
-    def _find_in_description(self, path: str, text: str, lost: _LostName) -> Iterator[tuple[str, Change]]:
+    def _find_in_description(self, path: str, text: str, lost: RobotName) -> Iterator[tuple[str, Change]]:
         """Yield the changes about elements for a lost link, also under conditions that no compared robot fulfills.
 
         A file that calls a macro of another repository is not searched, because the macro may make the link.
         """
-        if self._calls_unknown_macro(text) or any(lost.name.startswith(name) for name in self._names_of_unknown_macros):
+        if self._calls_unknown_macro(text) or self.may_make(lost.name):
             return
         yield from _find_in_text(path, text, _ROBOT_LINK, lost, phrase("the link of the joint does not exist"))
         joint = replace(lost, is_frame=False)
@@ -228,13 +236,13 @@ class _Files:
             if _PLAIN_NAME.fullmatch(value)
         )
 
-    def _find_in_settings(self, path: str, text: str, lost: _LostName) -> Iterator[tuple[str, Change]]:
+    def _find_in_settings(self, path: str, text: str, lost: RobotName) -> Iterator[tuple[str, Change]]:
         pattern = _FRAME_KEY if lost.is_frame else _JOINT_KEY
         for key, line, column in _find_settings(text, lost.name):
             if pattern.fullmatch(key):
                 yield lost.make_change(path, line, column, _make_reason(lost))
 
-    def _find_in_launch_file(self, path: str, lost: _LostName) -> Iterator[tuple[str, Change]]:
+    def _find_in_launch_file(self, path: str, lost: RobotName) -> Iterator[tuple[str, Change]]:
         outline = try_read_outline(self._version, path) if lost.is_frame else None
         for entry in list_nodes(outline) if outline is not None else ():
             for name, value in entry.settings.items():
@@ -254,7 +262,7 @@ class _Files:
         )
 
 
-def _find_definitions(text: str, lost: _LostName) -> Iterator[tuple[str, ...]]:
+def _find_definitions(text: str, lost: RobotName) -> Iterator[tuple[str, ...]]:
     """Yield the values of substitutions with which a robot or world defines a name; none for a plain definition."""
     text = _XML_COMMENT.sub("", text)
     for match in _DEFINITIONS[lost.is_frame].finditer(text):
@@ -282,7 +290,7 @@ def _find_settings(text: str, name: str) -> Iterator[tuple[str, int, int]]:
 
 
 def _find_in_text(
-    path: str, text: str, pattern: re.Pattern[str], lost: _LostName, reason: Phrase | None = None
+    path: str, text: str, pattern: re.Pattern[str], lost: RobotName, reason: Phrase | None = None
 ) -> Iterator[tuple[str, Change]]:
     for match in pattern.finditer(text):
         if match["name"].strip("/") == lost.name:
@@ -291,7 +299,7 @@ def _find_in_text(
             yield lost.make_change(path, text.count("\n", 0, start) + 1, column, reason or _make_reason(lost))
 
 
-def _make_reason(lost: _LostName) -> Phrase:
+def _make_reason(lost: RobotName) -> Phrase:
     if lost.is_frame:
         return phrase("transforms of the frame '{name}' are not found", name=lost.name)
     return phrase("the joint '{name}' is not found", name=lost.name)

@@ -40,6 +40,7 @@ from linkwright.review.users.lost_units import find_lost_units
 from linkwright.review.users.missing_fields import find_missing_fields
 from linkwright.review.users.old_dependencies import find_old_dependencies
 from linkwright.review.users.package_lookups import find_new_lookups
+from linkwright.review.users.unknown_joints import find_unknown_joints
 from linkwright.review.users.unusable_programs import find_unusable_programs
 from linkwright.review.versions import Versions
 
@@ -71,4 +72,5 @@ SEARCHES: tuple[Search, ...] = (
     ),
     *(find_new_lookups, find_lost_states, find_lost_units, find_lost_scripts),
     *(find_unusable_programs, find_undeclared_plugins, find_left_remappings, find_ignored_packages),
+    find_unknown_joints,
 )
