@@ -17,7 +17,7 @@ from linkwright.review.sources.reading import read_source_names, try_read_source
 from linkwright.review.sources.undefined_names import find_bound_names
 
 _LITERALS = (ast.Tuple, ast.List, ast.Dict, ast.Set, ast.Constant, ast.JoinedStr, ast.ListComp, ast.DictComp)
-"""The expressions that are no functions."""
+"""The expressions that cannot be called."""
 _LIST_CLASSES = ("LaunchDescription", "GroupAction")
 """The classes whose first argument is a list of actions."""
 
