@@ -166,3 +166,27 @@ def test_known_arguments_contain_those_of_the_substitutes(package, capsys):
         known = find_known_arguments(f"$(find-pkg-share {package})/launch/{file.name}")
         assert known is not None
         assert known >= set(declared)
+
+
+PAL = """from launch import LaunchDescription
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_pal.include_utils import include_launch_py_description
+
+
+def generate_launch_description():
+    description = LaunchDescription()
+    {action}
+    return description
+"""
+PAL_ACTION = """hand = include_launch_py_description(
+        "hand_bringup", ["launch", "hand.launch.py"],
+        condition=IfCondition(LaunchConfiguration("hand", default="true")))
+    description.add_action(hand)"""
+
+
+def test_function_of_another_package_that_includes_a_file_is_an_include(repository, compare):
+    repository.commit({PATH: PAL.format(action="pass"), "arm/package.xml": PACKAGE_XML})
+    repository.write({PATH: PAL.format(action=PAL_ACTION)})
+    (text,) = [text for text in sentences(subject(compare(repository), PATH)) if "include" in text]
+    assert text.startswith("include of '$(find-pkg-share hand_bringup)/launch/hand.launch.py' added: if $(var hand")
