@@ -190,3 +190,27 @@ def test_function_of_another_package_that_includes_a_file_is_an_include(reposito
     repository.write({PATH: PAL.format(action=PAL_ACTION)})
     (text,) = [text for text in sentences(subject(compare(repository), PATH)) if "include" in text]
     assert text.startswith("include of '$(find-pkg-share hand_bringup)/launch/hand.launch.py' added: if $(var hand")
+
+
+MOVEIT = """from launch import LaunchDescription
+from launch.actions import OpaqueFunction
+from moveit_configs_utils import MoveItConfigsBuilder
+from moveit_configs_utils.launches import generate_move_group_launch
+
+
+def setup(context):
+    config = MoveItConfigsBuilder("arm").to_moveit_configs()
+    return [{action}]
+
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=setup)])
+"""
+
+
+def test_function_of_moveit_that_a_function_calls_is_an_action(repository, compare):
+    repository.commit({PATH: MOVEIT.format(action=""), "arm/package.xml": PACKAGE_XML})
+    repository.write({PATH: MOVEIT.format(action="generate_move_group_launch(config)")})
+    texts = [text for text in sentences(subject(compare(repository), PATH)) if "generate_move_group_launch" in text]
+    assert texts
+    assert texts[0].startswith("action 'generate_move_group_launch' added")
