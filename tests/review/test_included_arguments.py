@@ -214,3 +214,24 @@ def test_function_of_moveit_that_a_function_calls_is_an_action(repository, compa
     texts = [text for text in sentences(subject(compare(repository), PATH)) if "generate_move_group_launch" in text]
     assert texts
     assert texts[0].startswith("action 'generate_move_group_launch' added")
+
+
+BRIDGED = """<launch>
+{arguments}{include}</launch>
+"""
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_arguments_of_a_removed_include_are_one_line(repository, compare, count):
+    path, names = "arm/launch/arm.launch.xml", ["port", "address", "debug"][:count]
+    arguments = "".join(f'  <arg name="{name}" default="1"/>\n' for name in names)
+    passed = "".join(f'<arg name="{name}" value="$(var {name})"/>' for name in names)
+    include = f'  <include file="$(find-pkg-share bridge)/launch/a.launch.xml">{passed}</include>\n'
+    repository.commit({path: BRIDGED.format(arguments=arguments, include=include)})
+    repository.write({path: BRIDGED.format(arguments="", include="")})
+    found = [text for text in breaking(compare(repository)) if "argument" in text.split(",")[0]]
+    together = (
+        "arguments removed with include of '$(find-pkg-share bridge)/launch/a.launch.xml': 'port', 'address', 'debug'"
+    )
+    assert (found == [together]) is (count == 3)
+    assert len(found) == (1 if count == 3 else 2)
