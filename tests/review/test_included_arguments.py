@@ -166,3 +166,72 @@ def test_known_arguments_contain_those_of_the_substitutes(package, capsys):
         known = find_known_arguments(f"$(find-pkg-share {package})/launch/{file.name}")
         assert known is not None
         assert known >= set(declared)
+
+
+PAL = """from launch import LaunchDescription
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_pal.include_utils import include_launch_py_description
+
+
+def generate_launch_description():
+    description = LaunchDescription()
+    {action}
+    return description
+"""
+PAL_ACTION = """hand = include_launch_py_description(
+        "hand_bringup", ["launch", "hand.launch.py"],
+        condition=IfCondition(LaunchConfiguration("hand", default="true")))
+    description.add_action(hand)"""
+
+
+def test_function_of_another_package_that_includes_a_file_is_an_include(repository, compare):
+    repository.commit({PATH: PAL.format(action="pass"), "arm/package.xml": PACKAGE_XML})
+    repository.write({PATH: PAL.format(action=PAL_ACTION)})
+    (text,) = [text for text in sentences(subject(compare(repository), PATH)) if "include" in text]
+    assert text.startswith("include of '$(find-pkg-share hand_bringup)/launch/hand.launch.py' added: if $(var hand")
+
+
+MOVEIT = """from launch import LaunchDescription
+from launch.actions import OpaqueFunction
+from moveit_configs_utils import MoveItConfigsBuilder
+from moveit_configs_utils.launches import generate_move_group_launch
+
+
+def setup(context):
+    config = MoveItConfigsBuilder("arm").to_moveit_configs()
+    return [{action}]
+
+
+def generate_launch_description():
+    return LaunchDescription([OpaqueFunction(function=setup)])
+"""
+
+
+def test_function_of_moveit_that_a_function_calls_is_an_action(repository, compare):
+    repository.commit({PATH: MOVEIT.format(action=""), "arm/package.xml": PACKAGE_XML})
+    repository.write({PATH: MOVEIT.format(action="generate_move_group_launch(config)")})
+    texts = [text for text in sentences(subject(compare(repository), PATH)) if "generate_move_group_launch" in text]
+    assert texts
+    assert texts[0].startswith("action 'generate_move_group_launch' added")
+
+
+BRIDGED = """<launch>
+{arguments}{include}</launch>
+"""
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_arguments_of_a_removed_include_are_one_line(repository, compare, count):
+    path, names = "arm/launch/arm.launch.xml", ["port", "address", "debug"][:count]
+    arguments = "".join(f'  <arg name="{name}" default="1"/>\n' for name in names)
+    passed = "".join(f'<arg name="{name}" value="$(var {name})"/>' for name in names)
+    include = f'  <include file="$(find-pkg-share bridge)/launch/a.launch.xml">{passed}</include>\n'
+    repository.commit({path: BRIDGED.format(arguments=arguments, include=include)})
+    repository.write({path: BRIDGED.format(arguments="", include="")})
+    found = [text for text in breaking(compare(repository)) if "argument" in text.split(",")[0]]
+    together = (
+        "arguments removed with include of '$(find-pkg-share bridge)/launch/a.launch.xml': 'port', 'address', 'debug'"
+    )
+    assert (found == [together]) is (count == 3)
+    assert len(found) == (1 if count == 3 else 2)

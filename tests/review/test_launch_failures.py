@@ -195,6 +195,24 @@ def test_actions_that_are_not_defined_are_breaking(review_changes, new, expected
 
 
 @pytest.mark.parametrize(
+    ("arguments", "is_breaking"),
+    [
+        ("[('a', 'b') ('c', 'd')]", True),
+        ("[['a'] ['c', 'd']]", True),
+        ("['a' ('c')]", True),
+        ("[('a', 'b'), ('c', 'd')]", False),
+        ("[['a', 'c'][0]]", False),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::SyntaxWarning")
+def test_a_missing_comma_between_items_is_breaking(review_changes, arguments, is_breaking):
+    new = f'executable="driver", arguments={arguments}'
+    _, found = review_changes("arm.launch.py", ACTIONS, 'executable="driver"', new)
+    text = "a comma is missing: an item of a list is called or indexed by the next one"
+    assert found == ([text] if is_breaking else [])
+
+
+@pytest.mark.parametrize(
     ("test", "condition"),
     [
         ("kind.endswith('.json')", "not kind.endswith('.json')"),

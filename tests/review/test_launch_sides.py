@@ -69,6 +69,15 @@ def test_topics_of_well_known_programs_have_a_side(repository, compare, program,
     assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
 
 
+def test_robot_state_publisher_of_ros2_publishes_the_description(repository, compare):
+    remap = '<remap from="/robot_description" to="arm_description"/>'
+    text = f'<launch><node pkg="robot_state_publisher" exec="robot_state_publisher">{remap}</node></launch>'
+    repository.commit({"arm/launch/arm.launch.xml": text.replace(remap, "")})
+    repository.write({"arm/launch/arm.launch.xml": text})
+    (change,) = subject(compare(repository), "arm/launch/arm.launch.xml").changes
+    assert str(change.reason) == CERTAIN.format("/robot_description")
+
+
 @pytest.mark.parametrize(
     ("name", "reason"),
     [("/base/scan", None), ("/base/make_plan", None), ("/base/goal", CERTAIN), ("/base/other", None)],

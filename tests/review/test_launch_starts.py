@@ -363,3 +363,31 @@ def test_option_that_closes_the_window_of_gazebo_is_breaking(review_changes, old
       <arg name="gz_args" value="{old}"/></include></launch>"""
     _, lost = review_changes("arm.launch.xml", text, old, new)
     assert bool(lost) is is_breaking
+
+
+CLOCK = """<launch>
+  <arg name="use_sim_time" default="{default}"/>
+  <node pkg="arm" exec="driver"><param name="use_sim_time" value="$(var use_sim_time)"/></node>
+{more}</launch>
+"""
+CLOCK_REASON = "by default, timers of the nodes only run if a simulation or recording publishes '/clock'"
+
+
+@pytest.mark.parametrize(
+    ("path", "more", "includer", "is_breaking"),
+    [
+        ("arm/launch/robot.launch.xml", "", "", True),
+        ("arm/launch/simulation.launch.xml", "", "", False),
+        ("arm/launch/robot.launch.xml", '<include file="$(find-pkg-share ros_gz_sim)/launch/gz_sim.launch.py"/>', "",
+         False),
+        ("arm/launch/robot.launch.xml", '<executable cmd="ros2 bag play --clock log"/>', "", False),
+        ("arm/launch/robot.launch.xml", "", '<include file="$(find-pkg-share arm)/launch/robot.launch.xml"/>', False),
+    ],
+)  # fmt: skip
+def test_simulated_time_by_default_without_a_simulation(repository, compare, path, more, includer, is_breaking):
+    manifest = "<package><name>arm</name><version>1.0.0</version></package>\n"
+    others = {"arm/package.xml": manifest, "arm/launch/all.launch.xml": f"<launch>{includer}</launch>\n"}
+    repository.commit({path: CLOCK.format(default="false", more=more), **others})
+    repository.write({path: CLOCK.format(default="true", more=more)})
+    reasons = [str(change.reason) for _, change in compare(repository).breaking_changes]
+    assert reasons == ([CLOCK_REASON] if is_breaking else [])

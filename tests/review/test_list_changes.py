@@ -28,6 +28,11 @@ def test_lists_in_lists_are_compared_by_their_items():
     assert str(text) == "pairs: [x, y] added"
 
 
+def test_a_list_of_numbers_has_an_order():
+    text = change_text("map", "[0, 1, 2, 3, 4, 5]", "[5, 6, 4, 3, 2, 1]")
+    assert str(text) == "map [0, 1, 2, 3, 4, 5] -> [5, 6, 4, 3, 2, 1]"
+
+
 def test_long_text_of_words_has_the_replaced_added_and_removed_ones():
     words = [f"/camera/topic_{number}" for number in range(20)]
     new = ["/first", *words[:5], "/lidar/points", *words[6:12], *words[13:]]

@@ -171,3 +171,41 @@ def test_a_list_of_mappings_that_ros_2_cannot_read_is_not_missed(repository, com
     text, *others = sentences(subject(result, PATH))
     assert text.startswith("lists of mappings, which no parameter of ROS 2 can be, became mappings: arm.")
     assert (others, breaking(result)) == (expected, [])
+
+
+FILTER = """{name}:
+  ros__parameters:
+    frequency: {rate}
+    two_d_mode: true
+    use_control: {is_controlled}
+    map_frame: map
+    odom_frame: odom
+    base_link_frame: base_link
+    odom0: {odometry}
+"""
+MORE = """    imu0: imu
+    imu0_queue_size: 10
+    imu0_relative: false
+    odom0_queue_size: 10
+    odom0_relative: false
+    sensor_timeout: 0.1
+    process_noise_covariance: [{covariance}]
+"""
+
+
+def test_a_renamed_node_with_many_new_parameters_is_compared_value_by_value(repository, compare):
+    covariance = ", ".join("0.5" if index % 16 == 0 else "0.0" for index in range(225))
+    others = FILTER.format(name="ekf_map", rate=10.0, is_controlled="false", odometry="gps")
+    new = FILTER.format(name="ekf_odom", rate=10.0, is_controlled="false", odometry="wheels") + MORE + others
+    repository.commit(
+        {
+            "arm/package.xml": PACKAGE_XML,
+            PATH: FILTER.format(name="ekf_filter", rate=5.0, is_controlled="true", odometry="wheels"),
+        }
+    )
+    repository.write({PATH: new.replace("{covariance}", covariance)})
+    texts = sentences(subject(compare(repository), PATH))
+    assert "ekf_filter renamed to ekf_odom" in texts
+    assert "ekf_odom.ros__parameters.frequency 5.0 -> 10.0" in texts
+    diagonal = f"15 x 15, diagonal [{', '.join(['0.5'] * 15)}]"
+    assert [text for text in texts if text.endswith(f"process_noise_covariance {diagonal} added")]

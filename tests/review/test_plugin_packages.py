@@ -56,6 +56,10 @@ VOXELS = "nav2_costmap_2d::VoxelLayer"
         (LAYER, "nav2_costmap_2d/VoxelLayer", VOXELS, None),
         (LAYER, "nav2_costmap_2d/VoxelLayer", "nav2_costmap_2d/StaticLayer", None),
         (LAYER, "nav2_navfn_planner::NavfnPlanner", "nav2_navfn_planner/NavfnPlanner", None),
+        ("moveit_controller_manager: {}\n", "moveit_simple_controller_manager/MoveItSimpleControllerManager",
+         "controller_manager/MoveItSimpleControllerManager",
+         ("there is no plugin 'controller_manager/MoveItSimpleControllerManager', only "
+          "'moveit_simple_controller_manager/MoveItSimpleControllerManager'")),
         ("arm:\n  kinematics_solver: {}\n", "kdl_kinematics_plugin/KDLKinematicsPlugin",
          "kdl_kinematics_plugin/IKFastKinematics",
          ("there is no plugin 'kdl_kinematics_plugin/IKFastKinematics', "

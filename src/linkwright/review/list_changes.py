@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.review.excerpts import LONG_VALUE, differing_excerpts
 from linkwright.review.word_changes import compare_words
@@ -10,6 +12,7 @@ EMPTY = "''"
 """An empty value as users write it."""
 _LONG_LIST = 4
 """The maximum number of items of lists that are shown in full, unless they are too long."""
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _LONG_NAME = 120
 """The maximum number of characters of a list item that is shown in full."""
 
@@ -33,7 +36,8 @@ def change_text(name: Phrase | str, old: str, new: str) -> Phrase:
     added, removed = set(new_items) - set(old_items), set(old_items) - set(new_items)
     is_set = len(set(old_items)) == len(old_items) and len(set(new_items)) == len(new_items)
     is_short = min(len(old_items), len(new_items)) <= _LONG_LIST and not is_cut
-    if is_short or not is_set or not (added or removed):
+    has_order = are_lists and all(map(_NUMBER.fullmatch, (*old_items, *new_items)))
+    if is_short or has_order or not is_set or not (added or removed):
         return phrase("{parameter} {old} -> {new}", parameter=name, old=old, new=new)
     added_text = ", ".join(item for item in new_items if item in added)
     removed_text = ", ".join(item for item in old_items if item in removed)

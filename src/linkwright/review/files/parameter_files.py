@@ -47,6 +47,7 @@ from linkwright.review.files.renamed_values import join_renamed_values
 from linkwright.review.files.replaced_classes import join_replaced_classes
 from linkwright.review.files.unpublished_topics import find_unpublished_reason
 from linkwright.review.files.value_changes import ValueChange, merge_values
+from linkwright.review.files.value_vectors import shorten_covariance
 from linkwright.review.files.yaml_includes import resolve_includes
 from linkwright.review.files.yaml_lists import find_item_labels
 from linkwright.review.files.yaml_values import YamlType, YamlValue, collect_values, compose_yaml, read_yaml_text
@@ -275,11 +276,11 @@ def _format_value_pair(old: YamlValue, new: YamlValue) -> tuple[str, str]:
 def _list_values(part: str, values: Mapping[str, YamlValue]) -> tuple[str, ...]:
     """Return the value of a part that is a single value, or the names and values inside a part."""
     if part in values:
-        return (values[part].shown,)
+        return (shorten_covariance(part, values[part].shown),)
     names = {name: name.removeprefix(part).lstrip(".").removeprefix("ros__parameters.") for name in values}
     items = Counter(name[: end.end()] for name in values for end in _ITEM_END.finditer(name))
     return tuple(
-        value.shown if _is_label(name, value) else f"{names[name]} {value.shown}"
+        value.shown if _is_label(name, value) else f"{names[name]} {shorten_covariance(name, value.shown)}"
         for name, value in values.items()
         if not _is_label(name, value) or items[name.rpartition(".")[0]] == 1
     )
@@ -342,13 +343,14 @@ def _report_renamed(
     renamed = find_renamed_parts(old, new)
     rules, first_old, first_new = RenamingRules(old), index_parts(old), index_parts(new)
     groups: dict[Hashable, list[Change]] = {}
+    added_nodes = set(filter(None, map(find_node_name, new))) - set(filter(None, map(find_node_name, old)))
     for old_part, new_part in renamed.items():
         first_value = new[first_new[new_part]]
         text = phrase("{old} moved to {name}", old=old_part, name=new_part)
         if get_parent(old_part) == get_parent(new_part):
             text = phrase("{old} renamed to {name}", old=old_part, name=new_part)
         reason = moveit.find_renaming_reason(old_part)
-        if reason is None and not _follows_node(old_part, new_part, first_old[old_part], readers):
+        if reason is None and not _follows_node(old_part, first_old[old_part], added_nodes, readers):
             reason = rules.find_reason(old_part, new_part)
         effect = Effect.CHANGED if reason is None else Effect.BREAKING
         change = Change(text, effect, reason, Location(pair.new_path, first_value.line, first_value.column))
@@ -361,17 +363,18 @@ def _report_renamed(
     return rename_parts(old, renamed)
 
 
-def _follows_node(part: str, new_part: str, name: str, readers: KeyReaders) -> bool:
+def _follows_node(part: str, name: str, added_nodes: Collection[str], readers: KeyReaders) -> bool:
     """Return whether a renamed part is a node that the programs renamed, too.
 
     Args:
         part: the old path of the part.
-        new_part: its new path.
         name: the old path of its first value.
+        added_nodes: the nodes that only the new version of the file has.
         readers: the programs that may read the values.
     """
-    node, new_node = find_node_name(name), find_node_name(f"{new_part}{name.removeprefix(part)}")
-    return None not in (node, new_node) and node != new_node and readers.have_renamed_node(node or "", [new_node or ""])
+    node = find_node_name(name)
+    is_node = node is not None and part in (node, f"{node}.ros__parameters")
+    return is_node and readers.have_renamed_node(node or "", added_nodes)
 
 
 def _are_equal(name: str, old: YamlValue, new: YamlValue, has_types: bool) -> bool:

@@ -40,12 +40,19 @@ _NAMES_WITH_COLONS = frozenset(
     }
 )
 """Packages whose plugins pluginlib knows by the C++ name, such as ``nav2_costmap_2d::VoxelLayer``, and by no other."""
-_KINEMATICS = {
-    "kdl_kinematics_plugin": ("KDLKinematicsPlugin",),
-    "lma_kinematics_plugin": ("LMAKinematicsPlugin",),
-    "srv_kinematics_plugin": ("SrvKinematicsPlugin",),
+_MOVEIT_PLUGINS = {
+    "controller_manager": ("moveit_simple_controller_manager/MoveItSimpleControllerManager",),
+    "kdl_kinematics_plugin": ("kdl_kinematics_plugin/KDLKinematicsPlugin",),
+    "lma_kinematics_plugin": ("lma_kinematics_plugin/LMAKinematicsPlugin",),
+    "moveit_fake_controller_manager": ("moveit_fake_controller_manager/MoveItFakeControllerManager",),
+    "moveit_ros_control_interface": (
+        "moveit_ros_control_interface/Ros2ControlManager",
+        "moveit_ros_control_interface/Ros2ControlMultiManager",
+    ),
+    "moveit_simple_controller_manager": ("moveit_simple_controller_manager/MoveItSimpleControllerManager",),
+    "srv_kinematics_plugin": ("srv_kinematics_plugin/SrvKinematicsPlugin",),
 }
-"""The names of the plugins behind those of the packages of MoveIt."""
+"""The plugins for MoveIt of its packages, and of those that are mistaken for them."""
 _SLASH, _COLONS = "/", "::"
 
 
@@ -112,8 +119,8 @@ def find_unknown_class_reason(parameter: str, text: str) -> Phrase | None:
     known: tuple[str, ...] = ()
     if slash and package in _NAMES_WITH_COLONS:
         known = (f"{package}{_COLONS}{name}",)
-    elif slash and name not in _KINEMATICS.get(package, (name,)):
-        known = tuple(f"{package}{_SLASH}{other}" for other in _KINEMATICS[package])
+    elif slash and text not in _MOVEIT_PLUGINS.get(package, (text,)):
+        known = _MOVEIT_PLUGINS[package]
     if not known:
         return None
     return phrase("there is no plugin '{name}', only {others}", name=text, others=quoted_names(known))

@@ -30,6 +30,7 @@ _ITEM = re.compile(r"\[(old )?\d+\]$")
 """The end of the path of a list item without a name."""
 _NUMBER_OR_BOOLEAN = re.compile(r"[^=]*=([-+.,\s\d\[\]e]*|true|false)", re.IGNORECASE)
 """A name and a value that many parts can have in common, such as a limit."""
+_SECTION = ".ros__parameters."
 _Facts = Counter[str]
 """The names and values in a part, alone and together."""
 
@@ -163,11 +164,17 @@ def _match_similar(old: Mapping[str, _Facts], new: Mapping[str, _Facts]) -> dict
         if old[old_name].total() < _MIN_FACTS or count < max(max_shared[old_name], max_shared[new_name]):
             continue
         similarity = _compute_similarity(old[old_name], new[new_name])
-        if similarity >= _MIN_SIMILARITY:
+        if similarity >= _MIN_SIMILARITY or _has_parameters_of_node(old[old_name], new[new_name]):
             is_longer = old_name.startswith(new_name) or new_name.startswith(old_name)
             ranked.append(((count, is_longer, similarity), old_name, new_name))
     ranked.sort(key=lambda pair: pair[0], reverse=True)
     return dict(_select_unused_pairs(((old_name, new_name) for _, old_name, new_name in ranked), ()))
+
+
+def _has_parameters_of_node(old: _Facts, new: _Facts) -> bool:
+    """Return whether a node of ROS 2 has nearly all parameters of another one, whatever their values and its others."""
+    old_names, new_names = ({name for name in _get_names(facts) if name.startswith(_SECTION)} for facts in (old, new))
+    return len(old_names) >= _MIN_FACTS and len(old_names & new_names) >= _MIN_CONTAINED_SHARE * len(old_names)
 
 
 def _find_sole_owners(parts: Mapping[str, _Facts]) -> dict[str, str]:

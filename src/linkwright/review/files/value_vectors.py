@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -24,6 +25,7 @@ _STATE = (*_POSE, *(f"v{name}" for name in _POSE), "ax", "ay", "az")
 """The variables of the filters of robot_localization, in the order of their lists."""
 _FILTER_INPUT = re.compile(r"(?:odom|pose|twist|imu)\d+_config")
 _COVARIANCE = re.compile(r"\w*covariance\w*")
+_ZERO = re.compile(r"[-+]?0*\.?0*(?:[eE][-+]?\d+)?")
 _MAX_ITEMS = 8
 """The maximum number of changed items of a list that are shown by name."""
 
@@ -66,6 +68,17 @@ def describe_items(path: str, old: str, new: str) -> Phrase | None:
         return None
     texts = [f"{names[index]} {old_items[index]} -> {new_items[index]}" for index in changed]
     return phrase("{parameter}: {changes}", parameter=path, changes=joined(texts))
+
+
+def shorten_covariance(path: str, text: str) -> str:
+    """Return the diagonal of a covariance that is zero elsewhere, and any other value unchanged."""
+    items = list_items(text) if _COVARIANCE.fullmatch(path.rpartition(".")[2]) else []
+    size = math.isqrt(len(items))
+    diagonal = items[:: size + 1]
+    others = [item for index, item in enumerate(items) if index % (size + 1)]
+    if size < len(_POSE) or size**2 != len(items) or not all(map(_ZERO.fullmatch, others)):
+        return text
+    return f"{size} x {size}, diagonal [{', '.join(diagonal)}]"
 
 
 def _name_items(key: str, count: int) -> Sequence[str]:

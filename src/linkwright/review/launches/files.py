@@ -56,6 +56,7 @@ from linkwright.review.launches.outlines import (
 )
 from linkwright.review.launches.python_tests import report_object_tests
 from linkwright.review.launches.reading import read_outline
+from linkwright.review.launches.removed_together import RemovedArguments
 from linkwright.review.launches.renamed_code import rename_packages_in_code
 from linkwright.review.launches.renamed_programs import find_renamed_programs
 from linkwright.review.launches.renames import (
@@ -228,6 +229,7 @@ def _report_unpaired_entries(
             pair.add(text, pair.location(entry.span), reason)
         else:
             moved.setdefault((file, False), []).append(entry)
+    removed_arguments = RemovedArguments(removed, old_included.outline)
     for entry in removed:
         file = new_included.find_unmatched_file(entry, old_included)
         if file is not None:
@@ -286,7 +288,9 @@ def _report_unpaired_entries(
             reason = phrase("where the file is started without {file}, {reason}", file=file, reason=reason)
         if reason is not None and lacks_program(pair.versions.old, entry):
             text, reason = phrase("{change}; its package never had the program", change=text), None
-        _report_removed(pair, entry, text, reason, trees)
+        if file is not None or not removed_arguments.add(entry, reason):
+            _report_removed(pair, entry, text, reason, trees)
+    removed_arguments.report(pair)
     _report_moved(pair, moved)
 
 

@@ -29,7 +29,7 @@ _ARGUMENT = re.compile(r"\$\((?:var|arg) ")
 _PACKAGE_PATH = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<path>[^$]+)")
 _OWN_FOLDER = "$(dirname)/"
 _MOVABLE_KINDS = ("node", "include", "process", "argument")
-_STARTING_KINDS = ("node", "include", "process", "action")
+STARTING_KINDS = ("node", "include", "process", "action")
 MAX_INCLUDE_DEPTH = 3
 _MAX_INCLUDED_FILES = 30
 _MAX_BYTES = 1 << 20
@@ -141,6 +141,11 @@ class IncludedActions:
                 return (named[0], path) if len(named) == 1 and named[0].name != entry.name else None
         return None
 
+    @property
+    def included_outlines(self) -> list[LaunchOutline]:
+        """The outlines of the included files of the repository."""
+        return list(self._included.values())
+
     @cached_property
     def _included(self) -> dict[str, LaunchOutline]:
         """The outlines of the included files, by path."""
@@ -196,13 +201,13 @@ class IncludedActions:
         """Yield the shared programs that a launch file starts by default."""
         for entry in outline.entries:
             if (
-                entry.kind in _STARTING_KINDS
+                entry.kind in STARTING_KINDS
                 and evaluate_condition(outline.resolve(entry.settings.get(CONDITION, ""))) is False
             ):
                 continue
             if entry.kind == "include":
                 yield from self._find_action_programs(entry, outline, file, depth)
-            elif entry.kind in _STARTING_KINDS and not offers_nothing(entry):
+            elif entry.kind in STARTING_KINDS and not offers_nothing(entry):
                 yield entry.kind, outline.resolve(entry.name)
 
     def _find_action_programs(self, entry: Entry, outline: LaunchOutline, file: Path, depth: int) -> Iterator[Program]:

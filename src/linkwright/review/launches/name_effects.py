@@ -11,6 +11,8 @@ from linkwright.review.launches.outlines import REMAPPING, Entry, LaunchOutline
 from linkwright.review.launches.sides import Side, find_old_side, is_new_name
 from linkwright.review.launches.taken_names import is_taken_over
 
+_DESCRIPTION = ("robot_state_publisher/robot_state_publisher", "robot_description")
+"""A program and its topic, which is a parameter in ROS 1."""
 _NAME = re.compile(r"[~/\w]+")
 _LOOP_VARIABLE = re.compile(r"\$\(eval [a-z_]\w*\)")
 """The variable of a loop in a name, whose value is not empty."""
@@ -34,14 +36,18 @@ def find_node_remapping_reason(
     """Return the reason why a changed remapping of a node is breaking, or None if it is not."""
     if is_new_name(entry.name, source, old_outline.root, new_outline.root):
         return None
-    side = find_old_side(find_loaded_class(entry) or entry.name, source, old_outline.root, new_outline.root)
+    program = find_loaded_class(entry) or entry.name
+    side = find_old_side(program, source, old_outline.root, new_outline.root)
     if side in (Side.USES, Side.LACKS) or _are_remapped_elsewhere(f"{source} {old or ''}", new_outline):
         return None
     if old is not None and old_outline.resolve(old) in _find_remapping_targets(entry, new_outline):
         return None  # the new file gives the name to a different topic of the node
+    is_description = (program, source.lstrip("/")) == _DESCRIPTION and not new_outline.is_ros1
     if old is not None and is_taken_over(entry, old, old_outline, new_outline):
         return None
-    return find_remapping_reason(source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS)
+    return find_remapping_reason(
+        source, old, new, old_outline, new_outline, is_known=side is Side.OFFERS or is_description
+    )
 
 
 def find_remapping_reason(

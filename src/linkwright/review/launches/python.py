@@ -35,6 +35,8 @@ _NAMESPACE_CLASSES = ("PushRosNamespace", "PushROSNamespace", "PushNamespace")
 _ACTION_LISTS = ("LaunchDescription", "GroupAction", "TimerAction")
 """The objects whose first argument is a list of actions."""
 _GROUP_CLASS = "GroupAction"
+_LAUNCHES_MODULE = "moveit_configs_utils.launches"
+"""The module whose functions make launch descriptions, such as ``generate_move_group_launch``."""
 _EMPTY_SCOPE = Scope()
 _MAX_HELPER_DEPTH = 3
 _CallKey = tuple[int, tuple[int, ...]]
@@ -273,10 +275,11 @@ class _Reader:
         for statement in function.body:
             scope = scope.with_namespace(self._find_pushed_namespace(find_added_action(statement)))
             self.visit(statement, scope)
-            if function.name == LAUNCH_FUNCTION and isinstance(statement, ast.Return) and statement.value is not None:
-                action = self.python.resolved(statement.value)
-                if isinstance(action, ast.Call) and self.helpers.is_foreign(self.python, action):
-                    self._add_call(action, scope)
+            if isinstance(statement, ast.Return) and statement.value is not None:
+                for action in map(self.python.resolved, self._list_items(statement.value) or [statement.value]):
+                    is_action = function.name == LAUNCH_FUNCTION or self._makes_launch(action)
+                    if isinstance(action, ast.Call) and is_action and self.helpers.is_foreign(self.python, action):
+                        self._add_call(action, scope)
             if isinstance(statement, ast.If) and isinstance(statement.body[-1], ast.Return) and not statement.orelse:
                 holds = self.texts.evaluate_parameter(statement.test)
                 if holds:
@@ -284,6 +287,12 @@ class _Reader:
                 if holds is not None:
                     continue
                 scope = scope.with_condition(format_branches(statement.test)[1])  # the rest runs otherwise
+
+    def _makes_launch(self, action: ast.expr) -> bool:
+        """Return whether a function of a common package makes a launch description."""
+        name = called_name(action) if isinstance(action, ast.Call) else ""
+        sources = self.python.find_import_sources(name.partition(".")[0])
+        return any(module == _LAUNCHES_MODULE for module, _ in sources)
 
     def visit_function(self, function: ast.FunctionDef) -> None:
         """Find the actions of a function."""

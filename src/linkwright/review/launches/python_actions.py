@@ -21,7 +21,9 @@ _ARGUMENT_CLASSES = ("DeclareLaunchArgument", "DeclareBooleanLaunchArg")
 """The classes that declare arguments; the second is one of MoveIt."""
 _ENVIRONMENT_CLASSES = ("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable")
 _OTHER_ACTIONS = (*_ARGUMENT_CLASSES, "IncludeLaunchDescription", "SetLaunchConfiguration", "SetRemap", "SetParameter")
-ACTIONS = frozenset({*_NODE_CLASSES, *_PROCESS_CLASSES, *_ENVIRONMENT_CLASSES, *_OTHER_ACTIONS})
+_INCLUDING_FUNCTIONS = ("include_launch_py_description", "include_scoped_launch_py_description")
+"""The functions of launch_pal that include a launch file by its package and the parts of its path."""
+ACTIONS = frozenset({*_INCLUDING_FUNCTIONS, *_NODE_CLASSES, *_PROCESS_CLASSES, *_ENVIRONMENT_CLASSES, *_OTHER_ACTIONS})
 """The classes whose calls make actions."""
 _ALIASES = {f"node_{name}": name for name in ("executable", "plugin", "name", "namespace")}
 """The names of arguments of nodes before ROS 2 Foxy."""
@@ -91,6 +93,9 @@ class ActionReader:
         elif function == "IncludeLaunchDescription":
             kind, name = "include", text(call.args[0] if call.args else keywords.get("launch_description_source"))
             settings = self._read_passed_arguments(keywords.get("launch_arguments"))
+        elif function in _INCLUDING_FUNCTIONS:
+            kind, name = "include", self._format_included_path(call, keywords)
+            settings = self._read_passed_arguments(keywords.get("launch_arguments"))
         else:
             kind = "node"
             name = "/".join(text(keywords[key]) for key in ("package", "executable", "plugin") if key in keywords)
@@ -106,6 +111,14 @@ class ActionReader:
         if missing is not None:
             settings[MISSING_ARGUMENT] = missing
         return Entry(kind, name, scope.add_to_settings(kind, settings), self.python.span(call))
+
+    def _format_included_path(self, call: ast.Call, keywords: Mapping[str, ast.expr]) -> str:
+        """Return the path of a file that a function includes by its package and the parts of its path."""
+        named = (keywords[name] for name in ("pkg_name", "paths") if name in keywords)
+        package, parts = [*call.args, *named, None, None][:2]
+        resolved = None if parts is None else self.python.resolved(parts)
+        items = resolved.elts if isinstance(resolved, (ast.List, ast.Tuple)) else [resolved]
+        return "/".join([f"$(find-pkg-share {self.texts.text(package)})", *map(self.texts.text, items)])
 
     def _is_none(self, node: ast.expr) -> bool:
         """Return whether an expression is None, also by the default of a parameter of a function around it."""

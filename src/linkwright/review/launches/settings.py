@@ -17,7 +17,7 @@ from linkwright.review.launches.default_names import find_default_name
 from linkwright.review.launches.effects import explain_argument_removal, find_setting_reason
 from linkwright.review.launches.fixed_arguments import fix_value
 from linkwright.review.launches.include_trees import IncludeTree, find_same_parameter
-from linkwright.review.launches.included import IncludedActions, Program
+from linkwright.review.launches.included import STARTING_KINDS, IncludedActions, Program, find_including_files
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
 from linkwright.review.launches.lost_files import LostFiles
 from linkwright.review.launches.lost_values import explain_enabled_namespace, explain_lost_frames, make_frames_reason
@@ -34,6 +34,7 @@ from linkwright.review.launches.outlines import (
     LaunchOutline,
 )
 from linkwright.review.launches.renames import rename_in_text
+from linkwright.review.launches.simulated_hardware import find_clock_reason
 from linkwright.review.launches.static_transforms import SAME_TRANSFORM, compare_transforms
 from linkwright.review.launches.titles import format_distinct_title, format_title, join_phrases, join_titles
 from linkwright.review.launches.transforms import starts_robot_with_link
@@ -267,11 +268,20 @@ class SettingChanges:
                 return reason if self._included.count_started_programs(entry) else None
             return reason or self._find_passed_value_reason(entry, setting, old)
         if entry.kind == "argument" and setting == "default" and reason is None and old is not None:
+            reason = find_clock_reason(entry.name, old, new or "", self._list_names())
+            if reason is not None:
+                return None if any(find_including_files(self._pair.versions.new, self._pair.new_path)) else reason
             started = self._included.count_all_started_programs()
             stopped = self._included.count_all_started_programs({entry.name: old}) - started
             stopped &= self._old_included.count_all_started_programs() - started
             return _explain_stopped_programs(stopped) if stopped else None
         return reason
+
+    def _list_names(self) -> list[str]:
+        """Return the path of the launch file, and the names of its included files and programs."""
+        outlines = (self._new, *self._included.included_outlines)
+        started = [entry for outline in outlines for entry in outline.entries if entry.kind in STARTING_KINDS]
+        return [self._pair.new_path, *(f"{entry.name} {entry.settings.get('arguments', '')}" for entry in started)]
 
     def _keeps_names(self, old: Entry, new: Entry, setting: str) -> bool:
         """Return whether a changed setting leaves the full names as they were, because included files follow it."""

@@ -1,4 +1,7 @@
-"""Report undefined names in Python launch files, and built-in functions in the place of actions."""
+"""Report code with which a Python launch file fails: undefined names, and calls and indices of literals.
+
+A built-in function in the place of an action fails as well.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +16,14 @@ from linkwright.review.sources.names import PYTHON_SUFFIX
 from linkwright.review.sources.reading import read_source_names, try_read_source
 from linkwright.review.sources.undefined_names import find_bound_names
 
+_LITERALS = (ast.Tuple, ast.List, ast.Dict, ast.Set, ast.Constant, ast.JoinedStr, ast.ListComp, ast.DictComp)
+"""The expressions that cannot be called."""
 _LIST_CLASSES = ("LaunchDescription", "GroupAction")
 """The classes whose first argument is a list of actions."""
 
 
 def report_undefined_names(pair: FilePair) -> None:
-    """Report the undefined names and misplaced functions that only the new version of a launch file uses."""
+    """Report the undefined names, misplaced functions and called literals that only the new version has."""
     if pair.new_file.suffix != PYTHON_SUFFIX:
         return
     old, new = read_source_names(pair.old_file), read_source_names(pair.new_file)
@@ -26,6 +31,10 @@ def report_undefined_names(pair: FilePair) -> None:
         if name in old.bound_names:
             text = phrase("uses '{name}', which it no longer defines or imports", name=name)
             pair.add(text, pair.location(span), phrase("the code that uses the name fails"))
+    if not any(_find_called_literals(try_read_source(pair.old_file))):
+        for span in _find_called_literals(try_read_source(pair.new_file)):
+            text = phrase("a comma is missing: an item of a list is called or indexed by the next one")
+            pair.add(text, pair.location(span), phrase("the launch file fails"))
     known = {*old.bound_names, *(name for name, _ in _find_unbound_actions(try_read_source(pair.old_file)))}
     for name, span in _find_unbound_actions(try_read_source(pair.new_file)):
         if name in known:
@@ -44,10 +53,7 @@ def _find_unbound_actions(source: SourceText | None) -> Iterator[tuple[str, Span
 
     The lists are those that functions return, and those of descriptions.
     """
-    try:
-        python = None if source is None else PythonFile(source)
-    except (SyntaxError, ValueError):
-        return
+    python = _try_parse(source)
     if python is None:
         return
     bound_names = set(find_bound_names(python.tree))
@@ -60,3 +66,24 @@ def _find_unbound_actions(source: SourceText | None) -> Iterator[tuple[str, Span
         for item in actions.elts if isinstance(actions, ast.List) else ():
             if isinstance(item, ast.Name) and item.id not in bound_names:
                 yield item.id, python.span(item)
+
+
+def _find_called_literals(source: SourceText | None) -> Iterator[Span]:
+    """Yield the literals that a file calls, or lists and texts that it indexes by several values or a text."""
+    python = _try_parse(source)
+    if python is None:
+        return
+    for node in ast.walk(python.tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, _LITERALS):
+            yield python.span(node)
+        elif isinstance(node, ast.Subscript) and isinstance(node.value, (ast.Tuple, ast.List, ast.Constant)):
+            index = node.slice
+            if isinstance(index, ast.Tuple) or (isinstance(index, ast.Constant) and isinstance(index.value, str)):
+                yield python.span(node)
+
+
+def _try_parse(source: SourceText | None) -> PythonFile | None:
+    try:
+        return None if source is None else PythonFile(source)
+    except (SyntaxError, ValueError):
+        return None
