@@ -85,7 +85,8 @@ def test_alternatives_are_for_what_is_not_simulated():
 @pytest.mark.parametrize(
     ("library", "text"),
     [
-        ("libgazebo_ros_create_cliff_sensor.so", "sensor_msgs/Range"),
+        ("libgazebo_sonar_plugin.so", "sensor_msgs/Range"),
+        ("libgazebo_ros_create_docking_status.so", "libgazebo_ros_p3d.so"),
         ("libgazebo_ros_video.so", "the display Image of the page"),
         ("gz-sim-dvl-system", "libuuv_gazebo_ros_dvl_plugin.so"),
         ("gz-waves1-hydrodynamics-system", "libPolyhedraBuoyancyDrag.so"),

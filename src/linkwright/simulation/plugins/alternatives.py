@@ -86,8 +86,7 @@ _GROUPS = {
     ),
     _CONTACT_ALTERNATIVE: (
         "hsrb_gazebo_ros_bumper",
-        *("RobotFootContactPlugin", "contact_plugin", "gazebo_ros_contact", "gazebo_ros_create_bumper"),
-        "gazebo_ros_create_wheel_drop",
+        *("RobotFootContactPlugin", "contact_plugin", "gazebo_ros_contact"),
     ),
     _CONTROL_ALTERNATIVE: (
         *("gazebo_ros_controller_manager", "fetch_gazebo_plugin"),
@@ -96,15 +95,15 @@ _GROUPS = {
     ),
     _COUPLING_ALTERNATIVE: ("leo_gz_differential_plugin",),
     _DISTANCE_ALTERNATIVE: (
-        *("MrsGazeboCommonResources_RangefinderPlugin", "gazebo_ros_create_cliff_sensor", "gazebo_sonar_plugin"),
-        *("gazebo_ros_create_ir_intensity_sensor", "sonar"),
+        *("MrsGazeboCommonResources_RangefinderPlugin", "gazebo_sonar_plugin"),
+        "sonar",
     ),
     _DRIVE_ALTERNATIVE: ("husky_gazebo_plugins", "diffdrive_plugin_multi_wheel", "gazebo_ros_diffdrive_uos"),
     _FINGER_ALTERNATIVE: ("gazebo_underactuated_finger",),
     _FORCE_ALTERNATIVE: ("ForceTorquePlugin", "gazebo_ros_f3d"),
     _HIDING_ALTERNATIVE: ("ToggleVisualPlugin",),
     _IMU_ALTERNATIVE: (
-        *("gazebo_ros_create_imu", "realsense_gazebo_accel_sensor", "realsense_gazebo_gyro_sensor"),
+        *("realsense_gazebo_accel_sensor", "realsense_gazebo_gyro_sensor"),
         "xbot2_gz_imu_server",
     ),
     _LIDAR_ALTERNATIVE: (
@@ -134,7 +133,12 @@ _GROUPS = {
         "robotnik_gazebo_ground_truth_odom",
         *("rotors_gazebo_optical_flow_plugin", "gazebo_aruco_plugin"),
         *("PubTfPlugin", "gazebo_opticalflow_plugin", "gazebo_opticalFlow_plugin", "gazebo_opticalflow_mockup_plugin"),
-        *("gazebo_vision_plugin", "gazebo_ros_create_optical_mouse", "xbot2_gz_link_state_sensor"),
+        *(
+            "gazebo_vision_plugin",
+            "gazebo_ros_create_docking_status",
+            "gazebo_ros_create_ir_opcode",
+            "xbot2_gz_link_state_sensor",
+        ),
     ),
     _POSITION_ALTERNATIVE: (
         *("JointControlPlugin", "JointTrajectoryPlugin", "asv_sim2-sail-position-controller-system"),

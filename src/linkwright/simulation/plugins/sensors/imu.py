@@ -16,7 +16,7 @@ from linkwright.sdf.noise import Noise, NoiseXyz
 from linkwright.sdf.sensors import Imu
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameNameParameter, SingleTopicSensor
-from linkwright.simulation.sensors.imu import ImuSensor
+from linkwright.simulation.sensors.imu import ImuMeasurement, ImuSensor
 from linkwright.simulation.sensors.mount import Mount
 
 P = TypeVar("P")
@@ -45,10 +45,14 @@ class _ImuPlugin(SingleTopicSensor[P], Generic[P]):
             orientation=from_values(Quaternion, measurement.orientation),
             angular_velocity=from_values(Vector3, measurement.angular_velocity),
             angular_velocity_covariance=self.imu.angular_velocity_noise.covariance,
-            linear_acceleration=from_values(Vector3, measurement.linear_acceleration),
+            linear_acceleration=from_values(Vector3, self.acceleration(measurement)),
             linear_acceleration_covariance=self.imu.acceleration_noise.covariance,
         )
         self.output.publish(message)
+
+    def acceleration(self, measurement: ImuMeasurement) -> single.Vector3:
+        """Return the acceleration to publish in m/s2, in the axes of the sensor; by default, it contains gravity."""
+        return measurement.linear_acceleration
 
 
 @dataclass(frozen=True, kw_only=True)
