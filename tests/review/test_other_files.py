@@ -45,7 +45,7 @@ XML_LAUNCH = """<launch>
     ("old", "new", "sentence", "is_breaking"),
     [
         ("RATE = 10", "RATE = 20", "node 'arm/driver': parameter rate 10 -> 20", False),
-        ('"false"', '"true"', "argument 'use_sim_time': default false -> true", False),
+        ('"false"', '"true"', "argument 'use_sim_time': default false -> true", True),
         ('        DeclareLaunchArgument("model"),\n', "", "argument 'model' removed; the file did not use it", False),
         ('"use_sim_time", default_value="false"', '"use_sim_time"',
          "argument 'use_sim_time': default false removed", True),
