@@ -31,6 +31,7 @@ export const values: typeof english = {
   "Keep All": "全部保留",
   "Keep Last": "保留最新",
   Label: "按标签着色",
+  Likelihood: "按置信度着色",
   Lines: "细线",
   "Links in Alphabetic Order": "连杆，按字母顺序",
   Local: "自身坐标系",
