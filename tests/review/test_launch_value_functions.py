@@ -106,7 +106,7 @@ ament_package()
 
 def test_include_of_a_missing_file_that_a_function_chooses_is_breaking(repository, compare):
     action = "IncludeLaunchDescription(source('arm', 'a.launch.py'))"
-    included = {"arm/launch/a.launch.py": LAUNCH.replace("ACTION", "Node(package='arm', executable='n')")}
+    included = {"arm/launch/a.launch.py": LAUNCH.replace("ACTION", "Node(package='hand', executable='n')")}
     files = {**FILES, **included, "arm/CMakeLists.txt": INSTALLING, PATH: LAUNCH.replace("ACTION", action)}
     repository.commit(files)
     text = files[PATH].replace("helper import", "helper import other_source,").replace("(source", "(other_source")
