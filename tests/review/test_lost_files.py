@@ -151,3 +151,26 @@ def test_a_removed_launch_file_is_one_line_whatever_its_name(repository, compare
     repository.commit({**files, f"a/launch/{name}": launch})
     repository.commit({f"a/launch/{name}": None})
     assert breaking(compare(repository, "HEAD~1..HEAD")) == ["launch file removed"]
+
+
+@pytest.mark.parametrize("is_installed", [False, True])
+def test_a_file_that_replaces_an_uninstalled_one_is_no_new_fault(repository, compare, is_installed):
+    folder = "maps" if is_installed else ""
+    build = f"""project(arm)
+find_package(ament_cmake REQUIRED)
+install(DIRECTORY launch {folder} DESTINATION share/${{PROJECT_NAME}})
+ament_package()
+"""
+    manifest = PACKAGE_XML.replace("arm_description", "arm")
+    text = '<launch><arg name="map" default="$(find-pkg-share arm)/maps/{}.yaml"/></launch>'
+    path = "arm/launch/arm.launch.xml"
+    files = {
+        "arm/package.xml": manifest,
+        "arm/CMakeLists.txt": build,
+        "arm/maps/flat.yaml": "a: 1",
+        "arm/maps/room.yaml": "b: 2",
+    }
+    repository.commit({**files, path: text.format("flat")})
+    new = build.replace(" maps ", " ")
+    repository.write({path: text.format("room"), "arm/CMakeLists.txt": new})
+    assert ("names 'maps/room.yaml' of 'arm', which is not installed" in breaking(compare(repository))) == is_installed
