@@ -166,3 +166,22 @@ def test_known_arguments_contain_those_of_the_substitutes(package, capsys):
         known = find_known_arguments(f"$(find-pkg-share {package})/launch/{file.name}")
         assert known is not None
         assert known >= set(declared)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "attribute", "is_lost"), [("", "", True), ("", 'pass_all_args="true"', False), (".xml", "", False)]
+)
+def test_an_argument_that_moves_to_an_included_file_fails_for_callers_of_ros_1(
+    repository, compare, suffix, attribute, is_lost
+):
+    find, package, kind = ("find-pkg-share", "pkg", "exec") if suffix else ("find", "pkg", "type")
+    argument = '<arg name="match" default="true"/>'
+    node = (
+        f'<node {package}="match" {kind}="match" name="match" args="{"$(var match)" if suffix else "$(arg match)"}"/>'
+    )
+    path, included = f"arm/launch/arm.launch{suffix}", f"arm/launch/lidar.launch{suffix}"
+    include = f'<include file="$({find} arm)/launch/lidar.launch{suffix}" {attribute}/>'
+    manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    repository.commit({**manifest, path: f"<launch>{argument}{include}{node}</launch>", included: "<launch/>"})
+    repository.write({path: f"<launch>{include}</launch>", included: f"<launch>{argument}{node}</launch>"})
+    assert (f"argument 'match' moved to {included}" in breaking(compare(repository))) == is_lost

@@ -23,7 +23,7 @@ from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.bridged_topics import explain_lost_topics
 from linkwright.review.launches.builders import separate_builders
-from linkwright.review.launches.effects import find_removal_reason, is_made_by_default
+from linkwright.review.launches.effects import explain_argument_removal, find_removal_reason, is_made_by_default
 from linkwright.review.launches.environment_readers import find_reader, reads_variable
 from linkwright.review.launches.failing_files import find_failure, report_repair
 from linkwright.review.launches.file_choices import FileChoices
@@ -48,6 +48,7 @@ from linkwright.review.launches.object_texts import report_object_texts
 from linkwright.review.launches.other_code import drop_common_parts, outside
 from linkwright.review.launches.outlines import (
     FAILURES,
+    PASSES_ALL_ARGUMENTS,
     READING,
     SERVER_PARAMETER,
     CodePart,
@@ -241,7 +242,12 @@ def _report_unpaired_entries(
     for entry in removed:
         file = new_included.find_unmatched_file(entry, old_included)
         if file is not None:
-            moved.setdefault((file, True), []).append(entry)
+            if _loses_callers(entry, new_included.outline):
+                text = phrase("{entry} moved to {file}", entry=format_title(entry), file=file)
+                reason = explain_argument_removal(entry.name, is_ros1=True)
+                pair.add(text, pair.location(entry.span, is_old=True), reason)
+            else:
+                moved.setdefault((file, True), []).append(entry)
             continue
         written = rename_in_entry(entry, old_names)
         text, location = format_removed_entry(written), pair.location(entry.span, is_old=True)
@@ -300,6 +306,15 @@ def _report_unpaired_entries(
             text, reason = phrase("{change}; its package does not have the file", change=text), None
         _report_removed(pair, entry, text, reason, trees)
     _report_moved(pair, moved)
+
+
+def _loses_callers(entry: Entry, new: LaunchOutline) -> bool:
+    """Return whether an argument of ROS 1 moved to an included file to which the file does not pass the callers' value.
+
+    In ROS 2, an included file gets the value from the callers of the including file.
+    """
+    passes_all = any(PASSES_ALL_ARGUMENTS in other.settings for other in new.entries if other.kind == "include")
+    return new.is_ros1 and entry.kind == "argument" and "value" not in entry.settings and not passes_all
 
 
 def _report_removed(
