@@ -171,14 +171,10 @@ def test_known_arguments_contain_those_of_the_substitutes(package, capsys):
 @pytest.mark.parametrize(
     ("suffix", "attribute", "is_lost"), [("", "", True), ("", 'pass_all_args="true"', False), (".xml", "", False)]
 )
-def test_an_argument_that_moves_to_an_included_file_fails_for_callers_of_ros_1(
-    repository, compare, suffix, attribute, is_lost
-):
-    find, package, kind = ("find-pkg-share", "pkg", "exec") if suffix else ("find", "pkg", "type")
+def test_an_argument_moves_to_an_included_file(repository, compare, suffix, attribute, is_lost):
+    find, kind, value = ("find-pkg-share", "exec", "$(var match)") if suffix else ("find", "type", "$(arg match)")
     argument = '<arg name="match" default="true"/>'
-    node = (
-        f'<node {package}="match" {kind}="match" name="match" args="{"$(var match)" if suffix else "$(arg match)"}"/>'
-    )
+    node = f'<node pkg="match" {kind}="match" name="match" args="{value}"/>'
     path, included = f"arm/launch/arm.launch{suffix}", f"arm/launch/lidar.launch{suffix}"
     include = f'<include file="$({find} arm)/launch/lidar.launch{suffix}" {attribute}/>'
     manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
