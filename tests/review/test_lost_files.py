@@ -174,3 +174,21 @@ ament_package()
     new = build.replace(" maps ", " ")
     repository.write({path: text.format("room"), "arm/CMakeLists.txt": new})
     assert ("names 'maps/room.yaml' of 'arm', which is not installed" in breaking(compare(repository))) == is_installed
+
+
+@pytest.mark.parametrize("folders", ["robots", "robots pairs", ""])
+def test_a_description_of_another_package_that_is_not_installed_is_told(repository, compare, folders):
+    install = "install(DIRECTORY ${dir}/ DESTINATION share/${PROJECT_NAME}/${dir})"
+    lines = f"foreach(dir {folders})\n{install}\nendforeach()\n"
+    # DROP(DIRECTORY ${{dir}}/ DESTINATION share/${{PROJECT_NAME}}/${{dir}})\nendforeach()\n"
+    build = "project({})\nfind_package(catkin REQUIRED)\ncatkin_package()\n"
+    launch_build = build.format("driver") + "install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})\n"
+    manifests = {f"{name}/package.xml": PACKAGE_XML.replace("arm_description", name) for name in ("arm", "driver")}
+    files = {"arm/robots/one.xacro": "<robot name='a'/>", "arm/pairs/two.xacro": "<robot name='b'/>"}
+    builds = {"arm/CMakeLists.txt": build.format("arm") + lines, "driver/CMakeLists.txt": launch_build}
+    text = '<launch><param name="robot_description" command="xacro $(find arm)/{} a:=1"/></launch>'
+    path = "driver/launch/arm.launch"
+    repository.commit({**manifests, **files, **builds, path: text.format("robots/one.xacro")})
+    repository.write({path: text.format("pairs/two.xacro")})
+    told = "names 'pairs/two.xacro' of 'arm', which is not installed"
+    assert (told in breaking(compare(repository))) == (folders == "robots")

@@ -55,6 +55,8 @@ _SPAWNER = re.compile(
     rf"controller_manager/(?:{_SPAWNER_PROGRAM}|'{_SPAWNER_PROGRAM}' if .+ else '{_SPAWNER_PROGRAM}')", re.DOTALL
 )
 """The programs that start and stop controllers, also one of two, such as those of different versions of ROS."""
+_MANAGER, _SPAWN_COMMAND = "controller_manager/controller_manager", "spawn "
+"""The program of ROS 1 that starts controllers with this command."""
 _CHOSEN_OPTION = "'-"
 """The start of an expression that chooses one of two options."""
 
@@ -128,7 +130,9 @@ def find_served_names(entry: Entry) -> list[str]:
     The list is empty if they are unknown.
     """
     text = entry.settings.get("arguments", "")
-    is_spawner = _SPAWNER.fullmatch(entry.name) is not None
+    is_manager = entry.name == _MANAGER and text.startswith(_SPAWN_COMMAND)
+    text = text.removeprefix(_SPAWN_COMMAND) if is_manager else text
+    is_spawner = is_manager or _SPAWNER.fullmatch(entry.name) is not None
     split = nested_list_items if is_spawner else list_items
     words = split(text) if text.startswith("[") else text.split()
     if is_spawner and text.startswith("[") and any(word.startswith(("[", "{")) for word in words):

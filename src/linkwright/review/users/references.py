@@ -137,7 +137,7 @@ def _explain_missing(version: Version, path: str, package: str, subpath: str, sp
 
 
 def _is_left_out(version: Version, owner: RepositoryPackage, path: str, subpath: str) -> bool:
-    """Return whether a build file installs a launch file of its package, but not another file that exists."""
+    """Return whether build files install a launch file, but not a file that exists and that it names."""
     facts = owner.facts
     file = PurePosixPath(owner.folder) / subpath
     if facts is None or not version.file(file.as_posix()).is_file():
@@ -145,8 +145,19 @@ def _is_left_out(version: Version, owner: RepositoryPackage, path: str, subpath:
     words = set(_WORD.findall(_COMMENT.sub("", owner.build_text)))
     if not facts.is_complete and words.intersection(PurePosixPath(subpath).parts):
         return False  # a command whose effect is unknown may install it
-    sources = {(PurePosixPath(owner.folder) / source).as_posix() for source in facts.files.values()}
-    return path in sources and file.as_posix() not in sources and f"share/{facts.project}/{subpath}" not in facts.files
+    folder = version.package_of(path)
+    user = next((package for package in find_packages(version).values() if package.folder == folder), None)
+    is_installed = user is not None and path in _list_installed(user)
+    target = f"share/{facts.project}/{subpath}"
+    return (
+        is_installed and bool(facts.files) and not ({file.as_posix(), target} & {*_list_installed(owner), *facts.files})
+    )
+
+
+def _list_installed(package: RepositoryPackage) -> set[str]:
+    """Return the paths of the files that a package installs, relative to the root."""
+    files = () if package.facts is None else package.facts.files.values()
+    return {(PurePosixPath(package.folder) / source).as_posix() for source in files}
 
 
 def _is_missing(version: Version, package: str, subpath: str) -> bool:
