@@ -456,3 +456,19 @@ def setup():
     {function}(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': '"a b"'}})
 """
     assert certain_values(find_argument_sets(workspace, "arm/launch/quoted.launch.py", text)) == [{"prefix": prefix}]
+
+
+@pytest.mark.parametrize(
+    "condition", ["$(eval arg('arm') == '{}')", "$(eval arm == '{}')", "$(eval '$(var arm)' == '{}')"]
+)
+@pytest.mark.parametrize("default", ["arm", "hand"])
+def test_the_argument_that_chooses_the_file_decides_conditional_defaults(workspace, condition, default):
+    (workspace / "arm/urdf/hand.urdf.xacro").write_text(ROBOT)
+    text = f"""<launch>
+      <arg name="arm" default="{default}"/>
+      <arg name="dof" default="7" if="{condition.format("hand")}"/>
+      <arg name="dof" default="6" if="{condition.format("arm")}"/>
+      <param name="a" command="xacro $(find arm)/urdf/$(arg arm).urdf.xacro dof:=$(arg dof)"/>
+      <param name="b" command="xacro $(find arm)/urdf/$(arg arm)_$(arg gripper).urdf.xacro dof:=$(arg dof) wide:=1"/>
+    </launch>"""
+    assert [found.values for found in find_argument_sets(workspace, "user/launch/arm.launch", text)] == [{"dof": "6"}]

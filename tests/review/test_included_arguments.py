@@ -235,3 +235,18 @@ def test_arguments_of_a_removed_include_are_one_line(repository, compare, count)
     )
     assert (found == [together]) is (count == 3)
     assert len(found) == (1 if count == 3 else 2)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "attribute", "is_lost"), [("", "", True), ("", 'pass_all_args="true"', False), (".xml", "", False)]
+)
+def test_an_argument_moves_to_an_included_file(repository, compare, suffix, attribute, is_lost):
+    find, kind, value = ("find-pkg-share", "exec", "$(var match)") if suffix else ("find", "type", "$(arg match)")
+    argument = '<arg name="match" default="true"/>'
+    node = f'<node pkg="match" {kind}="match" name="match" args="{value}"/>'
+    path, included = f"arm/launch/arm.launch{suffix}", f"arm/launch/lidar.launch{suffix}"
+    include = f'<include file="$({find} arm)/launch/lidar.launch{suffix}" {attribute}/>'
+    manifest = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm")}
+    repository.commit({**manifest, path: f"<launch>{argument}{include}{node}</launch>", included: "<launch/>"})
+    repository.write({path: f"<launch>{include}</launch>", included: f"<launch>{argument}{node}</launch>"})
+    assert (f"argument 'match' moved to {included}" in breaking(compare(repository))) == is_lost

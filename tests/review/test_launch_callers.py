@@ -274,7 +274,14 @@ def test_delay_of_a_timer_is_compared(review_changes):
 
 
 def test_same_notations_in_python_and_xml(repository, compare):
-    python = """def generate_launch_description():
+    python = """from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import *
+from launch.substitutions import *
+from launch_ros.actions import *
+
+
+def generate_launch_description():
     share = get_package_share_directory("arm")
     return LaunchDescription([
         DeclareLaunchArgument("model", default_value=[share, "/arm.urdf"]),

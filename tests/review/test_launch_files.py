@@ -575,5 +575,6 @@ def test_node_whose_package_program_and_name_change_is_replaced(review_changes):
 def test_name_of_a_component_that_its_class_may_have_is_not_breaking(review_changes, name, is_breaking):
     node = 'ComposableNode(package="cam", plugin="cam::Detection2DOverlay")'
     text = PYTHON.replace("    return LaunchDescription([", f"    return LaunchDescription([\n        {node},")
+    text = f"from launch_ros.descriptions import ComposableNode\n{text}"
     _, found_breaking = review_changes("arm.launch.py", text, 'Overlay")', f'Overlay", name="{name}")')
     assert bool(found_breaking) is is_breaking

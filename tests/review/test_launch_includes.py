@@ -271,3 +271,20 @@ def test_a_node_of_an_added_include_with_the_same_name_replaces_the_node(reposit
     found = sentences(subject(compare(repository), "arm/launch/arm.launch.xml"))
     line = "node 'joy/game_pad' replaced by node 'joy/joy_node' in arm/launch/joy.launch.xml"
     assert (line in found) is is_replaced
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_an_include_of_another_file_of_a_package_under_another_condition_replaces_the_old_one(review_changes, count):
+    text = """<launch>
+      <arg name="plan" default="true"/>
+      <include file="$(find-pkg-share other)/launch/move_group.launch" if="$(var plan)">
+        <arg name="debug" value="true"/><arg name="hand" value="left"/><arg name="info" value="true"/>
+      </include>
+    </launch>"""
+    include = text[text.index("<include") : text.index("</include>") + len("</include>")]
+    new = include.replace(' if="$(var plan)"', "").replace("move_group", "demo").replace('"info"', '"fake"')
+    more = "\n".join(new.replace("demo", name) for name in ("demo", "test")[:count])
+    changes, _ = review_changes("arm.launch.xml", text, include, more)
+    replaced = [change for change in changes if "replaced by" in change]
+    assert len(replaced) == (count == 1)
+    assert any(change.endswith("condition if $(var plan) removed") for change in changes) == (count == 1)

@@ -106,7 +106,7 @@ ament_package()
 
 def test_include_of_a_missing_file_that_a_function_chooses_is_breaking(repository, compare):
     action = "IncludeLaunchDescription(source('arm', 'a.launch.py'))"
-    included = {"arm/launch/a.launch.py": LAUNCH.replace("ACTION", "Node(package='arm', executable='n')")}
+    included = {"arm/launch/a.launch.py": LAUNCH.replace("ACTION", "Node(package='hand', executable='n')")}
     files = {**FILES, **included, "arm/CMakeLists.txt": INSTALLING, PATH: LAUNCH.replace("ACTION", action)}
     repository.commit(files)
     text = files[PATH].replace("helper import", "helper import other_source,").replace("(source", "(other_source")
@@ -115,3 +115,15 @@ def test_include_of_a_missing_file_that_a_function_chooses_is_breaking(repositor
     repository.write({PATH: text, "arm/arm/helper.py": HELPER + "\n\n" + other.partition("\n\n\n")[0] + "\n"})
     found = f"include of '{FOUND}launch/a.launch.py' replaced by include of '{FOUND}config/a.launch.py'"
     assert breaking(compare(repository)) == [found]
+
+
+def test_a_name_from_an_unpacked_result_is_shown_and_may_be_the_old_one(repository, compare):
+    text = LAUNCH.replace("ACTION", "Node(package='hand', executable='n', namespace=NAMESPACE)")
+    text = text.replace("    motor =", "    name, prefix = load(config_file('arm'), {})\n    motor =")
+    repository.commit({**FILES, PATH: text.replace("NAMESPACE", "'left'")})
+    repository.write({PATH: text.replace("NAMESPACE", "name")})
+    result = compare(repository)
+    assert breaking(result) == []
+    assert sentences(subject(result, PATH)) == [
+        f"node 'hand/n': namespace left -> load({FOUND}config/arm.yaml, {{}})[0]"
+    ]

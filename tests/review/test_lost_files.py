@@ -151,3 +151,44 @@ def test_a_removed_launch_file_is_one_line_whatever_its_name(repository, compare
     repository.commit({**files, f"a/launch/{name}": launch})
     repository.commit({f"a/launch/{name}": None})
     assert breaking(compare(repository, "HEAD~1..HEAD")) == ["launch file removed"]
+
+
+@pytest.mark.parametrize("is_installed", [False, True])
+def test_a_file_that_replaces_an_uninstalled_one_is_no_new_fault(repository, compare, is_installed):
+    folder = "maps" if is_installed else ""
+    build = f"""project(arm)
+find_package(ament_cmake REQUIRED)
+install(DIRECTORY launch {folder} DESTINATION share/${{PROJECT_NAME}})
+ament_package()
+"""
+    manifest = PACKAGE_XML.replace("arm_description", "arm")
+    text = '<launch><arg name="map" default="$(find-pkg-share arm)/maps/{}.yaml"/></launch>'
+    path = "arm/launch/arm.launch.xml"
+    files = {
+        "arm/package.xml": manifest,
+        "arm/CMakeLists.txt": build,
+        "arm/maps/flat.yaml": "a: 1",
+        "arm/maps/room.yaml": "b: 2",
+    }
+    repository.commit({**files, path: text.format("flat")})
+    new = build.replace(" maps ", " ")
+    repository.write({path: text.format("room"), "arm/CMakeLists.txt": new})
+    assert ("names 'maps/room.yaml' of 'arm', which is not installed" in breaking(compare(repository))) == is_installed
+
+
+@pytest.mark.parametrize("folders", ["robots", "robots pairs", ""])
+def test_a_description_of_another_package_that_is_not_installed_is_told(repository, compare, folders):
+    install = "install(DIRECTORY ${dir}/ DESTINATION share/${PROJECT_NAME}/${dir})"
+    lines = f"foreach(dir {folders})\n{install}\nendforeach()\n"
+    # DROP(DIRECTORY ${{dir}}/ DESTINATION share/${{PROJECT_NAME}}/${{dir}})\nendforeach()\n"
+    build = "project({})\nfind_package(catkin REQUIRED)\ncatkin_package()\n"
+    launch_build = build.format("driver") + "install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})\n"
+    manifests = {f"{name}/package.xml": PACKAGE_XML.replace("arm_description", name) for name in ("arm", "driver")}
+    files = {"arm/robots/one.xacro": "<robot name='a'/>", "arm/pairs/two.xacro": "<robot name='b'/>"}
+    builds = {"arm/CMakeLists.txt": build.format("arm") + lines, "driver/CMakeLists.txt": launch_build}
+    text = '<launch><param name="robot_description" command="xacro $(find arm)/{} a:=1"/></launch>'
+    path = "driver/launch/arm.launch"
+    repository.commit({**manifests, **files, **builds, path: text.format("robots/one.xacro")})
+    repository.write({path: text.format("pairs/two.xacro")})
+    told = "names 'pairs/two.xacro' of 'arm', which is not installed"
+    assert (told in breaking(compare(repository))) == (folders == "robots")

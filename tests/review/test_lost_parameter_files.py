@@ -72,3 +72,17 @@ def test_a_node_of_ros_1_that_loses_its_parameter_file(repository, compare, oute
     changes = subject(compare(repository), path).changes
     reasons = [str(change.reason) for change in changes if ": parameters" in str(change.sentence) and change.reason]
     assert reasons == ([] if reason is None else [reason])
+
+
+@pytest.mark.parametrize("section", ["planner2:\n", "TrajectoryPlanner:\n  a: 1\n  b: 2\n  c: 3\n  d: 4\n  e: 5\n"])
+@pytest.mark.parametrize("is_loaded", [True, False])
+def test_a_renamed_file_with_other_names_is_not_lost(repository, compare, is_loaded, section):
+    path, old, new = "arm/launch/arm.launch", "arm/config/planner.yaml", "arm/config/planners.yaml"
+    values = "".join(f"  gain_{letter}: {number}\n" for number, letter in enumerate("abcdefgh"))
+    files = {"arm/package.xml": FILES["arm/package.xml"], old: f"Planner:\n{values}"}
+    repository.commit({**files, path: ROS1.format(outer="", content=ROSPARAM.format("planner"))})
+    repository.git("mv", old, new)
+    content = ROSPARAM.format("planners") if is_loaded else ""
+    repository.write({new: f"{section}{values}", path: ROS1.format(outer="", content=content)})
+    reasons = [str(change.reason) for change in subject(compare(repository), path).changes if change.reason]
+    assert reasons == ([] if is_loaded else ["the node starts without the parameters in 'planner.yaml'"])

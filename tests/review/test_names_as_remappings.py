@@ -38,3 +38,26 @@ def test_names_instead_of_pairs_make_the_launch_file_fail(repository, compare, o
     repository.write({PATH: LAUNCH.replace("REMAPPINGS", new)})
     found = [str(change.reason) for change in subject(compare(repository), PATH).changes if change.reason is not None]
     assert sorted(found) == reasons
+
+
+def test_a_name_of_several_parts_is_compared_as_one_name(review_changes):
+    text = """from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def topic(namespace, name):
+    return [namespace, name]
+
+
+def generate_launch_description():
+    namespace = LaunchConfiguration("namespace")
+    return LaunchDescription([
+        DeclareLaunchArgument("namespace", default_value="/arm"),
+        Node(package="camera", executable="camera", remappings=[("image", topic(namespace, "/camera/image"))]),
+    ])
+"""
+    changes, found_breaking = review_changes("arm.launch.py", text, "/camera/image", "/camera/front/image")
+    assert found_breaking == changes
+    assert [change.endswith("$(var namespace)/camera/front/image") for change in changes] == [True]

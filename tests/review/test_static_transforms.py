@@ -111,3 +111,17 @@ def test_arguments_of_ros_behind_the_transform_are_no_frame(repository, compare)
         "node 'tf2_ros/static_transform_publisher' of 'a': the same transform in another notation"
     ]
     assert breaking(result) == []
+
+
+def test_the_period_of_ros_1_is_not_the_frame_of_the_publisher_of_tf2_that_replaces_it(repository, compare):
+    arguments = "0 0 {} 0 0 0 map odom{}"
+    node = f'<node pkg="{{}}" type="static_transform_publisher" name="map_tf" args="{arguments}"/>'
+    text = f"<launch>{node}</launch>"
+    repository.commit({"arm/launch/arm.launch": text.format("tf", 0, " 100")})
+    replaced = f"node '{ROS1}' of 'odom' replaced by node '{ROS2}' of 'odom'"
+    for z, changes in ((0, [f"node '{ROS2}' of 'odom': {SAME}"]), (1, [f"node '{ROS2}' of 'odom': z 0 -> 1"])):
+        repository.write({"arm/launch/arm.launch": text.format("tf2_ros", z, "")})
+        result = compare(repository)
+        assert breaking(result) == []
+        found = [sentence for subject in result.subjects for sentence in sentences(subject)]
+        assert sorted(found) == sorted([replaced, *changes])

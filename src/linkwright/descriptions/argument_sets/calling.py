@@ -158,6 +158,7 @@ class _CalledDescription:
             path = resolve(call.path, file.choices, selection)
             if path is None or not self._is_target(_strip_quotes(path) if call.is_command else path, file):
                 continue
+            selection = file.with_conditional_defaults(selection)
             for variation, is_certain in generate_variations(call.arguments.values(), file.choices, selection):
                 argument_set = self._make_argument_set(call, file, variation, is_certain=is_certain)
                 first_set = first_set or argument_set
@@ -169,7 +170,29 @@ class _CalledDescription:
                     is_offered=bool(changed_choices) and changed_choices <= find_launch_names(file.choices).keys(),
                 )
         if first_set is None and _has_placeholder(call.path):
-            yield self._make_argument_set(call, file, Selection({}, launch_values), is_certain=False)
+            found = self._select_this_file(call, file, launch_values)
+            if found is not None:
+                values = file.with_conditional_defaults(found)
+                yield self._make_argument_set(call, file, values, is_certain=False)
+
+    def _select_this_file(
+        self, call: XacroCall, file: CallingFile, launch_values: Mapping[str, str]
+    ) -> Selection | None:
+        """Return the values with which the path of a call may be the description, or None if there are none.
+
+        Only values that conditions name are tried, the longest first, because one may be the beginning of another.
+        """
+        conditions = {(default.choice, default.value) for default in file.list_conditional_defaults()}
+        is_tried = False
+        for name, value in sorted(conditions, key=lambda item: (-len(item[1]), item)):
+            path = tuple(
+                value if isinstance(piece, Placeholder) and piece.choice == name else piece for piece in call.path
+            )
+            if path != call.path and name not in launch_values:
+                is_tried = True
+                if self._may_match(path):
+                    return Selection({}, {**launch_values, name: value})
+        return None if is_tried else Selection({}, launch_values)
 
     def _make_argument_set(
         self, call: XacroCall, file: CallingFile, selection: Selection, *, is_certain: bool

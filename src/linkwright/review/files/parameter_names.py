@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase, quoted_names
-from linkwright.review.breaking import names_reason
+from linkwright.review.breaking import name_reason, names_reason
 from linkwright.review.files.costmap_topics import CostmapTopics, FindRemappings
 from linkwright.review.files.key_readers import KeyReaders
 from linkwright.review.files.replaced_classes import find_replaced_classes, is_below_any
@@ -56,6 +57,8 @@ _CONTROLLER_LIST = re.compile(r"(^|[._])(\w*controllers|controller_names|control
 _ROS1_CLASS = re.compile(r"\w+/\w+")
 """The class of a plugin in the notation of ROS 1."""
 _NODE = re.compile(r"(?P<node>.*)\.ros__parameters\.")
+_MOTION = re.compile(r"(?:.*[./])?play_motion2?(?:_node)?\.(?:ros__parameters\.)?motions\.(?P<name>[\w-]+)\.")
+"""The beginning of the parameters of a motion of play_motion, whose name clients send."""
 _STAMPED = re.compile(r"stamped", re.IGNORECASE)
 """The parameters that choose between messages with and without a header, such as ``use_stamped_vel``."""
 _STAMPED_BY_DEFAULT = "use_stamped_vel"
@@ -175,6 +178,9 @@ class NameRules:
 
         The type of a controller can also be declared among its own parameters.
         """
+        motion = _MOTION.match(parameter)
+        if motion is not None and motion["name"] not in self._new_motions:
+            return name_reason(motion["name"])
         if parameter.endswith(_STAMPED_BY_DEFAULT) and old.lower() == "false" and self._has_node(parameter):
             return phrase("the message type of a topic changes between one with and one without a header")
         controller = _CONTROLLER_TYPE.fullmatch(parameter)
@@ -193,8 +199,11 @@ class NameRules:
         topic_reason = self._topics.find_reason(parameter)
         if topic_reason is not None or self._topics.is_dropped_source(parameter):
             return topic_reason
-        if node is not None and controller is None and self._is_in_lost_group(parameter, node[0].rstrip(".")):
-            return phrase("the node '{name}' starts without these parameters", name=node["node"])
+        root = "" if node is None else node[0].rstrip(".")
+        if node is not None and controller is None and self._is_in_lost_group(parameter, root):
+            return _make_lost_parameters_reason(node["node"])
+        if node is not None and controller is None and self._is_removed_like_group(parameter, root):
+            return _make_lost_parameters_reason(node["node"])
         ros1_controller = next(_find_ros1_controllers({parameter: old}), None)
         return None if ros1_controller is None else make_controller_reason(_separate_by_slashes(ros1_controller))
 
@@ -219,6 +228,23 @@ class NameRules:
         if is_below_any(parameter, self._replaced) or is_unread_plugin(parameter, root, self._old, self._new):
             return False
         return is_lost and not self._readers.have_stopped_reading(group.rpartition(".")[2])
+
+    def _is_removed_like_group(self, parameter: str, root: str) -> bool:
+        """Return whether a file for any node, which gives all parameters of one, also loses a group of them.
+
+        The node may have no defaults, as for the parameters of the group.
+        """
+        if root.partition(".")[0].rpartition("/")[2] not in _WILDCARDS or parameter in self._new:
+            return False
+        removed = (name for name in self._old if name.startswith(f"{root}.") and name not in self._new)
+        own_name = parameter.rpartition(".")[2]
+        is_read = not self._readers.have_stopped_reading(own_name) and not is_below_any(parameter, self._replaced)
+        return is_read and any(self._is_in_lost_group(name, root) for name in removed)
+
+    @cached_property
+    def _new_motions(self) -> frozenset[str]:
+        """The names of the motions in the new file."""
+        return frozenset(match["name"] for name in self._new if (match := _MOTION.match(name)) is not None)
 
     def _is_lost_filter_frame(self, parameter: str, frame: str) -> bool:
         """Return whether no filter of robot_localization in the file publishes the transform of a frame any more."""
@@ -363,6 +389,13 @@ def _find_name_items(text: str) -> set[str]:
     return {item for item in list_items(text) if item not in ("", EMPTY) and not _NUMBER_OR_BOOLEAN.fullmatch(item)}
 
 
+def _make_lost_parameters_reason(node: str) -> Phrase:
+    """Return the reason why removing parameters is breaking."""
+    if node.rpartition("/")[2] in _WILDCARDS:
+        return phrase("the nodes that load the file start without these parameters")
+    return phrase("the node '{name}' starts without these parameters", name=node)
+
+
 class RenamingRules:
     """Decide which renamed and moved parts of a parameter file are breaking.
 
@@ -382,6 +415,9 @@ class RenamingRules:
             part: the old path: a node, parameters of a node, or a controller of ROS 1.
             new_part: the new path.
         """
+        motions = _MOTION.fullmatch(f"{part}."), _MOTION.fullmatch(f"{new_part}.")
+        if motions[0] is not None and (motions[1] is None or motions[1]["name"] != motions[0]["name"]):
+            return name_reason(motions[0]["name"])
         names = [name for name in self._ros1_controllers if name == part or name.startswith(f"{part}.")]
         names = [name for name in names if not can_evaluate_to(f"{new_part}{name.removeprefix(part)}", name)]
         if names:

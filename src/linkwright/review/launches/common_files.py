@@ -1,4 +1,4 @@
-"""Tell which arguments launch files of common packages declare."""
+"""Tell which launch files common packages have, and which arguments these declare."""
 
 from __future__ import annotations
 
@@ -38,6 +38,19 @@ _ARGUMENTS = {
     "teleop_twist_joy": "config_filepath joy_config joy_dev joy_vel publish_stamped_twist",
 }
 """The arguments that the launch files of a package declare in any distribution, also by the files that they include."""
+_FILES = {
+    "gazebo_ros": """
+        elevator_world.launch empty_world.launch empty_world.launch.py gazebo.launch.py gazebo_launch.py
+        gzclient.launch.py gzserver.launch.py mud_world.launch plugin_world.launch range_world.launch
+        rubble_world.launch shapes_world.launch spawn_entity_demo.launch.py spawn_urdf.launch.py
+        two_actors_world.launch willowgarage_world.launch""",
+    "ros_gz_sim": """
+        gz_remove_model.launch.py gz_server.launch gz_server.launch.py gz_sim.launch.py gz_sim_composition.launch.py
+        gz_spawn_model.launch gz_spawn_model.launch.py gzserver.launch gzserver.launch.py ign_gazebo.launch
+        ign_gazebo.launch.py ign_gazebo_gui.launch.py ign_gazebo_server.launch.py ros_gz_sim.launch
+        ros_gz_sim.launch.py ros_gz_spawn_model.launch ros_gz_spawn_model.launch.py""",
+}
+"""The launch files that a package has in any distribution."""
 _SAME = {"ros_ign_gazebo": "ros_gz_sim", "ros_ign_bridge": "ros_gz_bridge"}
 """The former names of packages."""
 _OTHER_FILES = re.compile(r"simulation|tb[34]|example|demo|cloned|unique")
@@ -55,3 +68,9 @@ def find_known_arguments(path: str) -> frozenset[str] | None:
     if match is None or package not in _ARGUMENTS or _OTHER_FILES.search(match["file"]):
         return None
     return frozenset(_ARGUMENTS[package].split())
+
+
+def find_known_files(package: str) -> frozenset[str] | None:
+    """Return the names of the launch files of a common package, or None if they are unknown."""
+    files = _FILES.get(_SAME.get(package, package))
+    return None if files is None else frozenset(files.split())

@@ -44,6 +44,7 @@ from linkwright.review.launches.outlines import (
     without_condition,
 )
 from linkwright.review.launches.parameter_types import accepts_type
+from linkwright.review.launches.silent_programs import offers_no_names
 from linkwright.review.launches.simulated_hardware import find_hardware_reason
 from linkwright.review.launches.spawned_names import is_other_group
 from linkwright.review.launches.titles import TRANSFORM_PUBLISHERS, find_served_names, format_title
@@ -148,6 +149,8 @@ def find_removal_reason(
     if entry.name.startswith(_JOINT_STATE_PREFIX) and any(
         other.name.startswith(_JOINT_STATE_PREFIX) for other in new.entries
     ):
+        return None
+    if offers_no_names(old.root, entry.name):
         return None
     names = _find_resolved_served_names(entry, old)
     if (
@@ -330,6 +333,8 @@ def find_setting_reason(
         source = without_condition(setting).removeprefix(REMAPPING)
         return find_node_remapping_reason(entry, source, old, new, old_outline, new_outline)
     if setting == "name" and None in (old, new) and _is_default_node_name(entry, old or new or ""):
+        return None
+    if setting in _NAME_SETTINGS and offers_no_names(new_outline.root, entry.name):
         return None
     if setting in _NAME_SETTINGS:
         return find_renaming_reason(old, new, old_outline, new_outline)

@@ -23,8 +23,9 @@ from linkwright.review.launches.argument_kinds import report_changed_kinds
 from linkwright.review.launches.argument_uses import uses_argument
 from linkwright.review.launches.bridged_topics import explain_lost_topics
 from linkwright.review.launches.builders import separate_builders
-from linkwright.review.launches.effects import find_removal_reason, is_made_by_default
+from linkwright.review.launches.effects import explain_argument_removal, find_removal_reason, is_made_by_default
 from linkwright.review.launches.environment_readers import find_reader, reads_variable
+from linkwright.review.launches.failing_files import find_failure, report_repair
 from linkwright.review.launches.file_choices import FileChoices
 from linkwright.review.launches.fixed_arguments import report_fixed_arguments
 from linkwright.review.launches.imports import compare_imports
@@ -42,11 +43,12 @@ from linkwright.review.launches.included import (
 from linkwright.review.launches.including_files import IncludingFiles, describe_opposite_change
 from linkwright.review.launches.lost_values import explain_lost_value
 from linkwright.review.launches.matching import MIN_SIMILARITY, find_replacements, match_entries
-from linkwright.review.launches.missing_programs import lacks_included_file, lacks_program
+from linkwright.review.launches.missing_programs import find_missing_file, lacks_included_file, lacks_program
 from linkwright.review.launches.object_texts import report_object_texts
 from linkwright.review.launches.other_code import drop_common_parts, outside
 from linkwright.review.launches.outlines import (
     FAILURES,
+    PASSES_ALL_ARGUMENTS,
     READING,
     SERVER_PARAMETER,
     CodePart,
@@ -156,10 +158,19 @@ def compare_launch_files(pair: FilePair) -> None:
             report_object_tests(pair)
             report_object_texts(pair)
         report_undefined_names(pair)
-    if any(not entry.settings.keys().isdisjoint(FAILURES) and is_made_by_default(entry, old) for entry in old.entries):
-        _mark_unbreaking(pair, keeps_renaming=True)  # the old file failed
+    failure = find_failure(pair.versions.old, pair.old_path, outlines[0])
+    if failure is not None or _is_refused_by_default(old):
+        _mark_unbreaking(pair, keeps_renaming=True)
+    if failure is not None:
+        report_repair(pair, failure, outlines[1])
     if old.is_ros1 and not new.is_ros1 and PurePosixPath(pair.old_path).name != PurePosixPath(pair.new_path).name:
         _mark_unbreaking(pair, keeps_renaming=True)  # no user starts the file by its old name
+
+
+def _is_refused_by_default(outline: LaunchOutline) -> bool:
+    """Return whether a launch file has an action with wrong arguments that the defaults make."""
+    failing = (entry for entry in outline.entries if not entry.settings.keys().isdisjoint(FAILURES))
+    return any(is_made_by_default(entry, outline) for entry in failing)
 
 
 def compare_launch_tests(pair: FilePair) -> None:
@@ -233,7 +244,12 @@ def _report_unpaired_entries(
     for entry in removed:
         file = new_included.find_unmatched_file(entry, old_included)
         if file is not None:
-            moved.setdefault((file, True), []).append(entry)
+            if _loses_callers(entry, new_included.outline):
+                text = phrase("{entry} moved to {file}", entry=format_title(entry), file=file)
+                reason = explain_argument_removal(entry.name, is_ros1=True)
+                pair.add(text, pair.location(entry.span, is_old=True), reason)
+            else:
+                moved.setdefault((file, True), []).append(entry)
             continue
         written = rename_in_entry(entry, old_names)
         text, location = format_removed_entry(written), pair.location(entry.span, is_old=True)
@@ -288,10 +304,21 @@ def _report_unpaired_entries(
             reason = phrase("where the file is started without {file}, {reason}", file=file, reason=reason)
         if reason is not None and lacks_program(pair.versions.old, entry):
             text, reason = phrase("{change}; its package never had the program", change=text), None
+        if reason is not None and find_missing_file(pair.versions.old, entry, pair.old_file) is not None:
+            text, reason = phrase("{change}; its package does not have the file", change=text), None
         if file is not None or not removed_arguments.add(entry, reason):
             _report_removed(pair, entry, text, reason, trees)
     removed_arguments.report(pair)
     _report_moved(pair, moved)
+
+
+def _loses_callers(entry: Entry, new: LaunchOutline) -> bool:
+    """Return whether an argument of ROS 1 moved to an included file to which the file does not pass the callers' value.
+
+    In ROS 2, an included file gets the value from the callers of the including file.
+    """
+    passes_all = any(PASSES_ALL_ARGUMENTS in other.settings for other in new.entries if other.kind == "include")
+    return new.is_ros1 and entry.kind == "argument" and "value" not in entry.settings and not passes_all
 
 
 def _report_removed(

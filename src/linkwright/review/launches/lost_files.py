@@ -7,11 +7,13 @@ from collections.abc import Iterable, Sequence
 from pathlib import PurePosixPath
 
 from linkwright.diagnostics import Phrase, phrase
+from linkwright.files.git_repository import ChangedFile
 from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.parameter_names import find_node_name
 from linkwright.review.files.yaml_values import read_yaml_values
 from linkwright.review.launches.conditional_settings import SettingPair
 from linkwright.review.launches.default_names import find_default_name, find_package_folders
+from linkwright.review.launches.matching import compute_name_similarity
 from linkwright.review.launches.outlines import PARAMETER, Entry, LaunchOutline, without_condition
 from linkwright.review.list_changes import nested_list_items
 from linkwright.review.sources.names import CPP_SUFFIXES, PYTHON_SUFFIX
@@ -22,6 +24,9 @@ _FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<path>[\w
 _SECTION = "ros__parameters."
 _ALL_NODES = "**"
 _SUFFIXES = (".yaml", ".yml")
+_MIN_SIMILARITY_OF_FILES = 0.85
+_MIN_SHARE_OF_NAMES = 0.5
+"""The least similarity of the names of a removed and an added file, and the share of common parameters."""
 
 
 class LostFiles:
@@ -30,9 +35,16 @@ class LostFiles:
     Args:
         old: the outline of the old file, with the old version of the repository.
         new: the outline of the new file, with the new version.
+        changed_files: the changed files of the review.
     """
 
-    def __init__(self, old: tuple[LaunchOutline, Version], new: tuple[LaunchOutline, Version]) -> None:
+    def __init__(
+        self,
+        old: tuple[LaunchOutline, Version],
+        new: tuple[LaunchOutline, Version],
+        changed_files: Sequence[ChangedFile] = (),
+    ) -> None:
+        self._changed_files = changed_files
         self._old_outline, self._old = old
         self._new_outline, self._new = new
 
@@ -60,10 +72,42 @@ class LostFiles:
             names = self._read_names(self._old, file, node) or set()
             if not names or names & kept or not self._may_read(entry.name, names):
                 continue
-            if self._is_loaded_otherwise(file) or (is_unknown and self._has_other_section(file, node)):
+            if (
+                self._is_loaded_otherwise(file)
+                or self._is_renamed(file, new_files, node)
+                or (is_unknown and self._has_other_section(file, node))
+            ):
                 continue
             return phrase("the node starts without the parameters in '{file}'", file=PurePosixPath(file).name)
         return None
+
+    def _is_renamed(self, file: str, new_files: Iterable[str], node: str) -> bool:
+        """Return whether a node gets a file under its new name, also one that took the place of a removed file.
+
+        Such a file has a similar name and at least half of the parameters, maybe in another section.
+        """
+        path = self._find_path(self._old, file)
+        renamed = {(changed.old_path, changed.new_path) for changed in self._changed_files}
+        for other in new_files:
+            new_path = self._find_path(self._new, other)
+            if path is None or new_path is None:
+                continue
+            if (path, new_path) in renamed:
+                return True
+            if (path, None) in renamed and (None, new_path) in renamed and _have_similar_paths(path, new_path):
+                old, new = (
+                    {name.rpartition(".")[2] for name in self._read_names(version, text, node) or ()}
+                    for version, text in ((self._old, file), (self._new, other))
+                )
+                if len(old & new) >= _MIN_SHARE_OF_NAMES * len(old):
+                    return True
+        return False
+
+    def _find_path(self, version: Version, file: str) -> str | None:
+        """Return the path of a parameter file relative to the root, or None if it is unknown."""
+        match = _FILE.match(file)
+        share = None if match is None else version.share_of(match["package"], version.root)
+        return None if match is None or share is None else version.relative(share / match["path"])
 
     def _may_read(self, program: str, names: Iterable[str]) -> bool:
         """Return whether a program may read parameters. One of the repository has the name of at least one of them."""
@@ -127,6 +171,13 @@ def _get_path(file: str) -> str:
     """Return the path of a file without its conditions and options."""
     match = _FILE.match(file)
     return file if match is None else match[0]
+
+
+def _have_similar_paths(old: str, new: str) -> bool:
+    """Return whether two files of a folder have similar names."""
+    paths = PurePosixPath(old), PurePosixPath(new)
+    similarity = compute_name_similarity(paths[0].stem, paths[1].stem)
+    return paths[0].parent == paths[1].parent and similarity >= _MIN_SIMILARITY_OF_FILES
 
 
 def _normalize(setting: str) -> str:

@@ -93,10 +93,39 @@ def _match_lone_includes(removed: Mapping[int, Entry], added: Mapping[int, Entry
     The names of both files begin with the same word, such as ``rs_camera.launch`` and ``rs_rgbd.launch``.
     """
     groups = [_group_includes(entries) for entries in (removed, added)]
-    return {
+    pairs = {
         numbers[0]: groups[1][key][0]
         for key, numbers in groups[0].items()
         if len(numbers) == len(groups[1].get(key, ())) == 1
+    }
+    return pairs | _match_includes_of_packages(removed, added, pairs)
+
+
+def _match_includes_of_packages(
+    removed: Mapping[int, Entry], added: Mapping[int, Entry], pairs: Mapping[int, int]
+) -> dict[int, int]:
+    """Return the pairs of the only removed and the only added include of a package that pass mostly equal arguments.
+
+    Their conditions may differ.
+
+    Args:
+        removed: the removed actions, by number.
+        added: the added actions, by number.
+        pairs: the pairs that are already known.
+    """
+    numbers: list[dict[str, list[int]]] = [{}, {}]
+    for found, entries, taken in ((numbers[0], removed, pairs.keys()), (numbers[1], added, pairs.values())):
+        for number, entry in entries.items():
+            package = _PACKAGE_FOLDER.match(entry.name) if entry.kind == "include" else None
+            if package is not None and number not in taken:
+                found.setdefault(package[0], []).append(number)
+    return {
+        old[0]: numbers[1][package][0]
+        for package, old in numbers[0].items()
+        if len(old) == len(numbers[1].get(package, ())) == 1
+        and _have_common_arguments(
+            removed[old[0]], added[numbers[1][package][0]], is_same_package=True, is_same_context=False
+        )
     }
 
 
@@ -191,13 +220,14 @@ def _start_simulator(old: Entry, new: Entry) -> bool:
     return old.kind == "include" and all(names) and _have_common_arguments(old, new, is_same_package=False)
 
 
-def _have_common_arguments(old: Entry, new: Entry, *, is_same_package: bool) -> bool:
+def _have_common_arguments(old: Entry, new: Entry, *, is_same_package: bool, is_same_context: bool = True) -> bool:
     """Return whether two includes replace each other: they pass mostly equal arguments in the same context.
 
     Args:
         old: the include of the old version.
         new: the include of the new version.
         is_same_package: whether different files of one package are meant. Otherwise, all arguments may be equal, too.
+        is_same_context: whether the condition and namespace must be the same.
     """
     packages = {match[0] if (match := _PACKAGE_FOLDER.match(entry.name)) else "" for entry in (old, new)}
     common_arguments = old.settings.items() & new.settings.items()
@@ -209,7 +239,8 @@ def _have_common_arguments(old: Entry, new: Entry, *, is_same_package: bool) -> 
         _MIN_COMMON_ARGUMENTS, argument_count * _MIN_SHARE_OF_COMMON_ARGUMENTS
     )
     is_in_package = "" not in packages and (len(packages) == 1 or not is_same_package)
-    return old.kind == "include" and is_in_package and has_same_context and has_common_arguments
+    has_context = has_same_context or not is_same_context
+    return old.kind == "include" and is_in_package and has_context and has_common_arguments
 
 
 def _compute_parameter_score(old: Entry, new: Entry) -> float:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.files.git_repository import ChangedFile
@@ -20,6 +20,7 @@ from linkwright.review.file_pair import UnreadableFileError
 from linkwright.review.files.build_facts import BuildFacts, FactKind
 from linkwright.review.installed_paths import read_package_facts
 from linkwright.review.launch_paths import find_launch_files
+from linkwright.review.launches.common_files import find_known_files
 from linkwright.review.launches.outlines import PROGRAM_KINDS, Entry
 from linkwright.review.launches.reading import read_outline
 from linkwright.review.renamed_packages import find_renamed_packages
@@ -60,6 +61,7 @@ _PACKAGE_OF_PATH = re.compile(r"\$\(find(?:-pkg-share|-pkg-prefix)? (?P<package>
 _UNKNOWN_PROGRAM = re.compile(r"[$/*:\s]")
 """A character of a name that is computed, or that is the class of a component."""
 _FILE_OF_PACKAGE = re.compile(r"\$\(find-pkg-share (?P<package>[\w.-]+)\)/(?P<path>[^$]+)")
+_INCLUDED_FILE = re.compile(r"\$\(find(?:-pkg-share)? (?P<package>[\w.-]+)\)/(?P<path>[^$]*\.(?:launch|xml|py|ya?ml))")
 _SUBMODULE = re.compile(r"^\s*path\s*=\s*(?P<path>\S+)", re.MULTILINE)
 
 
@@ -216,6 +218,29 @@ def lacks_included_file(version: Version, entry: Entry) -> bool:
     target = f"share/{owner.facts.project}/{match['path']}"
     is_known = owner.facts.is_complete and not owner.may_generate and owner.facts.project == match["package"]
     return is_known and bool(owner.facts.files) and target not in owner.facts.files
+
+
+def find_missing_file(version: Version, entry: Entry, includer: Path) -> tuple[str, str] | None:
+    """Return the package and path of an included launch file that certainly does not exist, or None.
+
+    The build may install a file elsewhere, so no folder of the package has a file of this name.
+
+    Args:
+        version: the version of the repository.
+        entry: the action that includes the file.
+        includer: the launch file with the action.
+    """
+    match = _INCLUDED_FILE.fullmatch(entry.name) if entry.kind == "include" else None
+    if match is None:
+        return None
+    package, path = match["package"], match["path"]
+    owner, known = find_packages(version).get(package), find_known_files(package)
+    if owner is None:
+        is_common = known is not None and version.share_of(package, includer.parent) is None
+        return (package, path) if is_common and known is not None and PurePosixPath(path).name not in known else None
+    name = PurePosixPath(path).name
+    is_missing = name not in owner.names and f"{name}.in" not in owner.names and not owner.may_generate
+    return (package, path) if is_missing or lacks_included_file(version, entry) else None
 
 
 def _translate_package(program: str, new_names: Mapping[str, str]) -> str:

@@ -13,6 +13,7 @@ from linkwright.review.launches.outlines import (
     with_condition,
 )
 from linkwright.review.launches.text import BoundExpression, format_branches
+from linkwright.review.list_changes import nested_list_items
 
 _INNER_ACTIONS = frozenset({"composable_node_descriptions", "on_exit"})
 """The arguments that contain other actions. These actions have their own entries."""
@@ -51,11 +52,17 @@ def split_remappings(value: BoundExpression) -> dict[str, str]:
         if pairs is None:
             others.append(part)
         else:
-            remappings |= {f"{REMAPPING}{source}": target for source, target in pairs}
+            remappings |= {f"{REMAPPING}{source}": _join_substitutions(target) for source, target in pairs}
     names = [part for part in others if _is_text(part)]
     others = [part for part in others if not _is_text(part)]
     unknown = _format_unknown_parts(NAMES_AS_REMAPPINGS, value, names)
     return unknown | _format_unknown_parts("remappings", value, others) | remappings
+
+
+def _join_substitutions(name: str) -> str:
+    """Return a name without the notation of a list, whose texts and substitutions launch joins."""
+    items = nested_list_items(name) if name.startswith("[") and name.endswith("]") else []
+    return "".join(items) if items and not any(" " in item and "$(" not in item for item in items) else name
 
 
 def _is_text(part: BoundExpression) -> bool:

@@ -27,7 +27,8 @@ def find_renamed_names(old: LaunchOutline, new: LaunchOutline) -> dict[str, str]
     """Return the new names of renamed arguments and variables, by old name.
 
     A name is a new name if the actions that used the old name use it. If neither the names nor the settings are alike,
-    the same settings of actions must use it. If no action does, it must be similar and have the same settings.
+    the same settings of actions must use it. If no action does, it must be similar and have the same settings, and no
+    action may use the new name unless the old file used it, too, without a declaration.
     """
     renamed: dict[str, str] = {}
     for kind in _NAMED_KINDS:
@@ -80,7 +81,8 @@ def _compute_rename_score(old_entry: Entry, new_entry: Entry, old: LaunchOutline
         for outline, entry in ((old, old_entry), (new, new_entry))
     )
     if not old_uses:
-        return similarity if has_equal_settings and similarity >= _MIN_SIMILARITY_OF_NAMES and not new_uses else 0.0
+        is_free = not new_uses or any(_find_uses(old, new_entry.name))  # the old name may be a misspelled declaration
+        return similarity if has_equal_settings and similarity >= _MIN_SIMILARITY_OF_NAMES and is_free else 0.0
     common_uses = old_uses & new_uses
     unmatched_new = list((new_uses - common_uses).elements())
     similar_count = sum(

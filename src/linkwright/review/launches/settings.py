@@ -171,7 +171,7 @@ class SettingChanges:
         self._including_files = IncludingFiles(pair)
         self._old = old
         self._new = new
-        self._lost_files = LostFiles((old, pair.versions.old), (new, pair.versions.new))
+        self._lost_files = LostFiles((old, pair.versions.old), (new, pair.versions.new), pair.versions.changed_files)
         self._renamed = renamed
         self._old_names = {new_name: old_name for old_name, new_name in renamed.items()}
         self._remappings: dict[Hashable, list[tuple[Entry, Location | None, _Setting]]] = {}

@@ -36,7 +36,8 @@ class _Transform:
         child: the child frame.
         translation: the texts of x, y and z.
         rotation: the texts of yaw, pitch and roll, or of a quaternion, by name.
-        rest: the other words, such as the period.
+        rest: the other words.
+        period: the period of the publisher of tf; empty for that of tf2_ros, which has none.
     """
 
     parent: str
@@ -44,6 +45,7 @@ class _Transform:
     translation: Mapping[str, str]
     rotation: Mapping[str, str]
     rest: tuple[str, ...] = ()
+    period: str = ""
 
 
 def compare_transforms(old_program: str, new_program: str, old: str | None, new: str | None) -> Phrase | None:
@@ -84,13 +86,12 @@ def _read_transform(program: str, text: str) -> _Transform | None:
     words, rest = words[:end], tuple(words[end:])
     if any(word.startswith("--") for word in words):
         return _read_options(words, rest)
-    if program.startswith("tf/"):
-        words, rest = words[:-1], (words[-1], *rest) if words else rest
+    period = words.pop() if program.startswith("tf/") and words else ""
     names = {8: _ANGLES, 9: _QUATERNION}.get(len(words))
     if names is None:
         return None
     rotation = dict(zip(names, words[3:-2], strict=True))
-    return _Transform(words[-2], words[-1], dict(zip(_TRANSLATION, words[:3], strict=True)), rotation, rest)
+    return _Transform(words[-2], words[-1], dict(zip(_TRANSLATION, words[:3], strict=True)), rotation, rest, period)
 
 
 def _read_options(words: Sequence[str], rest: tuple[str, ...]) -> _Transform | None:
@@ -125,8 +126,12 @@ def _compare(old: _Transform, new: _Transform) -> Iterator[Phrase]:
         yield phrase("child frame '{old}' -> '{new}'", old=old.child, new=new.child)
     yield from _compare_values(old.translation, new.translation)
     yield from _compare_rotations(old.rotation, new.rotation)
-    if old.rest != new.rest:
-        yield phrase("other arguments {old} -> {new}", old=" ".join(old.rest) or "''", new=" ".join(new.rest) or "''")
+    has_periods = bool(old.period and new.period)
+    old_rest, new_rest = (
+        " ".join((transform.period, *transform.rest) if has_periods else transform.rest) for transform in (old, new)
+    )
+    if old_rest != new_rest:
+        yield phrase("other arguments {old} -> {new}", old=old_rest or "''", new=new_rest or "''")
 
 
 def _compare_values(old: Mapping[str, str], new: Mapping[str, str]) -> Iterator[Phrase]:

@@ -44,6 +44,7 @@ TRANSFORM_PUBLISHERS = ("tf2_ros/static_transform_publisher", "tf/static_transfo
 _CHILD_FRAME = re.compile(r"--child-frame-id[ ,]+([^ ,\]]+)")
 _TRANSFORM_WORD_COUNTS = (8, 9)
 """The numbers of words of a transform: six or seven numbers and two frames."""
+_NUMBER = re.compile(r"\d+(?:\.\d*)?")
 _SPAWNER_FLAGS = frozenset(
     {"--load-only", "--stopped", "--inactive", "--unload-on-kill", "-u", "--activate-as-group", "--switch-asap", "-h"}
 )
@@ -54,6 +55,8 @@ _SPAWNER = re.compile(
     rf"controller_manager/(?:{_SPAWNER_PROGRAM}|'{_SPAWNER_PROGRAM}' if .+ else '{_SPAWNER_PROGRAM}')", re.DOTALL
 )
 """The programs that start and stop controllers, also one of two, such as those of different versions of ROS."""
+_MANAGER, _SPAWN_COMMAND = "controller_manager/controller_manager", "spawn "
+"""The program of ROS 1 that starts controllers with this command."""
 _CHOSEN_OPTION = "'-"
 """The start of an expression that chooses one of two options."""
 
@@ -127,7 +130,9 @@ def find_served_names(entry: Entry) -> list[str]:
     The list is empty if they are unknown.
     """
     text = entry.settings.get("arguments", "")
-    is_spawner = _SPAWNER.fullmatch(entry.name) is not None
+    is_manager = entry.name == _MANAGER and text.startswith(_SPAWN_COMMAND)
+    text = text.removeprefix(_SPAWN_COMMAND) if is_manager else text
+    is_spawner = is_manager or _SPAWNER.fullmatch(entry.name) is not None
     split = nested_list_items if is_spawner else list_items
     words = split(text) if text.startswith("[") else text.split()
     if is_spawner and text.startswith("[") and any(word.startswith(("[", "{")) for word in words):
@@ -142,9 +147,9 @@ def find_served_names(entry: Entry) -> list[str]:
     child = _CHILD_FRAME.search(text)
     if child is not None:
         return [child[1]]
-    parts = {"tf2_ros": len(words), "tf": len(words) - 1}  # the publisher of ROS 1 has a period at the end
-    count = parts[entry.name.partition("/")[0]]
-    return [words[count - 1]] if count in _TRANSFORM_WORD_COUNTS else []
+    if entry.name.startswith("tf/") or (words and _NUMBER.fullmatch(words[-1])):
+        words = words[:-1]  # the period of the publisher of ROS 1, which an action had that now has the one of tf2_ros
+    return [words[-1]] if len(words) in _TRANSFORM_WORD_COUNTS else []
 
 
 def _find_spawned_controllers(words: Sequence[str]) -> Iterator[str]:

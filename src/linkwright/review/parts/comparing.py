@@ -21,7 +21,6 @@ from linkwright.review.parts.interface import (
 )
 from linkwright.review.parts.item_comparisons import make_comparison
 from linkwright.review.parts.left_uses import find_left_uses
-from linkwright.review.parts.malformed_includes import includes_malformed_file
 from linkwright.review.parts.mesh_addresses import compare_mesh_addresses
 from linkwright.review.parts.moved_to_callers import compare_moved_to_callers
 from linkwright.review.parts.name_substitution import CALL, ComparedContent
@@ -29,6 +28,7 @@ from linkwright.review.parts.outline import MacroOutline, Outline, read_outline
 from linkwright.review.parts.part_pair import PartPair
 from linkwright.review.parts.properties import compare_properties
 from linkwright.review.parts.readings import compare_readings
+from linkwright.review.parts.unreadable_includes import includes_unreadable_file
 from linkwright.review.parts.unused_parts import is_unused_part
 from linkwright.review.parts.written_contents import format_written_contents, summarize_macro
 from linkwright.review.unprefixed_calls import compare_prefixes
@@ -158,7 +158,7 @@ class _Comparer:
             pair.robots = self._graphs.new.find_outlines_of_robots(file.new_path) or ()
             pair.defaults = self._graphs.new.find_defaults(file.new_path)
             self._compare(pair)
-            if includes_malformed_file(self._versions.old, file.old_path, pair.old):
+            if includes_unreadable_file(self._versions.old, file.old_path, pair.old):
                 pair.changes = list(map(_make_harmless, pair.changes))
             changes += pair.changes
             versions = self._versions

@@ -340,7 +340,8 @@ def _find_callers(version: Version, path: str, cases: Sequence[str]) -> list[str
     spans = (
         called.span for called in _find_called_sets(version, path) if _format_values(called.values, version) in cases
     )
-    return [caller for span in spans if span is not None and (caller := version.relative(span.file)) is not None]
+    callers = (version.relative(span.file) for span in spans if span is not None)
+    return list(dict.fromkeys(caller for caller in callers if caller is not None))
 
 
 def _report_contents(pair: FilePair, description: Description | LinkwrightError) -> None:

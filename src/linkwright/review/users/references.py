@@ -52,7 +52,9 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
         if path in changed and not _may_make_files(text, path):
             known = _list_known_paths(versions.old, changed[path], renamed)
         reported: set[tuple[str, str]] = set()
-        for package, subpath, span in find_share_paths(source, path):
+        named = list(find_share_paths(source, path))
+        dropped = (known or set()) - {(package, subpath) for package, subpath, _ in named}
+        for package, subpath, span in named:
             if (package, subpath) in reported:
                 continue
             reported.add((package, subpath))
@@ -61,8 +63,11 @@ def find_lost_references(versions: Versions, changed_files: Sequence[ChangedFile
             elif known is not None and (package, subpath) not in known and "*" not in subpath:
                 change = _explain_missing(versions.new, path, package, subpath, span)
                 if change is not None:
-                    is_added = changed[path] is None  # the file has no users yet
-                    yield path, replace(change, effect=Effect.CHANGED, reason=None) if is_added else change
+                    old_path = changed[path]  # an added file has no users yet
+                    is_harmless = old_path is None or _replaces_missing(
+                        versions.old, old_path, package, subpath, dropped
+                    )
+                    yield path, replace(change, effect=Effect.CHANGED, reason=None) if is_harmless else change
 
 
 def _list_known_paths(version: Version, path: str | None, renamed: PackageNames) -> set[tuple[str, str]]:
@@ -76,6 +81,26 @@ def _list_known_paths(version: Version, path: str | None, renamed: PackageNames)
         if share is None or not (share / subpath).exists():  # a file that was there must be renamed, too
             paths.add((new_package, renamed.rename_derived(subpath)))
     return paths
+
+
+def _replaces_missing(
+    version: Version, path: str, package: str, subpath: str, dropped: Collection[tuple[str, str]]
+) -> bool:
+    """Return whether a path takes the place of one in the same folder that launch files did not find either.
+
+    Args:
+        version: the old version.
+        path: the path of the launch file in it.
+        package: the package of the new path.
+        subpath: the path in the package.
+        dropped: the packages and paths that only the old version names.
+    """
+    file, span = PurePosixPath(subpath), Span(path, 1, 1, 1, 1)
+    return any(
+        (other_package, other.parent, other.suffix) == (package, file.parent, file.suffix)
+        and _explain_missing(version, path, package, str(other), span) is not None
+        for other_package, other in ((name, PurePosixPath(text)) for name, text in dropped)
+    )
 
 
 def _may_make_files(text: str, path: str) -> bool:
@@ -112,7 +137,7 @@ def _explain_missing(version: Version, path: str, package: str, subpath: str, sp
 
 
 def _is_left_out(version: Version, owner: RepositoryPackage, path: str, subpath: str) -> bool:
-    """Return whether a build file installs a launch file of its package, but not another file that exists."""
+    """Return whether build files install a launch file, but not a file that exists and that it names."""
     facts = owner.facts
     file = PurePosixPath(owner.folder) / subpath
     if facts is None or not version.file(file.as_posix()).is_file():
@@ -120,8 +145,19 @@ def _is_left_out(version: Version, owner: RepositoryPackage, path: str, subpath:
     words = set(_WORD.findall(_COMMENT.sub("", owner.build_text)))
     if not facts.is_complete and words.intersection(PurePosixPath(subpath).parts):
         return False  # a command whose effect is unknown may install it
-    sources = {(PurePosixPath(owner.folder) / source).as_posix() for source in facts.files.values()}
-    return path in sources and file.as_posix() not in sources and f"share/{facts.project}/{subpath}" not in facts.files
+    folder = version.package_of(path)
+    user = next((package for package in find_packages(version).values() if package.folder == folder), None)
+    is_installed = user is not None and path in _list_installed(user)
+    target = f"share/{facts.project}/{subpath}"
+    return (
+        is_installed and bool(facts.files) and not ({file.as_posix(), target} & {*_list_installed(owner), *facts.files})
+    )
+
+
+def _list_installed(package: RepositoryPackage) -> set[str]:
+    """Return the paths of the files that a package installs, relative to the root."""
+    files = () if package.facts is None else package.facts.files.values()
+    return {(PurePosixPath(package.folder) / source).as_posix() for source in files}
 
 
 def _is_missing(version: Version, package: str, subpath: str) -> bool:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from linkwright.diagnostics import Span
-from linkwright.loading.lean_dataclasses import dataclass, field
+from linkwright.loading.lean_dataclasses import dataclass, field, replace
 from linkwright.packages.readers.xacro_calls.texts import Choice, Placeholder, Selection, Text, resolve, split_mark
 
 _LAUNCH_PREFIX = "launch:"
@@ -45,6 +45,23 @@ class Inclusion:
     arguments: Mapping[str, Text]
 
 
+@dataclass(frozen=True, slots=True)
+class ConditionalDefault:
+    """A default of a launch argument that holds only if another launch argument has a value, or has another one.
+
+    Attributes:
+        choice: the choice of the other argument.
+        value: the value.
+        is_equal: whether the other argument must have the value.
+        default: the default.
+    """
+
+    choice: str
+    value: str
+    is_equal: bool
+    default: Text
+
+
 @dataclass
 class CallingFile:
     """The xacro calls and inclusions in one file.
@@ -54,12 +71,14 @@ class CallingFile:
         calls: the xacro calls in the file.
         inclusions: the launch files that the file includes.
         choices: name -> the possible values of placeholders.
+        conditional_defaults: name of a choice -> the defaults of its launch argument under different conditions.
     """
 
     path: str
     calls: list[XacroCall] = field(default_factory=list)
     inclusions: list[Inclusion] = field(default_factory=list)
     choices: dict[str, Choice] = field(default_factory=dict)
+    conditional_defaults: dict[str, list[ConditionalDefault]] = field(default_factory=dict)
 
     @cached_property
     def included_names(self) -> list[tuple[str | None, str, Inclusion]]:
@@ -80,6 +99,27 @@ class CallingFile:
         existing = self.choices.get(_LAUNCH_PREFIX + name)
         if values and (existing is None or len(existing.rows) < len(values)):
             self.choices[_LAUNCH_PREFIX + name] = Choice(tuple((value,) for value in values))
+
+    def with_conditional_defaults(self, selection: Selection) -> Selection:
+        """Return a selection with the defaults whose conditions hold for the values that it selects."""
+        fixed_texts = dict(selection.fixed_texts)
+        for name, defaults in self.conditional_defaults.items():
+            holding = [default for default in defaults if self._holds(default, selection)]
+            value = resolve(holding[0].default, self.choices, selection) if len(holding) == 1 else None
+            if value is not None and name not in selection.rows:
+                fixed_texts.setdefault(name, value)
+        return replace(selection, fixed_texts=fixed_texts)
+
+    def list_conditional_defaults(self) -> list[ConditionalDefault]:
+        """Return the conditional defaults of all launch arguments."""
+        return [default for defaults in self.conditional_defaults.values() for default in defaults]
+
+    def _holds(self, default: ConditionalDefault, selection: Selection) -> bool:
+        """Return whether the condition of a default certainly holds."""
+        if default.choice not in selection.rows and default.choice not in selection.fixed_texts:
+            return False
+        value = resolve((Placeholder(default.choice),), self.choices, selection)
+        return value is not None and (value == default.value) == default.is_equal
 
 
 def make_launch_argument(name: str) -> Placeholder:

@@ -4,18 +4,31 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from linkwright.diagnostics import LinkwrightError, SourceText, Span
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
-from linkwright.packages.readers.xacro_calls.call import CallingFile, Inclusion, XacroCall, make_launch_argument
+from linkwright.packages.readers.xacro_calls.call import (
+    CallingFile,
+    ConditionalDefault,
+    Inclusion,
+    XacroCall,
+    make_launch_argument,
+    name_launch_choice,
+)
 from linkwright.packages.readers.xacro_calls.command_line import parse_xacro_command
 from linkwright.packages.readers.xacro_calls.texts import UNKNOWN, Placeholder, Share, Text, make_literal
 from linkwright.xmltree import Element, parse
 
 _TAG_AND_REST = lazy_pattern(r"\s*(\S+)\s*(.*)", re.DOTALL)
 _ARGUMENT_TAGS = frozenset({"var", "arg"})
+_CONDITIONS = frozenset({"if", "unless"})
+_COMPARISON = lazy_pattern(
+    r"""\$\(eval\s+["']*(?:\$?\(?(?:arg|var)[(\s]\s*["']?(?P<argument>\w+)["']?\s*\)|(?P<name>\w+))["']?\s*"""
+    r"""(?P<operator>==|!=)\s*["']?(?P<value>[\w./-]*)["']*\s*\)"""
+)
+"""A condition that compares an argument with a text, such as ``$(eval arg('arm') == 'long')``."""
 _SHARE_TAGS = frozenset({"find-pkg-share", "find"})
 
 
@@ -39,6 +52,7 @@ def read_xml(source: SourceText) -> CallingFile:
         if element.tag in ("arg", "let") and id(element) not in include_children and "name" in element.attributes:
             default = values.get("default", values.get("value"))
             file.declare(element.attributes["name"], default, tuple(_read_choice_values(element)))
+            _record_conditional_default(file, element.attributes, default)
         elif element.tag == "include" and "file" in values:
             arguments = {
                 child.attributes.get("name", ""): parse_markup_text(child.attributes["value"], source.name)
@@ -50,6 +64,18 @@ def read_xml(source: SourceText) -> CallingFile:
             lines = [values[key]] if key == "command" else list(_find_commands(value, source.name))
             _record_calls(file, lines, element.attribute_span(key))
     return file
+
+
+def _record_conditional_default(file: CallingFile, attributes: Mapping[str, str], default: Text | None) -> None:
+    """Record a default that holds only if another argument has a value."""
+    for keyword in _CONDITIONS & attributes.keys() if default is not None else ():
+        match = _COMPARISON.fullmatch(attributes[keyword])
+        if match is not None and default is not None:
+            is_equal = (match["operator"] == "==") == (keyword == "if")
+            name = name_launch_choice(match["argument"] or match["name"])
+            file.conditional_defaults.setdefault(name_launch_choice(attributes["name"]), []).append(
+                ConditionalDefault(name, match["value"], is_equal, default)
+            )
 
 
 def _read_choice_values(element: Element) -> Iterator[Text]:

@@ -1,4 +1,4 @@
-"""Reviews of descriptions that could not be expanded before, because an included file was not well-formed."""
+"""Reviews of descriptions that could not be expanded before, because an included file was missing or malformed."""
 
 from __future__ import annotations
 
@@ -43,3 +43,23 @@ def test_change_of_a_description_that_nobody_could_expand_breaks_nothing(
     result = compare(package)
     assert bool(breaking(result)) == is_breaking
     assert "macro 'base': parameter side without a default added" in sentences(subject(result, BASE))
+
+
+@pytest.mark.parametrize(
+    ("include", "is_breaking"),
+    [
+        (INCLUDE.format(file="$(find arm_description)/urdf/lost.xacro"), False),
+        (INCLUDE.format(file="lost.xacro").replace("/>", ' optional="true"/>'), True),
+        (INCLUDE.format(file="../submodule/lost.xacro"), True),
+        (INCLUDE.format(file="$(find other)/urdf/lost.xacro"), True),
+        (INCLUDE.format(file="library.xacro"), True),
+    ],
+)
+def test_links_of_a_description_that_includes_a_missing_file_are_not_lost(package, compare, include, is_breaking):
+    text = TEXT.format(include=include).replace("</robot>", '<link name="base_link"/><link name="plate"/></robot>')
+    package.commit({BASE: text, LIBRARY: MACRO})
+    package.write(
+        {BASE: text.replace(include, INCLUDE.format(file="library.xacro")).replace('<link name="plate"/>', "")}
+    )
+    lines = breaking(compare(package))
+    assert any("plate" in line for line in lines) == is_breaking
