@@ -42,9 +42,9 @@ def find_plugins(element: Element) -> list[Element]:
 
 
 def find_plugin_name(plugin: Element) -> str:
-    """Return the name of a plugin, or else its file, or the class of a hardware plugin."""
+    """Return the name of a plugin, or else its file, or the class of a plugin of hardware or Webots."""
     file = PurePosixPath(plugin.attributes.get("filename", "")).name
-    return plugin.attributes.get("name") or file or plugin.text().strip()
+    return plugin.attributes.get("name") or file or plugin.attributes.get("type") or plugin.text().strip()
 
 
 def find_plugin_topics(plugin: Element) -> list[str]:
@@ -107,7 +107,10 @@ def format_plugins(element: Element, limit: int) -> list[Phrase]:
     parts: list[Phrase] = []
     for child in element.elements():
         if child.tag in _PART_TAGS and child.attributes:
-            attributes = {name: value for name, value in child.attributes.items() if name != "name"}
+            shown = ("type", find_plugin_name(child)) if child.tag == "plugin" else ()
+            attributes = {
+                name: value for name, value in child.attributes.items() if name != "name" and (name, value) != shown
+            }
             texts: list[Phrase | None] = [as_phrase(f"{name}={value}") for name, value in attributes.items()]
             texts += [format_values(child, limit, _PART_TAGS), _format_default_topics(child)]
             title = phrase("plugin '{name}'", name=find_plugin_name(child))
